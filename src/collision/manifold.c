@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of every float operation here is fixed: reference trajectories are compared bit by bit. */
+#include "collision/manifold.h"
+
+#include <stdbool.h>
+
+Box box_make(Vec2 position, Vec2 size, float angle) {
+    return (Box){position, vec2_scale(0.5f, size), mat22_rotation(angle)};
+}
+
+/* A corner on its way through clipping, with the edges that meet in it. */
+typedef struct ClipVertex {
+    Vec2 position;
+    uint8_t in_reference, out_reference; /* edges of the reference box that cut here */
+    uint8_t in_incident, out_incident;   /* edges of the incident box */
+} ClipVertex;
+
+/* The face that the manifold lies on. */
+typedef struct ReferenceFace {
+    bool of_b;        /* the reference box is b */
+    bool along_y;     /* the face's normal is the box's y axis */
+    float separation; /* m along the normal, <= 0 */
+    Vec2 normal;      /* unit, from a to b */
+} ReferenceFace;
+
+/* A later axis must be better than the best so far by this much, or the face would flip from step to step. */
+static bool clearly_better(float separation, float best, float half) {
+    const float relative_tolerance = 0.95f, absolute_tolerance = 0.01f;
+    return separation > relative_tolerance * best + absolute_tolerance * half;
+}
+
+static Vec2 toward(float distance, Vec2 axis) { return distance > 0.0f ? axis : vec2_negate(axis); }
+
+/* False where an axis separates the boxes. */
+static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b) {
+    Mat22 to_a = mat22_transpose(a->rotation), to_b = mat22_transpose(b->rotation);
+    Vec2 between = vec2_sub(b->position, a->position);
+    Vec2 in_a = mat22_multiply(to_a, between), in_b = mat22_multiply(to_b, between);
+    Mat22 turn = mat22_abs(mat22_product(to_a, b->rotation));
+
+    Vec2 face_a = vec2_sub(vec2_sub(vec2_abs(in_a), a->half), mat22_multiply(turn, b->half));
+    if (face_a.x > 0.0f || face_a.y > 0.0f) return false;
+    Vec2 face_b = vec2_sub(vec2_sub(vec2_abs(in_b), mat22_multiply(mat22_transpose(turn), a->half)), b->half);
+    if (face_b.x > 0.0f || face_b.y > 0.0f) return false;
+
+    *face = (ReferenceFace){false, false, face_a.x, toward(in_a.x, a->rotation.column1)};
+    if (clearly_better(face_a.y, face->separation, a->half.y))
+        *face = (ReferenceFace){false, true, face_a.y, toward(in_a.y, a->rotation.column2)};
+    if (clearly_better(face_b.x, face->separation, b->half.x))
+        *face = (ReferenceFace){true, false, face_b.x, toward(in_b.x, b->rotation.column1)};
+    if (clearly_better(face_b.y, face->separation, b->half.y))
+        *face = (ReferenceFace){true, true, face_b.y, toward(in_b.y, b->rotation.column2)};
+    return true;
+}
+
+/* Where edge `edge` ends, going round counter-clockwise. */
+static ClipVertex edge_end(const Box *box, Edge edge) {
+    Vec2 h = box->half;
+    const Vec2 ends[] = {
+        [EDGE_TOP] = {-h.x, h.y}, [EDGE_LEFT] = {-h.x, -h.y}, [EDGE_BOTTOM] = {h.x, -h.y}, [EDGE_RIGHT] = {h.x, h.y}};
+    Edge next = edge == EDGE_RIGHT ? EDGE_TOP : edge + 1;
+    Vec2 position = vec2_add(box->position, mat22_multiply(box->rotation, ends[edge]));
+    return (ClipVertex){position, NO_EDGE, NO_EDGE, (uint8_t)edge, (uint8_t)next};
+}
+
+/* The edge of the incident box that faces the reference normal most. */
+static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 reference_normal) {
+    Vec2 n = vec2_negate(mat22_multiply(mat22_transpose(box->rotation), reference_normal));
+    Vec2 size = vec2_abs(n);
+    Edge facing;
+    if (size.x > size.y)
+        facing = n.x < 0.0f ? EDGE_LEFT : EDGE_RIGHT;
+    else
+        facing = n.y < 0.0f ? EDGE_BOTTOM : EDGE_TOP;
+    edge[0] = edge_end(box, facing == EDGE_TOP ? EDGE_RIGHT : facing - 1);
+    edge[1] = edge_end(box, facing);
+}
+
+/* Keeps what lies behind the line normal . x = offset; `clip_edge` is the reference edge on that line. False
+   where fewer than two points are left. */
+static bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
+    int count = 0;
+    float distance0 = vec2_dot(normal, in[0].position) - offset;
+    float distance1 = vec2_dot(normal, in[1].position) - offset;
+    if (distance0 <= 0.0f) out[count++] = in[0];
+    if (distance1 <= 0.0f) out[count++] = in[1];
+    if (distance0 * distance1 < 0.0f) {
+        float t = distance0 / (distance0 - distance1);
+        ClipVertex cut = distance0 > 0.0f ? in[0] : in[1];
+        cut.position = vec2_add(in[0].position, vec2_scale(t, vec2_sub(in[1].position, in[0].position)));
+        if (distance0 > 0.0f) {
+            cut.in_reference = (uint8_t)clip_edge;
+            cut.in_incident = NO_EDGE;
+        } else {
+            cut.out_reference = (uint8_t)clip_edge;
+            cut.out_incident = NO_EDGE;
+        }
+        out[count++] = cut;
+    }
+    return count == 2;
+}
+
+static uint32_t feature_of(const ClipVertex *v, bool reference_is_b) {
+    uint32_t reference = v->in_reference | (uint32_t)v->out_reference << 8;
+    uint32_t incident = v->in_incident | (uint32_t)v->out_incident << 8;
+    return reference_is_b ? incident | reference << 16 : reference | incident << 16;
+}
+
+void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
+    manifold->count = 0;
+    ReferenceFace face;
+    if (!find_reference_face(&face, a, b)) return;
+    manifold->normal = face.normal;
+
+    const Box *reference = face.of_b ? b : a, *incident = face.of_b ? a : b;
+    Vec2 front_normal = face.of_b ? vec2_negate(face.normal) : face.normal;
+    Vec2 side_normal = face.along_y ? reference->rotation.column1 : reference->rotation.column2;
+    float front_half = face.along_y ? reference->half.y : reference->half.x;
+    float side_half = face.along_y ? reference->half.x : reference->half.y;
+    float front = vec2_dot(reference->position, front_normal) + front_half;
+    float side = vec2_dot(reference->position, side_normal);
+
+    ClipVertex edge[2], half_clipped[2], clipped[2];
+    find_incident_edge(edge, incident, front_normal);
+    if (!clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half, face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
+        return;
+    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP)) return;
+
+    for (int i = 0; i < 2; i++) {
+        float separation = vec2_dot(front_normal, clipped[i].position) - front;
+        if (separation > 0.0f) continue;
+        /* Slid onto the reference face, where both boxes agree on the lever arms' plane. */
+        Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
+        manifold->points[manifold->count++] =
+            (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
+    }
+}

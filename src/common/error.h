@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Why a function failed, in words that main() prints as they are.
+
+   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return
+   false, so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller that
+   cannot add anything passes it on untouched. */
+#pragma once
+#include <stdbool.h>
+
+/* The values are the program's exit statuses. */
+typedef enum ErrorKind { ERROR_NONE = 0, ERROR_INPUT = 2, ERROR_SYSTEM = 3 } ErrorKind;
+
+typedef struct Error {
+    ErrorKind kind;
+    char message[2048];
+} Error;
+
+#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
+
+/* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an
+   option. A text may go on over further lines (an excerpt of the file with a caret). */
+bool error_input(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* The system failed: disk, memory, a missing library or program. */
+bool error_system(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Out of memory: a system error whose text needs no arguments. */
+bool error_memory(Error *error, const char *where);

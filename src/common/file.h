@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole files in and out. */
+#pragma once
+#include "common/error.h"
+
+#include <stddef.h>
+
+/* Reads a regular file of at most `limit` bytes into a malloc'ed block with a NUL behind its last byte (not
+   counted in *size). NULL with error set when it is missing, no regular file, too large or unreadable. */
+char *file_read(const char *path, size_t limit, size_t *size, Error *error);
+
+/* Puts a whole file in place: writes beside it, fsyncs, renames. Under its name there is either the old file
+   or the new one, never a part. */
+bool file_write(const char *path, const void *data, size_t size, Error *error);
+
+/* Makes the directory and those above it where missing. */
+bool file_make_directory(const char *path, Error *error);
+
+/* Length of the folder part of a path with its slash: 7 for "scenes/single.yaml", 0 for "single.yaml". */
+size_t file_folder_length(const char *path);

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How long work tells how far it is. The library never prints: cli/ supplies the bar. */
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct Progress {
+    /* Called every now and then from the thread that began the work; returns false to ask it to stop early. */
+    bool (*report)(void *context, double done, double total);
+    void *context;
+} Progress;
+
+/* True to go on. A NULL progress always goes on. */
+static inline bool progress_report(const Progress *progress, double done, double total) {
+    return progress == NULL || progress->report(progress->context, done, total);
+}

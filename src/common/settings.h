@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The settings of a method, as they stand on the command line: `name:key=value,key=value`. */
+#pragma once
+#include "common/error.h"
+
+enum { SETTINGS_MAX = 16, SETTING_KEY_SIZE = 32, SETTING_VALUE_SIZE = 512 };
+
+typedef struct Setting {
+    char key[SETTING_KEY_SIZE];
+    char value[SETTING_VALUE_SIZE];
+} Setting;
+
+typedef struct Settings {
+    int count;
+    Setting items[SETTINGS_MAX];
+} Settings;
+
+/* A key that a method knows, and what it means; a table of these ends with a NULL key. */
+typedef struct SettingSpec {
+    const char *key, *summary;
+} SettingSpec;
+
+/* Parses "key=value,..." (may be empty). Every key must be in the table, once. `where` begins the message. */
+bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
+
+/* The value of key, or NULL. */
+const char *settings_get(const Settings *settings, const char *key);
+
+/* Sets key to value where the settings do not have it yet. False when there is no room. */
+bool settings_default(Settings *settings, const char *key, const char *value);
+
+/* The value of key as a whole number of [minimum, maximum]; *value is left as it is where the key is missing. */
+bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error);
+
+/* on|off, the same way. */
+bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error);

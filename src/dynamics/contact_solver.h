@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The interface that every contact solver implements: a constant struct of functions, listed once in
+   solvers/solvers.c. */
+#pragma once
+#include "common/error.h"
+#include "common/settings.h"
+#include "dynamics/contact_problem.h"
+
+typedef struct ContactSolverKind {
+    const char *name, *summary;
+    const SettingSpec *settings; /* the keys that create() reads, ended by a NULL key */
+    /* Returns the solver's own state, NULL with error set where a setting is refused. */
+    void *(*create)(const Settings *settings, Error *error);
+    /* Fills the solution. False with error set only when memory is short or the problem cannot be solved at
+       all. Allocates nothing once it has seen a problem of that size. */
+    bool (*solve)(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
+    void (*destroy)(void *state);
+} ContactSolverKind;
+
+/* A solver in use. */
+typedef struct ContactSolver {
+    const ContactSolverKind *kind;
+    void *state;
+} ContactSolver;

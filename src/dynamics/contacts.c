@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of every float operation here is fixed: reference trajectories are compared bit by bit. */
+#include "dynamics/contacts.h"
+
+#include "common/array.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void contact_set_free(ContactSet *set) {
+    free(set->arbiters);
+    free(set->contacts);
+    free(set->impulses);
+    *set = (ContactSet){0};
+}
+
+static bool reserve(ContactSet *set) {
+    size_t arbiters = (size_t)set->arbiter_count + 1, contacts = (size_t)set->contact_count + 2;
+    return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, arbiters, sizeof *set->arbiters) &&
+           array_reserve((void **)&set->contacts, &set->contact_capacity, contacts, sizeof *set->contacts) &&
+           array_reserve((void **)&set->impulses, &set->impulse_capacity, contacts, sizeof *set->impulses);
+}
+
+bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes) {
+    set->arbiter_count = set->contact_count = 0;
+    for (size_t i = 0; i < pairs->count; i++) {
+        BodyPair pair = pairs->pairs[i];
+        Manifold manifold;
+        manifold_compute(&manifold, &boxes[pair.a], &boxes[pair.b]);
+        if (manifold.count == 0) continue;
+        if (!reserve(set)) return false;
+        set->arbiters[set->arbiter_count++] = (Arbiter){pair.a, pair.b, set->contact_count, manifold.count};
+        for (int k = 0; k < manifold.count; k++) {
+            const ManifoldPoint *point = &manifold.points[k];
+            set->contacts[set->contact_count++] = (ContactPoint){.a = pair.a,
+                                                                 .b = pair.b,
+                                                                 .position = point->position,
+                                                                 .normal = manifold.normal,
+                                                                 .separation = point->separation,
+                                                                 .feature = point->feature};
+        }
+    }
+    return true;
+}
+
+static bool before(const Arbiter *x, const Arbiter *y) { return x->a < y->a || (x->a == y->a && x->b < y->b); }
+
+void contact_set_match(ContactSet *set, const ContactSet *last) {
+    const Arbiter *old = last->arbiters, *end = old + last->arbiter_count;
+    for (int i = 0; i < set->arbiter_count; i++) {
+        const Arbiter *arbiter = &set->arbiters[i];
+        while (old < end && before(old, arbiter)) old++;
+        if (old == end) return;
+        if (before(arbiter, old)) continue;
+        for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++) {
+            for (int j = old->first; j < old->first + old->count; j++) {
+                if (last->contacts[j].feature != set->contacts[k].feature) continue;
+                set->contacts[k].warm_normal = last->impulses[j].normal;
+                set->contacts[k].warm_tangent = last->impulses[j].tangent;
+                break;
+            }
+        }
+    }
+}
+
+/* Mass that an impulse along the unit vector `axis` meets at the contact. */
+static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm_a, Vec2 arm_b, Vec2 axis) {
+    float along_a = vec2_dot(arm_a, axis), along_b = vec2_dot(arm_b, axis);
+    float inverse = a->inv_mass + b->inv_mass;
+    inverse += a->inv_inertia * (vec2_dot(arm_a, arm_a) - along_a * along_a) +
+               b->inv_inertia * (vec2_dot(arm_b, arm_b) - along_b * along_b);
+    return 1.0f / inverse;
+}
+
+void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
+                         bool position_correction) {
+    /* Only what is deeper than the slop is pushed out, or resting contacts would jitter between touching and apart
+       (Catto 2006). */
+    const float slop = 0.01f;
+    const float bias_factor = position_correction ? 0.2f : 0.0f;
+    float inverse_dt = 1.0f / dt;
+    for (int i = 0; i < set->contact_count; i++) {
+        ContactPoint *contact = &set->contacts[i];
+        const ProblemBody *a = &bodies[contact->a], *b = &bodies[contact->b];
+        contact->arm_a = vec2_sub(contact->position, a->position);
+        contact->arm_b = vec2_sub(contact->position, b->position);
+        contact->mass_normal = effective_mass(a, b, contact->arm_a, contact->arm_b, contact->normal);
+        Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+        contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
+        float depth = contact->separation + slop;
+        contact->bias = -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
+        contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
+    }
+}

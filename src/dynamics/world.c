@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "dynamics/world.h"
+
+#include "common/array.h"
+#include "dynamics/contacts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Everything of one body that a step writes is in arrays of body_capacity items, so that a step which fails can
+   leave `bodies` and `last` as they were. */
+struct World {
+    WorldDef def;
+    int body_count, bomb;
+    size_t body_capacity;
+    Body *bodies, *moved; /* now, and after the step in progress */
+    bool *fixed;
+    float *friction;
+    Box *boxes;
+    Bounds *bounds;
+    ProblemBody *problem_bodies;
+    BodyVelocity *velocities;
+    PairList pairs;
+    ContactSet last, next;
+    ContactProblem problem;
+    ContactSolution solution;
+};
+
+World *world_create(const WorldDef *def, Error *error) {
+    World *world = calloc(1, sizeof *world);
+    if (world == NULL) {
+        error_memory(error, "world");
+        return NULL;
+    }
+    world->def = *def;
+    world->bomb = world->problem.bomb = -1;
+    return world;
+}
+
+void world_destroy(World *world) {
+    if (world == NULL) return;
+    free(world->bodies);
+    free(world->moved);
+    free(world->fixed);
+    free(world->friction);
+    free(world->boxes);
+    free(world->bounds);
+    free(world->problem_bodies);
+    free(world->velocities);
+    free(world->pairs.pairs);
+    contact_set_free(&world->last);
+    contact_set_free(&world->next);
+    free(world);
+}
+
+/* Room for one more body in each of the arrays. */
+static bool reserve_body(World *world) {
+    struct {
+        void **items;
+        size_t size;
+    } arrays[] = {{(void **)&world->bodies, sizeof(Body)},
+                  {(void **)&world->moved, sizeof(Body)},
+                  {(void **)&world->fixed, sizeof(bool)},
+                  {(void **)&world->friction, sizeof(float)},
+                  {(void **)&world->boxes, sizeof(Box)},
+                  {(void **)&world->bounds, sizeof(Bounds)},
+                  {(void **)&world->problem_bodies, sizeof(ProblemBody)},
+                  {(void **)&world->velocities, sizeof(BodyVelocity)}};
+    size_t capacity = world->body_capacity;
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
+        capacity = world->body_capacity;
+        if (!array_reserve(arrays[i].items, &capacity, (size_t)world->body_count + 1, arrays[i].size)) return false;
+    }
+    world->body_capacity = capacity;
+    return true;
+}
+
+bool world_add_body(World *world, const BodyDef *def, Error *error) {
+    if (!reserve_body(world)) return error_memory(error, "world");
+    Body body = {def->position, def->angle, def->velocity, def->angular_velocity, def->size, def->friction, 0, 0};
+    if (!def->fixed) {
+        float inertia = def->mass * (def->size.x * def->size.x + def->size.y * def->size.y) / 12.0f;
+        body.inv_mass = 1.0f / def->mass;
+        body.inv_inertia = 1.0f / inertia;
+    }
+    world->fixed[world->body_count] = def->fixed;
+    world->friction[world->body_count] = def->friction;
+    world->bodies[world->body_count++] = body;
+    return true;
+}
+
+void world_set_bomb(World *world, int body) { world->bomb = body; }
+int world_body_count(const World *world) { return world->body_count; }
+const Body *world_bodies(const World *world) { return world->bodies; }
+const ContactProblem *world_problem(const World *world) { return &world->problem; }
+const ContactSolution *world_solution(const World *world) { return &world->solution; }
+
+static bool collide(World *world) {
+    for (int i = 0; i < world->body_count; i++) {
+        const Body *body = &world->bodies[i];
+        world->boxes[i] = box_make(body->position, body->size, body->angle);
+        world->bounds[i] = bounds_of_box(&world->boxes[i]);
+    }
+    return broad_phase_find(&world->pairs, world->bounds, world->fixed, world->body_count) &&
+           contact_set_collide(&world->next, &world->pairs, world->boxes);
+}
+
+/* The bodies as the solver meets them: gravity is in their velocities already. */
+static void apply_gravity(World *world, float dt) {
+    for (int i = 0; i < world->body_count; i++) {
+        const Body *body = &world->bodies[i];
+        ProblemBody *out = &world->problem_bodies[i];
+        *out = (ProblemBody){body->position,    body->angle,    body->size,            body->inv_mass,
+                             body->inv_inertia, body->velocity, body->angular_velocity};
+        if (body->inv_mass == 0.0f) continue;
+        out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
+        /* No torque, yet not nothing: -0 becomes 0 here, as it does in Box2D-Lite. */
+        out->angular_velocity += 0.0f;
+    }
+}
+
+static bool solve(World *world, const ContactSolver *solver, float dt, Error *error) {
+    const ContactSet *set = &world->next;
+    ContactProblem problem = {.body_count = world->body_count,
+                              .contact_count = set->contact_count,
+                              .bomb = world->bomb,
+                              .dt = dt,
+                              .bodies = world->problem_bodies,
+                              .contacts = set->contacts};
+    ContactSolution solution = {world->velocities, set->impulses};
+    if (!solver->kind->solve(solver->state, &problem, &solution, error)) return false;
+    world->problem = problem;
+    world->solution = solution;
+    return true;
+}
+
+static bool is_finite_body(const Body *body) {
+    return isfinite(body->position.x) && isfinite(body->position.y) && isfinite(body->angle) &&
+           isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity);
+}
+
+/* Semi-implicit Euler: the new velocities carry the bodies. */
+static bool integrate(World *world, float dt, Error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        Body *body = &world->moved[i];
+        *body = world->bodies[i];
+        body->velocity = world->velocities[i].linear;
+        body->angular_velocity = world->velocities[i].angular;
+        body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
+        body->angle += dt * body->angular_velocity;
+        if (!is_finite_body(body))
+            return error_input(error, "world", "body %d left the finite numbers (its velocity was %g, %g m/s)", i,
+                               (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
+    }
+    return true;
+}
+
+/* The step has succeeded: what it wrote becomes the state, and what was the state is written over next time. */
+static void commit(World *world) {
+    Body *bodies = world->bodies;
+    world->bodies = world->moved;
+    world->moved = bodies;
+    ContactSet last = world->last;
+    world->last = world->next;
+    world->next = last;
+}
+
+bool world_step(World *world, const ContactSolver *solver, float dt, Error *error) {
+    if (!collide(world)) return error_memory(error, "world");
+    if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
+    apply_gravity(world, dt);
+    contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
+    if (!solve(world, solver, dt, error) || !integrate(world, dt, error)) return false;
+    commit(world);
+    return true;
+}

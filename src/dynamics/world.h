@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The changing half of a simulation: bodies, the contacts that persist between them, and the step.
+
+   Collision detection, then gravity, then the contact problem with its warm start, then a contact solver, then
+   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), same bits (tests/reference). */
+#pragma once
+#include "common/error.h"
+#include "dynamics/body.h"
+#include "dynamics/contact_solver.h"
+
+#include <stddef.h>
+
+typedef struct WorldDef {
+    Vec2 gravity;             /* m/s^2 */
+    bool warm_starting;       /* hand the last step's impulses to the solver */
+    bool position_correction; /* push overlapping boxes apart (Baumgarte) */
+} WorldDef;
+
+typedef struct World World;
+
+World *world_create(const WorldDef *def, Error *error);
+void world_destroy(World *world);
+
+/* Adds a body; its index is the number of bodies before it. Indices order the pairs, so the order matters. */
+bool world_add_body(World *world, const BodyDef *def, Error *error);
+
+/* Tells the contact problem which body is the bomb (-1: none). */
+void world_set_bomb(World *world, int body);
+
+/* Advances world by dt seconds (dt > 0). On failure world is unchanged and error says which body left the finite
+   numbers, or what the solver said. */
+bool world_step(World *world, const ContactSolver *solver, float dt, Error *error);
+
+int world_body_count(const World *world);
+const Body *world_bodies(const World *world);
+
+/* The contact problem of the last step and its solution; valid until the next. Empty before the first. */
+const ContactProblem *world_problem(const World *world);
+const ContactSolution *world_solution(const World *world);

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures in memory and as PNG (libpng). RGBA, 8 bits, top row first. */
+#pragma once
+#include "common/error.h"
+
+#include <stdint.h>
+
+typedef struct Image {
+    int width, height; /* pixels */
+    uint8_t *pixels;   /* [height, width, 4] */
+} Image;
+
+/* Zeroed pixels. NULL with error set when memory is short. */
+Image *image_create(int width, int height, Error *error);
+void image_destroy(Image *image);
+
+/* A tEXt/iTXt entry of a PNG. */
+typedef struct ImageText {
+    const char *key, *value;
+} ImageText;
+
+/* Writes an opaque 8-bit RGB PNG (alpha is dropped) that is in place only when whole. */
+bool image_write_png(const Image *image, const char *path, const ImageText *texts, int count, Error *error);
+
+enum { IMAGE_MAX_PIXELS = 100000000 };
+
+/* Any PNG that libpng can turn into 8-bit RGBA, of at most IMAGE_MAX_PIXELS (checked before anything is
+   inflated). Refuses damaged and truncated files: ERROR_INPUT, naming the file. */
+Image *image_read_png(const char *path, Error *error);
+
+/* XXH3 over width, height and the pixels: equal for equal pictures, however the file was compressed. */
+uint64_t image_hash(const Image *image);
+
+typedef struct ImageDifference {
+    bool equal, same_size;
+    int64_t pixels;       /* that differ */
+    int largest;          /* largest difference of a channel, 0..255 */
+    int first_x, first_y; /* first that differs, row by row; -1, -1 when equal */
+} ImageDifference;
+void image_compare(const Image *a, const Image *b, ImageDifference *difference);

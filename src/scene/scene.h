@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A scene: what there is before the first step, and the bomb that comes. Read from YAML (libfyaml); constant
+   while worlds run. SI units, radians, y up. */
+#pragma once
+#include "common/error.h"
+#include "dynamics/world.h"
+
+#include <stdint.h>
+
+enum {
+    SCENE_NAME_SIZE = 128,
+    SCENE_PATH_SIZE = 512,
+    SCENE_MAX_BODIES = 10000,
+    SCENE_MAX_FRAMES = 1000000,
+    SCENE_MAX_ITERATIONS = 1000000,
+    SCENE_MAX_NETWORKS = 8
+};
+
+/* The bomb: a box put in after step `frame` (so it is in that frame's state; 0: from the start). */
+typedef struct SceneBomb {
+    bool present;
+    int frame;
+    BodyDef body;               /* position (x, y); velocity is what the law below gives */
+    bool velocity_from_position; /* velocity = velocity_factor * position; else body.velocity as it is */
+    float velocity_factor;      /* 1/s */
+} SceneBomb;
+
+/* Which trained network a method of this scene uses. */
+typedef struct SceneNetwork {
+    char method[SCENE_NAME_SIZE];
+    char path[SCENE_PATH_SIZE]; /* resolved against the folder of the scene file */
+} SceneNetwork;
+
+typedef struct Scene {
+    char name[SCENE_NAME_SIZE]; /* file name without folder and ending */
+    Vec2 gravity;               /* m/s^2 */
+    float dt;                   /* s */
+    int iterations;             /* of sequential impulses, per step */
+    bool warm_starting, accumulate_impulses, position_correction;
+    int frames;                 /* steps to run */
+    Vec2 camera_center, camera_size; /* m; size 0, 0: fitted to what happens */
+    int body_count;
+    BodyDef *bodies;            /* [body_count], patterns written out, in the order of the file */
+    SceneBomb bomb;
+    int network_count;
+    SceneNetwork networks[SCENE_MAX_NETWORKS];
+} Scene;
+
+/* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Never takes more
+   than 0.1 s or a few MB, whatever the file holds (scene_limits.h). */
+Scene *scene_read(const char *path, Error *error);
+void scene_destroy(Scene *scene);
+
+/* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short. */
+World *scene_world(const Scene *scene, Error *error);
+
+/* Adds the bomb to a world of this scene. */
+bool scene_add_bomb(const Scene *scene, World *world, Error *error);
+
+/* XXH3 of all that decides a run: equal physics, equal hash, whatever the file looks like. */
+uint64_t scene_hash(const Scene *scene);
+
+/* Path of the network that the scene names for a method, or NULL. */
+const char *scene_network(const Scene *scene, const char *method);

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solvers/solvers.h"
+
+#include <string.h>
+
+const ContactSolverKind *const solver_kinds[] = {&solver_sequential_impulses, &solver_pair_net, NULL};
+
+const ContactSolverKind *solver_find(const char *name) {
+    for (int i = 0; solver_kinds[i] != NULL; i++)
+        if (strcmp(solver_kinds[i]->name, name) == 0) return solver_kinds[i];
+    return NULL;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The registry of contact solvers: adding one is one file and one line in solvers.c. */
+#pragma once
+#include "dynamics/contact_solver.h"
+
+extern const ContactSolverKind solver_sequential_impulses;
+extern const ContactSolverKind solver_pair_net;
+
+/* All kinds, ended by NULL. */
+extern const ContactSolverKind *const solver_kinds[];
+
+/* The kind of that name, or NULL. */
+const ContactSolverKind *solver_find(const char *name);

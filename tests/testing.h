@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* cmocka with the headers it wants, and what every test needs. Link a folder's library and include this first. */
+#pragma once
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka.h comes after the four above. */
+#include <cmocka.h>
+
+#include "common/error.h"
+
+#include <ftw.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Fails with the error's own words where `condition` is false. */
+#define assert_ok(condition, error) \
+    do { \
+        if (!(condition)) fail_msg("%s", (error).message); \
+    } while (0)
+
+/* Fails unless the error is of this kind and its message contains the text. */
+#define assert_error(error, expected_kind, text) \
+    do { \
+        if (strstr((error).message, (text)) == NULL) fail_msg("\"%s\" lacks \"%s\"", (error).message, (text)); \
+        assert_int_equal((error).kind, (expected_kind)); \
+    } while (0)
+
+static char temporary_folder[64];
+
+static inline int remove_entry(const char *path, const struct stat *status, int flag, struct FTW *walk) {
+    (void)status, (void)flag, (void)walk;
+    return remove(path);
+}
+
+static inline void remove_temporary_folder(void) { nftw(temporary_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS); }
+
+/* A path below a fresh folder of this process, which goes at exit; in a static ring of eight buffers. */
+static inline const char *temporary_path(const char *name) {
+    static char paths[8][256];
+    static int next;
+    if (temporary_folder[0] == '\0') {
+        strcpy(temporary_folder, "/tmp/twinbox-test-XXXXXX");
+        if (mkdtemp(temporary_folder) == NULL) abort();
+        atexit(remove_temporary_folder);
+    }
+    char *path = paths[next++ % 8];
+    snprintf(path, sizeof paths[0], "%s/%s", temporary_folder, name);
+    return path;
+}
