@@ -29,6 +29,14 @@
         assert_int_equal((error).kind, (expected_kind)); \
     } while (0)
 
+/* cmocka's assert_float_equal compares floats; this one says what it found. */
+#define assert_near(actual, expected, tolerance) \
+    do { \
+        double actual_ = (double)(actual), expected_ = (double)(expected); \
+        if (!(actual_ - expected_ <= (double)(tolerance) && expected_ - actual_ <= (double)(tolerance))) \
+            fail_msg("%s is %.9g, not %.9g", #actual, actual_, expected_); \
+    } while (0)
+
 static char temporary_folder[64];
 
 static inline int remove_entry(const char *path, const struct stat *status, int flag, struct FTW *walk) {

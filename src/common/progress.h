@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 typedef struct Progress {
-    /* Called every now and then from the thread that began the work; returns false to ask it to stop early. */
+    /* Called every now and then, never from two threads at once; returns false to ask the work to stop early. */
     bool (*report)(void *context, double done, double total);
     void *context;
 } Progress;

@@ -31,13 +31,12 @@ typedef struct Dataset {
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
-    FloatRange bomb_x;
-    int frames;    /* steps per launch; 0: the scene's own */
-    uint64_t seed; /* of the 80/20 split by launch */
+    FloatRange bomb_x; /* m, of the launches; at least 5 of them, so that one can be held out */
+    uint64_t seed;     /* of the 80/20 split by launch */
 } DatasetOptions;
 
 /* Runs every launch of every scene by the engine and records it. The result does not depend on the number of
-   threads. */
+   threads. ERROR_INPUT where a scene cannot be read or has no bomb, or progress asks to stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#pragma once
+#include "cli/command.h"
+
+int command_simulate(int argc, char **argv, Error *error);
+int command_render(int argc, char **argv, Error *error);
+int command_compare(int argc, char **argv, Error *error);
+int command_dataset(int argc, char **argv, Error *error);
+int command_train(int argc, char **argv, Error *error);
+int command_methods(int argc, char **argv, Error *error);

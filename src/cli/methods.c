@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "solvers/solvers.h"
+
+#include <stdio.h>
+
+static error_t parse(int key, char *value, struct argp_state *state) {
+    if (key == ARGP_KEY_ARG) argp_error(state, "no arguments are taken ('%s')", value);
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const struct argp argp = {
+    NULL, parse, "",
+    "List the methods and their settings.\v"
+    "Example: twinbox simulate scenes/stack.yaml --method engine:iterations=50 -o stack50.npz",
+    NULL, NULL, NULL};
+
+int command_methods(int argc, char **argv, Error *error) {
+    (void)error;
+    if (!options_parse(&argp, argc, argv, NULL)) return STATUS_DIFFERENT;
+    for (int i = 0; solver_kinds[i] != NULL; i++) {
+        printf("%-12s %s\n", solver_kinds[i]->name, solver_kinds[i]->summary);
+        for (const SettingSpec *setting = solver_kinds[i]->settings; setting->key != NULL; setting++)
+            printf("    %s: %s\n", setting->key, setting->summary);
+    }
+    return STATUS_SAME;
+}

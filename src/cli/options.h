@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Option values: text -> number, with a message that names the option. */
+#pragma once
+#include "common/error.h"
+#include "common/parse.h"
+
+#include <argp.h>
+#include <stdint.h>
+
+/* argp_parse without its surprises: options after `--` and between arguments alike, exit status 2 on bad usage,
+   and no environment variables. False where a parser returned EINVAL with error set. */
+bool options_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+bool option_int(const char *option, const char *text, int64_t minimum, int64_t maximum, int *value, Error *error);
+bool option_seed(const char *option, const char *text, uint64_t *value, Error *error);
+
+/* A float, as parse_float reads it, in [minimum, maximum]. */
+bool option_float(const char *option, const char *text, float minimum, float maximum, float *value, Error *error);
+
+bool option_range(const char *option, const char *text, FloatRange *range, Error *error);
+
+/* "1920x1080" */
+bool option_size(const char *option, const char *text, int minimum, int maximum, int *width, int *height,
+                 Error *error);
+
+/* "A:B", ":B", "A:" or "A": whole numbers, A <= B; *last is -1 where it is left open. */
+bool option_frames(const char *option, const char *text, int *first, int *last, Error *error);

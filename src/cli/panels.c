@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/panels.h"
+
+#include "cli/progress_bar.h"
+#include "simulate/simulate.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool add(Panels *panels, Trajectory *run, const char *input, Error *error) {
+    if (run == NULL) return false;
+    if (panels->count == RENDER_MAX_PANELS) {
+        trajectory_destroy(run);
+        return error_input(error, input, "more than %d panels", RENDER_MAX_PANELS);
+    }
+    panels->runs[panels->count++] = run;
+    return true;
+}
+
+static bool add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
+    Method method;
+    if (!method_parse(&method, method_name, error)) return false;
+    char what[2 * SCENE_NAME_SIZE + 8];
+    snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
+    ProgressBar bar;
+    progress_bar_begin(&bar, what);
+    Trajectory *run = simulate(scene, &method, &bar.progress, error);
+    progress_bar_end(&bar);
+    return add(panels, run, input, error);
+}
+
+static bool add_scene(Panels *panels, const char *input, Error *error) {
+    Scene *scene = scene_read(input, error);
+    bool ok = scene != NULL && add_run(panels, scene, "engine", input, error);
+    for (int i = 0; ok && i < scene->network_count; i++)
+        ok = add_run(panels, scene, scene->networks[i].method, input, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, Error *error) {
+    for (int i = 0; i < input_count; i++) {
+        const char *ending = strrchr(inputs[i], '.');
+        bool stored = ending != NULL && strcmp(ending, ".npz") == 0;
+        bool ok = stored ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
+                         : add_scene(panels, inputs[i], error);
+        if (!ok) return false;
+    }
+    return true;
+}
+
+void panels_free(Panels *panels) {
+    for (int i = 0; i < panels->count; i++) trajectory_destroy(panels->runs[i]);
+    panels->count = 0;
+}
+
+enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
+
+/* SCENE-METHOD with what does not belong in a file name turned to '_'. */
+static void file_stem(const Trajectory *run, char stem[STEM_SIZE]) {
+    snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
+    for (char *c = stem; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
+    if (stem[0] == '.') stem[0] = '_';
+}
+
+bool panels_store(const Panels *panels, const char *directory, Error *error) {
+    for (int i = 0; i < panels->count; i++) {
+        char stem[STEM_SIZE], other[STEM_SIZE], path[4096];
+        file_stem(panels->runs[i], stem);
+        int same = 1;
+        for (int k = 0; k < i; k++) {
+            file_stem(panels->runs[k], other);
+            same += strcmp(stem, other) == 0;
+        }
+        char number[16] = "";
+        if (same > 1) snprintf(number, sizeof number, "-%d", same);
+        if (snprintf(path, sizeof path, "%s/%s%s.npz", directory, stem, number) >= (int)sizeof path)
+            return error_input(error, directory, "the name is too long");
+        if (!trajectory_write(panels->runs[i], path, error)) return false;
+    }
+    return true;
+}

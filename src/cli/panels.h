@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs that a picture shows: read from .npz, or made from a scene by the engine and the scene's networks. */
+#pragma once
+#include "common/error.h"
+#include "render/render.h"
+#include "trajectory/trajectory.h"
+
+typedef struct Panels {
+    int count;
+    Trajectory *runs[RENDER_MAX_PANELS];
+} Panels;
+
+/* What has been loaded before an error is freed by panels_free, too. */
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, Error *error);
+void panels_free(Panels *panels);
+
+/* Writes each run as directory/SCENE-METHOD.npz; a second one of that name gets -2 and so on. */
+bool panels_store(const Panels *panels, const char *directory, Error *error);

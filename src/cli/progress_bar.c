@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/progress_bar.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t interrupted;
+
+static void on_interrupt(int signal_number) {
+    (void)signal_number;
+    interrupted = 1;
+}
+
+bool progress_interrupted(void) { return interrupted != 0; }
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void format_seconds(char *text, size_t size, double seconds) {
+    int whole = seconds > 359999 ? 359999 : (int)(seconds + 0.5);
+    if (whole < 60)
+        snprintf(text, size, "%d s", whole);
+    else
+        snprintf(text, size, "%d min %02d s", whole / 60, whole % 60);
+}
+
+static void show(ProgressBar *bar, double part, double elapsed) {
+    enum { WIDTH = 30 };
+    char left[32];
+    format_seconds(left, sizeof left, part > 0 ? elapsed / part * (1 - part) : 0);
+    if (!bar->terminal) {
+        fprintf(stderr, "%s: %.0f%%, %s left\n", bar->what, 100 * part, left);
+        return;
+    }
+    char cells[WIDTH + 1];
+    memset(cells, '.', WIDTH);
+    memset(cells, '#', (size_t)(part * WIDTH));
+    cells[WIDTH] = '\0';
+    fprintf(stderr, "\r\033[K%s [%s] %3.0f%%, %s left", bar->what, cells, 100 * part, left);
+    fflush(stderr);
+}
+
+static bool report(void *context, double done, double total) {
+    ProgressBar *bar = context;
+    double time = now(), pause = bar->terminal ? 0.1 : 5.0;
+    if (time - bar->begun >= 1.0 && time - bar->shown >= pause && total > 0) {
+        bar->shown = time;
+        bar->visible = true;
+        show(bar, done < total ? done / total : 1.0, time - bar->begun);
+    }
+    return !progress_interrupted();
+}
+
+void progress_bar_begin(ProgressBar *bar, const char *what) {
+    /* Once only: a second Ctrl-C ends the program at once. */
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    if (!progress_interrupted()) {
+        sigaction(SIGINT, &action, NULL);
+        sigaction(SIGTERM, &action, NULL);
+    }
+    *bar = (ProgressBar){.what = what, .begun = now(), .terminal = isatty(STDERR_FILENO) == 1};
+    bar->progress = (Progress){report, bar};
+}
+
+void progress_bar_clear(ProgressBar *bar) {
+    if (bar->visible && bar->terminal) fputs("\r\033[K", stderr);
+}
+
+void progress_bar_end(ProgressBar *bar) { progress_bar_clear(bar); }

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/panels.h"
+#include "cli/progress_bar.h"
+#include "common/file.h"
+#include "render/render.h"
+#include "render/video.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SIZE = 256, FRAMES, VIDEO, JOBS, CONTEXT };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
+    {"size", SIZE, "WxH", 0, "Size of a frame in pixels (default: 1920x1080)", 0},
+    {"frames", FRAMES, "A:B", 0, "Draw these frames only (default: all)", 0},
+    {"video", VIDEO, "FILE.mp4", 0, "Encode the frames too (ffmpeg, H.264)", 0},
+    {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
+    {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
+    {0}};
+
+typedef struct Options {
+    const char *inputs[RENDER_MAX_PANELS];
+    int input_count;
+    const char *output, *size, *frames, *video, *jobs, *context;
+} Options;
+
+static error_t parse(int key, char *value, struct argp_state *state) {
+    Options *options = state->input;
+    switch (key) {
+    case 'o': options->output = value; break;
+    case SIZE: options->size = value; break;
+    case FRAMES: options->frames = value; break;
+    case VIDEO: options->video = value; break;
+    case JOBS: options->jobs = value; break;
+    case CONTEXT: options->context = value; break;
+    case ARGP_KEY_ARG:
+        if (options->input_count == RENDER_MAX_PANELS) argp_error(state, "at most %d panels", RENDER_MAX_PANELS);
+        options->inputs[options->input_count++] = value;
+        break;
+    case ARGP_KEY_END:
+        if (options->input_count == 0) argp_error(state, "a run (.npz) or a scene (.yaml) is needed");
+        if (options->output == NULL) argp_error(state, "-o DIR is needed");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp argp = {
+    option_table, parse, "RUN_OR_SCENE...",
+    "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
+    "run by the engine and by each network that it names.\v"
+    "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
+    NULL, NULL, NULL};
+
+static bool choose_context(const char *name, RenderContext *context, Error *error) {
+    if (name == NULL) return true;
+    if (strcmp(name, "osmesa") == 0)
+        *context = RENDER_CONTEXT_OSMESA;
+    else if (strcmp(name, "egl") == 0)
+        *context = RENDER_CONTEXT_EGL;
+    else
+        return error_input(error, "--context", "'%s' is neither osmesa nor egl", name);
+    return true;
+}
+
+static bool read_options(const Options *options, RenderOptions *render, Error *error) {
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    *render = (RenderOptions){.width = 1920,
+                              .height = 1080,
+                              .first = 0,
+                              .last = -1,
+                              .jobs = cores < 1 ? 1 : cores > RENDER_MAX_JOBS ? RENDER_MAX_JOBS : (int)cores,
+                              .directory = options->output};
+    return choose_context(options->context, &render->context, error) &&
+           (options->size == NULL || option_size("--size", options->size, RENDER_MIN_SIZE, RENDER_MAX_SIZE,
+                                                 &render->width, &render->height, error)) &&
+           (options->frames == NULL ||
+            option_frames("--frames", options->frames, &render->first, &render->last, error)) &&
+           (options->jobs == NULL ||
+            option_int("--jobs", options->jobs, 1, RENDER_MAX_JOBS, &render->jobs, error)) &&
+           (options->video == NULL || video_check(options->video, render->width, render->height, error));
+}
+
+static int last_frame(const Panels *panels) {
+    int frames = 0;
+    for (int i = 0; i < panels->count; i++)
+        if (panels->runs[i]->frames > frames) frames = panels->runs[i]->frames;
+    return frames - 1;
+}
+
+static bool draw(const Panels *panels, const RenderOptions *render, Error *error) {
+    ProgressBar bar;
+    progress_bar_begin(&bar, "drawing");
+    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, &bar.progress, error);
+    progress_bar_end(&bar);
+    return ok;
+}
+
+static bool encode(const Options *options, const Panels *panels, const RenderOptions *render, Error *error) {
+    if (options->video == NULL) return true;
+    VideoOptions video = {.directory = render->directory,
+                          .first = render->first,
+                          .last = render->last,
+                          .frame_rate = 1 / (double)panels->runs[0]->dt,
+                          .path = options->video};
+    ProgressBar bar;
+    progress_bar_begin(&bar, "encoding");
+    bool ok = video_encode(&video, &bar.progress, error);
+    progress_bar_end(&bar);
+    return ok;
+}
+
+/* Frames of an earlier, longer run would pass for this one's. */
+static void remove_stale_frames(const RenderOptions *render) {
+    char path[4096];
+    for (int frame = render->last + 1;; frame++) {
+        if (snprintf(path, sizeof path, "%s/frame_%06d.png", render->directory, frame) >= (int)sizeof path) return;
+        if (unlink(path) != 0) return;
+    }
+}
+
+static bool render_panels(const Options *options, const Panels *panels, RenderOptions *render, Error *error) {
+    int last = last_frame(panels);
+    if (render->first > last || render->last > last)
+        return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
+    bool whole = render->first == 0 && (render->last < 0 || render->last == last);
+    if (render->last < 0) render->last = last;
+    if (!file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+        !draw(panels, render, error))
+        return false;
+    if (whole) remove_stale_frames(render);
+    if (!encode(options, panels, render, error)) return false;
+    printf("%d frames -> %s/frame_%06d.png ... frame_%06d.png\n", render->last - render->first + 1, render->directory,
+           render->first, render->last);
+    if (options->video != NULL) printf("video -> %s\n", options->video);
+    return true;
+}
+
+int command_render(int argc, char **argv, Error *error) {
+    Options options = {0};
+    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    RenderOptions render;
+    if (!read_options(&options, &render, error)) return STATUS_DIFFERENT;
+    Panels panels = {0};
+    bool ok = panels_load(&panels, options.inputs, options.input_count, error) &&
+              render_panels(&options, &panels, &render, error);
+    panels_free(&panels);
+    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+}

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "training/training.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "NET.npz", 0, "Where the network goes", 0},
+    {"layers", LAYERS, "WIDTHS", 0,
+     "10-10-2 (default; change of relative velocity, min-max outputs, as in the paper's 3.2) or, with two hidden "
+     "layers and all six changes, 10-8-8-6 (standardised, as in its 3.1)",
+     0},
+    {"optimizer", OPTIMIZER, "NAME", 0, "adam (default), bfgs or lm (Levenberg-Marquardt)", 0},
+    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000)", 0},
+    {"seed", SEED, "N", 0, "Of the initial weights (default: 1)", 0},
+    {"from", FROM, "NET.npz", 0, "Go on from the weights of this network, such as one cut short by Ctrl-C", 0},
+    {0}};
+
+typedef struct Options {
+    const char *data, *output, *layers, *optimizer, *iterations, *seed, *from;
+} Options;
+
+static error_t parse(int key, char *value, struct argp_state *state) {
+    Options *options = state->input;
+    switch (key) {
+    case 'o': options->output = value; break;
+    case LAYERS: options->layers = value; break;
+    case OPTIMIZER: options->optimizer = value; break;
+    case ITERATIONS: options->iterations = value; break;
+    case SEED: options->seed = value; break;
+    case FROM: options->from = value; break;
+    case ARGP_KEY_ARG:
+        if (options->data != NULL) argp_error(state, "one dataset at a time ('%s' is a second)", value);
+        options->data = value;
+        break;
+    case ARGP_KEY_END:
+        if (options->data == NULL) argp_error(state, "a dataset is needed");
+        if (options->output == NULL) argp_error(state, "-o NET.npz is needed");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp argp = {
+    option_table, parse, "DATA.npz",
+    "Train a network on a dataset; print its mean squared error as the paper's Table 1 does, beside that of always "
+    "predicting the mean. Ctrl-C stops and keeps the best network so far.\v"
+    "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100",
+    NULL, NULL, NULL};
+
+/* "10-10-2" -> widths; their number less one is the number of weight layers. */
+static bool parse_layers(const char *text, TrainingOptions *training, Error *error) {
+    int count = 0;
+    for (const char *rest = text; count <= NETWORK_MAX_LAYERS; rest++) {
+        size_t length = strcspn(rest, "-");
+        char width[16] = "";
+        int64_t value;
+        if (length < sizeof width) memcpy(width, rest, length);
+        if (!parse_int(width, 1, NETWORK_MAX_WIDTH, &value)) break;
+        training->widths[count++] = (int)value;
+        rest += length;
+        if (*rest != '\0') continue;
+        training->layers = count - 1;
+        if (count >= 2) return true;
+        break;
+    }
+    return error_input(error, "--layers", "'%s' is not 2 to %d widths from 1 to %d, such as 10-10-2", text,
+                       NETWORK_MAX_LAYERS + 1, NETWORK_MAX_WIDTH);
+}
+
+static void print_score(void *context, const TrainingScore *score) {
+    ProgressBar *bar = context;
+    progress_bar_clear(bar);
+    printf("%9d  %10.6f  %10.6f  %13.6f  %14.6f\n", score->iteration, score->test, score->train, score->constant_test,
+           score->constant_train);
+    fflush(stdout);
+}
+
+static Network *train(const Dataset *dataset, TrainingOptions *training, Error *error) {
+    ProgressBar bar;
+    progress_bar_begin(&bar, "training");
+    training->on_score = print_score;
+    training->context = &bar;
+    printf("iteration   test score  train score  constant test  constant train\n");
+    Network *network = training_run(dataset, training, &bar.progress, error);
+    progress_bar_end(&bar);
+    return network;
+}
+
+/* The command as one would type it again. */
+static void describe(Network *network, const Options *options) {
+    snprintf(network->command, sizeof network->command,
+             "twinbox train %s -o %s --layers %s --optimizer %s --iterations %s --seed %s%s%s", options->data,
+             options->output, options->layers, options->optimizer, options->iterations, options->seed,
+             options->from != NULL ? " --from " : "", options->from != NULL ? options->from : "");
+}
+
+static bool train_and_store(const Dataset *dataset, const Options *options, TrainingOptions *training, Error *error) {
+    Network *network = train(dataset, training, error);
+    bool ok = network != NULL;
+    if (ok) {
+        describe(network, options);
+        ok = network_write(network, options->output, error);
+    }
+    if (ok)
+        printf("%s%d parameters -> %s\n", progress_interrupted() ? "stopped early; " : "",
+               network_parameter_count(network), options->output);
+    network_destroy(network);
+    return ok;
+}
+
+int command_train(int argc, char **argv, Error *error) {
+    Options options = {.layers = "10-10-2", .optimizer = "adam", .iterations = "2000", .seed = "1"};
+    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    TrainingOptions training = {.optimizer = options.optimizer};
+    if (!parse_layers(options.layers, &training, error) ||
+        !option_int("--iterations", options.iterations, 0, 1000000, &training.iterations, error) ||
+        !option_seed("--seed", options.seed, &training.seed, error))
+        return STATUS_DIFFERENT;
+    Network *start = NULL;
+    if (options.from != NULL && (start = network_read(options.from, error)) == NULL) return STATUS_DIFFERENT;
+    training.start = start;
+    Dataset *dataset = dataset_read(options.data, error);
+    bool ok = dataset != NULL && train_and_store(dataset, &options, &training, error);
+    dataset_destroy(dataset);
+    network_destroy(start);
+    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+}

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The step around the solver: what a contact problem holds, what persists, and what a failed step leaves. */
+#include "testing.h"
+
+#include "dynamics/world.h"
+
+static const float dt = 1.0f / 60.0f;
+
+/* A solver that hands on what it is told to. */
+typedef struct FakeSolver {
+    float impulse;  /* N s, claimed for every contact */
+    float velocity; /* m/s, upwards, of every body that can move */
+    bool fails;
+} FakeSolver;
+
+static bool fake_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const FakeSolver *fake = state;
+    for (int i = 0; i < problem->body_count; i++)
+        solution->velocities[i] =
+            (BodyVelocity){vec2(0, problem->bodies[i].inv_mass > 0 ? fake->velocity : 0), 0};
+    for (int i = 0; i < problem->contact_count; i++)
+        solution->impulses[i] = (ContactImpulse){fake->impulse + (float)i, -fake->impulse};
+    return !fake->fails || error_input(error, "fake", "told to fail");
+}
+
+static const ContactSolverKind fake_kind = {.name = "fake", .solve = fake_solve};
+
+static World *box_on_ground(bool warm_starting, bool position_correction, float height) {
+    Error error = {0};
+    const WorldDef def = {{0, -10}, warm_starting, position_correction};
+    World *world = world_create(&def, &error);
+    assert_ok(world != NULL, error);
+    const BodyDef ground = {.size = {100, 20}, .fixed = true, .friction = 0.4f, .position = {0, -10}};
+    const BodyDef box = {.size = {1, 1}, .mass = 3, .friction = 0.9f, .position = {0, height}};
+    assert_ok(world_add_body(world, &ground, &error), error);
+    assert_ok(world_add_body(world, &box, &error), error);
+    return world;
+}
+
+static void step(World *world, FakeSolver *fake) {
+    Error error = {0};
+    ContactSolver solver = {&fake_kind, fake};
+    assert_ok(world_step(world, &solver, dt, &error), error);
+}
+
+/* A unit box of mass 3 (inertia m (1 + 1) / 12 = 0.5) whose corners are 0.5 m below and beside its centre:
+   1/m_n = 1/3 + (1/0.5) 0.5^2, and the same along the tangent. Depth 0.03 m: bias = 0.2 / dt (0.03 - 0.01). */
+static void a_contact_problem_holds_what_the_step_froze(void **state) {
+    (void)state;
+    World *world = box_on_ground(true, true, 0.47f);
+    FakeSolver fake = {0};
+    world_set_bomb(world, 1);
+    step(world, &fake);
+    const ContactProblem *problem = world_problem(world);
+    assert_int_equal(problem->body_count, 2);
+    assert_int_equal(problem->contact_count, 2);
+    assert_int_equal(problem->bomb, 1);
+    assert_near(problem->dt, dt, 0);
+    assert_near(problem->bodies[1].velocity.y, -10 * dt, 1e-6);
+    assert_near(problem->bodies[0].velocity.y, 0, 0);
+    for (int i = 0; i < 2; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        assert_int_equal(contact->a, 0);
+        assert_int_equal(contact->b, 1);
+        assert_near(contact->separation, -0.03, 1e-5);
+        assert_near(contact->mass_normal, 1 / (1 / 3.0 + 2 * 0.25), 1e-4);
+        assert_near(contact->mass_tangent, 1 / (1 / 3.0 + 2 * 0.47 * 0.47), 1e-4);
+        assert_near(contact->friction, 0.6, 1e-6);
+        assert_near(contact->bias, 0.2 * 60 * 0.02, 1e-4);
+        assert_near(contact->arm_b.x, i == 0 ? -0.5 : 0.5, 1e-5);
+        assert_near(contact->arm_b.y, -0.47, 1e-5);
+    }
+    world_destroy(world);
+}
+
+static void position_correction_can_be_switched_off(void **state) {
+    (void)state;
+    World *world = box_on_ground(true, false, 0.47f);
+    FakeSolver fake = {0};
+    step(world, &fake);
+    assert_near(world_problem(world)->contacts[0].bias, 0, 0);
+    world_destroy(world);
+}
+
+/* The impulses of a step come back as the warm start of the next, point by point; not once the pair has parted. */
+static void impulses_persist_while_the_pair_touches(void **state) {
+    (void)state;
+    World *world = box_on_ground(true, true, 0.495f);
+    FakeSolver fake = {.impulse = 7};
+    step(world, &fake);
+    assert_near(world_problem(world)->contacts[1].warm_normal, 0, 0);
+    step(world, &fake);
+    for (int i = 0; i < 2; i++) {
+        assert_near(world_problem(world)->contacts[i].warm_normal, 7 + i, 0);
+        assert_near(world_problem(world)->contacts[i].warm_tangent, -7, 0);
+    }
+    fake.velocity = 1;
+    step(world, &fake); /* lifted off after this step */
+    fake.velocity = -1;
+    step(world, &fake); /* apart: no contacts; down again after it */
+    assert_int_equal(world_problem(world)->contact_count, 0);
+    step(world, &fake);
+    assert_int_equal(world_problem(world)->contact_count, 2);
+    assert_near(world_problem(world)->contacts[0].warm_normal, 0, 0);
+    world_destroy(world);
+}
+
+static void warm_starting_can_be_switched_off(void **state) {
+    (void)state;
+    World *world = box_on_ground(false, true, 0.495f);
+    FakeSolver fake = {.impulse = 7};
+    step(world, &fake);
+    step(world, &fake);
+    assert_int_equal(world_problem(world)->contact_count, 2);
+    assert_near(world_problem(world)->contacts[0].warm_normal, 0, 0);
+    world_destroy(world);
+}
+
+static void fail_step(World *world, FakeSolver *fake, const char *message) {
+    Body before[2];
+    memcpy(before, world_bodies(world), sizeof before);
+    Error error = {0};
+    ContactSolver solver = {&fake_kind, fake};
+    assert_false(world_step(world, &solver, dt, &error));
+    assert_error(error, ERROR_INPUT, message);
+    assert_memory_equal(world_bodies(world), before, sizeof before);
+}
+
+/* Unchanged means: the bodies, and the impulses that the next step starts from. */
+static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
+    (void)state;
+    World *world = box_on_ground(true, true, 0.495f);
+    FakeSolver fake = {.impulse = 7};
+    step(world, &fake);
+    fail_step(world, &(FakeSolver){.impulse = 99, .fails = true}, "told to fail");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = INFINITY}, "body 1 left the finite numbers");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "body 1 left the finite numbers");
+    step(world, &fake);
+    assert_near(world_problem(world)->contacts[0].warm_normal, 7, 0);
+    world_destroy(world);
+}
+
+static void fixed_bodies_stay(void **state) {
+    (void)state;
+    World *world = box_on_ground(true, true, 5);
+    FakeSolver fake = {0};
+    for (int i = 0; i < 10; i++) step(world, &fake);
+    assert_near(world_bodies(world)[0].position.y, -10, 0);
+    assert_near(world_bodies(world)[0].inv_mass, 0, 0);
+    assert_int_equal(world_body_count(world), 2);
+    world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_contact_problem_holds_what_the_step_froze),
+                                       cmocka_unit_test(position_correction_can_be_switched_off),
+                                       cmocka_unit_test(impulses_persist_while_the_pair_touches),
+                                       cmocka_unit_test(warm_starting_can_be_switched_off),
+                                       cmocka_unit_test(a_step_that_fails_leaves_the_world_unchanged),
+                                       cmocka_unit_test(fixed_bodies_stay)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Laws in closed form that the engine must obey. */
+#include "worlds.h"
+
+/* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
+static void a_free_box_falls_as_it_should(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
+    ContactSolver engine = make_engine("");
+    const int k = 120;
+    run(world, &engine, k);
+    const Body *box = world_bodies(world);
+    double dt = (double)world_dt;
+    assert_near(box->velocity.y, -10 * k * dt, 1e-4f);
+    assert_near(box->position.y, 50 - 10 * dt * dt * k * (k + 1) / 2, 1e-3f);
+    assert_near(box->position.x, 2 + 1.5 * k * dt, 1e-4f);
+    assert_near(box->angle, 2 * k * dt, 1e-4f);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+/* Momentum and angular momentum about the origin of all bodies of a problem, before or after the solve. */
+static void sum_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[3]) {
+    sum[0] = sum[1] = sum[2] = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        BodyVelocity v = after != NULL ? after[i] : (BodyVelocity){body->velocity, body->angular_velocity};
+        if (body->inv_mass == 0) continue;
+        double m = 1 / (double)body->inv_mass, x = (double)v.linear.x, y = (double)v.linear.y;
+        sum[0] += m * x;
+        sum[1] += m * y;
+        sum[2] += m * ((double)body->position.x * y - (double)body->position.y * x) +
+                  (double)v.angular / (double)body->inv_inertia;
+    }
+}
+
+/* Two boxes crash in the air, off centre, turning, rubbing: what one loses the other gains. */
+static void a_pair_impulse_keeps_momentum_and_angular_momentum(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_body(world, &(BodyDef){.size = {1, 2}, .mass = 3, .friction = 0.6f, .position = {0, 10}, .velocity = {4, 1}, .angular_velocity = 3});
+    add_body(world, &(BodyDef){.size = {2, 1}, .mass = 0.5f, .friction = 0.5f, .position = {1.3f, 10.4f}, .angle = 0.3f, .velocity = {-6, 0}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 1);
+    const ContactProblem *problem = world_problem(world);
+    const ContactSolution *solution = world_solution(world);
+    assert_in_range(problem->contact_count, 1, 2);
+    assert_true(solution->impulses[0].normal > 1);
+    assert_true(fabsf(solution->impulses[0].tangent) > 0.1f);
+    double before[3], after[3];
+    sum_momentum(problem, NULL, before);
+    sum_momentum(problem, solution->velocities, after);
+    for (int i = 0; i < 3; i++) assert_near(before[i], after[i], 2e-4f);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+/* A box of unit size on a slope of this angle under its own weight; friction of the pair is mu. How far it has
+   slid after `steps`. */
+static float slide(float angle, float mu, int steps) {
+    World *world = make_world();
+    add_body(world, &(BodyDef){.size = {100, 2}, .fixed = true, .friction = mu, .angle = angle});
+    Vec2 up = mat22_rotation(angle).column2;
+    Vec2 start = vec2_scale(1.5f - 0.005f, up);
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = mu, .position = start, .angle = angle});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, steps);
+    Vec2 moved = vec2_sub(world_bodies(world)[1].position, start);
+    free_solver(&engine);
+    world_destroy(world);
+    return sqrtf(vec2_dot(moved, moved));
+}
+
+/* It slides if and only if tan(angle) > mu, and then with a = g (sin - mu cos). */
+static void a_box_slides_if_the_slope_is_steeper_than_the_friction_angle(void **state) {
+    (void)state;
+    for (float mu = 0.2f; mu < 0.75f; mu += 0.25f) {
+        float critical = atanf(mu);
+        assert_true(slide(0.97f * critical, mu, 120) < 0.01f);
+        float steep = 1.05f * critical, t = 120 * world_dt;
+        float expected = 5 * (sinf(steep) - mu * cosf(steep)) * t * t;
+        assert_near(slide(steep, mu, 120), expected, 0.03f * expected + 0.01f);
+    }
+}
+
+/* In a resting stack the normal impulses under box i carry the weight of all above: m g dt (n - i). */
+static void a_resting_stacks_impulses_carry_its_weight(void **state) {
+    (void)state;
+    enum { BOXES = 5 };
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < BOXES; i++)
+        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    ContactSolver engine = make_engine("iterations=30");
+    run(world, &engine, 1200);
+    const ContactProblem *problem = world_problem(world);
+    assert_int_equal(problem->contact_count, 2 * BOXES);
+    for (int i = 0; i < problem->contact_count; i += 2) {
+        const ContactImpulse *impulses = &world_solution(world)->impulses[i];
+        float weight = 2 * 10 * world_dt * (float)(BOXES - problem->contacts[i].a);
+        assert_near(impulses[0].normal + impulses[1].normal, weight, 1e-3f * weight);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+/* Without restitution a box that lands stays down: normal impulse = m (v + g dt), so the momentum is gone. */
+static void a_landing_box_stops(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 4, .friction = 0.2f, .position = {0, 0.495f}, .velocity = {0, -3}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 1);
+    const ContactImpulse *impulses = world_solution(world)->impulses;
+    assert_near(impulses[0].normal + impulses[1].normal, 4 * (3 + 10 * world_dt), 1e-4f);
+    assert_near(world_bodies(world)[1].velocity.y, 0, 1e-5f);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+/* Friction is an impulse of at most mu times the normal one: a fast box keeps sliding with v - mu (v_n + g dt). */
+static void friction_stays_in_its_cone(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.5f);
+    add_body(world, &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
+    ContactSolver engine = make_engine("iterations=200");
+    run(world, &engine, 1);
+    assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);
+    const ContactProblem *problem = world_problem(world);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactImpulse *impulse = &world_solution(world)->impulses[i];
+        assert_true(fabsf(impulse->tangent) <= problem->contacts[i].friction * impulse->normal + 1e-7f);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+/* Each contact clamped by itself converges to less than the accumulated form; both must keep a box up. */
+static void the_form_without_accumulation_keeps_a_box_up(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
+    ContactSolver engine = make_engine("accumulate=off");
+    run(world, &engine, 300);
+    assert_near(world_bodies(world)[1].position.y, 0.5f, 0.02f);
+    const ContactImpulse *impulses = world_solution(world)->impulses;
+    assert_near(impulses[0].normal + impulses[1].normal, 10 * world_dt, 1e-3f);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+static void iterations_out_of_range_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, "iterations=0", solver_sequential_impulses.settings, "engine", &error), error);
+    assert_null(solver_sequential_impulses.create(&settings, &error));
+    assert_error(error, ERROR_INPUT, "iterations");
+    error = (Error){0};
+    assert_false(settings_parse(&settings, "sweeps=3", solver_sequential_impulses.settings, "engine", &error));
+    assert_error(error, ERROR_INPUT, "sweeps");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_free_box_falls_as_it_should),
+        cmocka_unit_test(a_pair_impulse_keeps_momentum_and_angular_momentum),
+        cmocka_unit_test(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle),
+        cmocka_unit_test(a_resting_stacks_impulses_carry_its_weight),
+        cmocka_unit_test(a_landing_box_stops),
+        cmocka_unit_test(friction_stays_in_its_cone),
+        cmocka_unit_test(the_form_without_accumulation_keeps_a_box_up),
+        cmocka_unit_test(iterations_out_of_range_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small worlds, made by hand, and the engine to run them. */
+#pragma once
+#include "testing.h"
+
+#include "dynamics/world.h"
+#include "solvers/solvers.h"
+
+static const float world_dt = 1.0f / 60.0f;
+
+/* The engine with these settings ("iterations=10"). */
+static inline ContactSolver make_engine(const char *text) {
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, text, solver_sequential_impulses.settings, "engine", &error), error);
+    ContactSolver solver = {&solver_sequential_impulses, solver_sequential_impulses.create(&settings, &error)};
+    assert_ok(solver.state != NULL, error);
+    return solver;
+}
+
+static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
+
+static inline World *make_world(void) {
+    Error error = {0};
+    const WorldDef def = {.gravity = {0, -10}, .warm_starting = true, .position_correction = true};
+    World *world = world_create(&def, &error);
+    assert_ok(world != NULL, error);
+    return world;
+}
+
+static inline void add_body(World *world, const BodyDef *def) {
+    Error error = {0};
+    assert_ok(world_add_body(world, def, &error), error);
+}
+
+/* The ground of the paper's scenes: its top at y = 0. */
+static inline void add_ground(World *world, float friction) {
+    const BodyDef ground = {.size = {100, 20}, .fixed = true, .friction = friction, .position = {0, -10}};
+    add_body(world, &ground);
+}
+
+static inline void run(World *world, const ContactSolver *solver, int steps) {
+    Error error = {0};
+    for (int i = 0; i < steps; i++) assert_ok(world_step(world, solver, world_dt, &error), error);
+}
