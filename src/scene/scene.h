@@ -16,13 +16,17 @@ enum {
     SCENE_MAX_NETWORKS = 8
 };
 
+#define SCENE_MAX_POSITION 1e6f /* m, either way along each axis */
+#define SCENE_MIN_DT 1e-5f      /* s */
+#define SCENE_MAX_DT 1.0f       /* s */
+
 /* The bomb: a box put in after step `frame` (so it is in that frame's state; 0: from the start). */
 typedef struct SceneBomb {
     bool present;
     int frame;
-    BodyDef body;               /* position (x, y); velocity is what the law below gives */
-    bool velocity_from_position; /* velocity = velocity_factor * position; else body.velocity as it is */
-    float velocity_factor;      /* 1/s */
+    BodyDef body;                /* velocity: only where the law below is off (scene_bomb_body) */
+    bool velocity_from_position; /* velocity = velocity_factor * position */
+    float velocity_factor;       /* 1/s */
 } SceneBomb;
 
 /* Which trained network a method of this scene uses. */
@@ -37,27 +41,34 @@ typedef struct Scene {
     float dt;                   /* s */
     int iterations;             /* of sequential impulses, per step */
     bool warm_starting, accumulate_impulses, position_correction;
-    int frames;                 /* steps to run */
+    int frames;                      /* steps to run */
     Vec2 camera_center, camera_size; /* m; size 0, 0: fitted to what happens */
     int body_count;
-    BodyDef *bodies;            /* [body_count], patterns written out, in the order of the file */
+    BodyDef *bodies; /* [body_count], patterns written out, in the order of the file */
     SceneBomb bomb;
     int network_count;
     SceneNetwork networks[SCENE_MAX_NETWORKS];
 } Scene;
 
 /* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Never takes more
-   than 0.1 s or a few MB, whatever the file holds (scene_limits.h). */
+   than 0.1 s or some 20 MB, whatever the file holds: the limits are in source.h and yaml_tree.h. The format
+   is described at the head of scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 void scene_destroy(Scene *scene);
 
-/* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short. */
+/* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short.
+ */
 World *scene_world(const Scene *scene, Error *error);
 
-/* Adds the bomb to a world of this scene. */
+/* The bomb as it is put in: with the velocity that its law gives at its position. */
+BodyDef scene_bomb_body(const Scene *scene);
+
+/* Adds the bomb to a world of this scene, and tells the world which body it is. */
 bool scene_add_bomb(const Scene *scene, World *world, Error *error);
 
-/* XXH3 of all that decides a run: equal physics, equal hash, whatever the file looks like. */
+/* XXH3 of all that decides a run: equal physics, equal hash, whatever the file looks like. Gravity, dt,
+   iterations, switches, bodies and bomb (with the velocity that it gets) count; name, frames, camera and
+   networks do not. */
 uint64_t scene_hash(const Scene *scene);
 
 /* Path of the network that the scene names for a method, or NULL. */

@@ -41,14 +41,15 @@ typedef struct Trajectory {
     size_t contact_capacity;
 } Trajectory;
 
-/* All poses NaN, no contacts, contact_start all 0. NULL with error set when memory is short. */
+/* All poses NaN, no contacts, contact_start all 0. NULL with error set when memory is short or the whole would be
+   larger than the 2 GiB that a file may hold; trajectory_add_contact fails there, too. */
 Trajectory *trajectory_create(int frames, int bodies, Error *error);
 void trajectory_destroy(Trajectory *trajectory);
 
 /* True where the body is there in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
-/* Appends a contact of step `frame`; frames in rising order. */
+/* Appends a contact of step `frame` (from 1); frames in rising order. contact_start fits at any time. */
 bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryContact *contact, Error *error);
 
 /* FNV-1a 64 over the little-endian bytes of x, y, angle, vx, vy, omega of each dynamic body that is there, by
@@ -74,14 +75,18 @@ bool trajectory_write_hashes(const Trajectory *trajectory, const char *path, Err
 /* Where two trajectories part. */
 typedef struct TrajectoryDifference {
     bool equal;         /* every bit of every pose and velocity */
-    char what[256];     /* a difference that comes before the frames: "bodies: 12 and 67"; else empty */
+    char what[256];     /* a difference that no distance tells: "bodies: 12 and 67", "frames: 301 and 481", or a body
+                           that only one of the two has in that frame; else empty */
     int frame, body;    /* the first that differ (-1, -1 where `what` says it all) */
     double distance;    /* m, between the two positions there */
     double angle;       /* rad */
     double speed;       /* m/s, between the two velocities there */
-    int max_frame, max_body; /* where the two are farthest apart over the run */
+    int max_frame, max_body; /* where the two are farthest apart over the frames of both; -1, -1 if nowhere */
     double max_distance;     /* m */
 } TrajectoryDifference;
+
+/* Compares all poses and velocities bit by bit over the frames of both, NaN as not there. Contacts and names do
+   not count. */
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *difference);
 
 /* Largest distance (m) between the bodies of two trajectories in one frame, over the bodies that both have. */

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole files in and out. */
+#include "common/file.h"
+
+#include "common/array.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+/* A path that cannot be opened is the user's mistake unless the machine is short of something. */
+static bool open_failed(const char *path, Error *error) {
+    int cause = errno;
+    bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
+    return machine ? error_system(error, path, "cannot open: %s", strerror(cause))
+                   : error_input(error, path, "cannot open: %s", strerror(cause));
+}
+
+/* Reads to the end rather than by the size that stat tells: the file may be growing. */
+static char *read_all(int file, const char *path, size_t limit, size_t expected, size_t *size, Error *error) {
+    void *data = NULL;
+    size_t capacity = 0, used = 0, wanted = expected + 2;
+    for (;;) {
+        if (!array_reserve(&data, &capacity, wanted, 1)) {
+            error_memory(error, path);
+            break;
+        }
+        ssize_t got = read(file, (char *)data + used, capacity - used - 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            error_system(error, path, "cannot read: %s", strerror(errno));
+            break;
+        }
+        used += (size_t)got;
+        if (used > limit) {
+            error_input(error, path, "larger than %zu bytes", limit);
+            break;
+        }
+        if (got == 0) {
+            ((char *)data)[used] = '\0';
+            *size = used;
+            return data;
+        }
+        wanted = used + 2;
+    }
+    free(data);
+    return NULL;
+}
+
+char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
+    /* Without O_NONBLOCK opening a fifo would wait for somebody to write. */
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (file < 0) {
+        open_failed(path, error);
+        return NULL;
+    }
+    char *data = NULL;
+    struct stat status;
+    if (fstat(file, &status) != 0)
+        error_system(error, path, "cannot read: %s", strerror(errno));
+    else if (!S_ISREG(status.st_mode))
+        error_input(error, path, "not a regular file");
+    else if ((uintmax_t)status.st_size > limit)
+        error_input(error, path, "larger than %zu bytes", limit);
+    else
+        data = read_all(file, path, limit, (size_t)status.st_size, size, error);
+    close(file);
+    return data;
+}
+
+static bool write_all(int file, const char *data, size_t size) {
+    while (size > 0) {
+        ssize_t written = write(file, data, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return false;
+        data += written;
+        size -= (size_t)written;
+    }
+    return true;
+}
+
+/* A new file in the folder of path, its name in `name`. Not mkstemp, whose files only their owner may read:
+   here the umask decides, as for any other file. */
+static int create_beside(const char *path, char *name, size_t name_size) {
+    for (unsigned attempt = 0;; attempt++) {
+        struct timespec now;
+        clock_gettime(CLOCK_REALTIME, &now);
+        int length = snprintf(name, name_size, "%.*s.twinbox-%ld-%lx-%u.tmp", (int)file_folder_length(path),
+                              path, (long)getpid(), (unsigned long)now.tv_nsec, attempt);
+        if (length < 0 || (size_t)length >= name_size) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        int file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0 || errno != EEXIST || attempt == 100) return file;
+    }
+}
+
+/* The new name itself must survive a power cut. A folder that may not be read or synced cannot do better. */
+static bool sync_folder(const char *path) {
+    char folder[PATH_MAX];
+    int length = (int)file_folder_length(path);
+    snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
+    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) return true;
+    bool done = fsync(file) == 0 || errno == EINVAL;
+    int cause = errno;
+    close(file);
+    errno = cause;
+    return done;
+}
+
+/* Closes even after a failure, and keeps errno of what failed first. */
+static bool close_after(int file, bool done) {
+    int cause = errno;
+    if (close(file) != 0 && done) return false;
+    errno = cause;
+    return done;
+}
+
+static bool replace(const char *path, const void *data, size_t size) {
+    char name[PATH_MAX];
+    int file = create_beside(path, name, sizeof name);
+    if (file < 0) return false;
+    bool done = close_after(file, write_all(file, data, size) && fsync(file) == 0);
+    if (done && rename(name, path) == 0) return sync_folder(path);
+    int cause = errno;
+    unlink(name);
+    errno = cause;
+    return false;
+}
+
+static bool is_standard_output(const struct stat *status) {
+    struct stat output;
+    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev &&
+           output.st_ino == status->st_ino;
+}
+
+/* A device, a pipe, or whatever /dev/stdout leads to. */
+static bool write_into(int file, const void *data, size_t size) {
+    return file >= 0 && close_after(file, write_all(file, data, size));
+}
+
+static bool put(const char *path, const void *data, size_t size) {
+    struct stat status;
+    if (lstat(path, &status) != 0) return replace(path, data, size);
+    bool is_link = S_ISLNK(status.st_mode);
+    if (is_link && stat(path, &status) != 0) return false;
+    if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), data, size);
+    if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), data, size);
+    if (!is_link) return replace(path, data, size);
+    char target[PATH_MAX];
+    return realpath(path, target) != NULL && replace(target, data, size);
+}
+
+bool file_write(const char *path, const void *data, size_t size, Error *error) {
+    return put(path, data, size) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+static bool is_directory(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+bool file_make_directory(const char *path, Error *error) {
+    char part[PATH_MAX];
+    size_t length = strlen(path);
+    if (length == 0 || length >= sizeof part)
+        return error_system(error, path, "cannot make the directory: %s",
+                            strerror(length == 0 ? ENOENT : ENAMETOOLONG));
+    for (size_t end = 1; end <= length; end++) {
+        if (path[end] != '/' && path[end] != '\0') continue;
+        snprintf(part, sizeof part, "%.*s", (int)end, path);
+        if (mkdir(part, 0777) == 0 || is_directory(part)) continue;
+        /* is_directory has spoilt errno; asking again tells the reason. */
+        mkdir(part, 0777);
+        return error_system(error, part, "cannot make the directory: %s", strerror(errno));
+    }
+    return true;
+}
+
+size_t file_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash == NULL ? 0 : (size_t)(slash - path) + 1;
+}

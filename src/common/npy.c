@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The head of one .npy array. */
+#include "common/npy.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "arrays are stored little-endian and copied as they are"
+#endif
+
+static const struct {
+    const char *code, *name;
+    unsigned size;
+} types[] = {
+    [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8},
+    [NPZ_INT32] = {"<i4", "int32", 4},     [NPZ_UINT32] = {"<u4", "uint32", 4},
+    [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
+    [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_TEXT] = {"<U", "text", 4},
+};
+
+static const char MAGIC[] = "\x93NUMPY";
+enum {
+    MAGIC_SIZE = sizeof MAGIC - 1,
+    VERSION_1_SIZE = MAGIC_SIZE + 4,
+    VERSION_2_SIZE = MAGIC_SIZE + 6,
+    ALIGNMENT = 64
+};
+
+const char *npy_type_name(NpzType type) { return types[type].name; }
+
+bool npy_measure(NpyHead *head) {
+    uint64_t items = head->type == NPZ_TEXT ? (uint64_t)head->characters : 1;
+    if (items > NPZ_MAX_BYTES) return false;
+    for (int i = 0; i < head->rank; i++) {
+        if ((uint64_t)head->shape[i] > NPZ_MAX_BYTES) return false;
+        items *= (uint64_t)head->shape[i];
+        if (items > NPZ_MAX_BYTES) return false;
+    }
+    head->data_size = items * types[head->type].size;
+    return head->data_size <= NPZ_MAX_BYTES;
+}
+
+static size_t append(char *text, size_t used, const char *format, ...) PRINTF_LIKE(3, 4);
+
+static size_t append(char *text, size_t used, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text + used, NPY_HEAD_MAX - used, format, arguments);
+    va_end(arguments);
+    return used + (size_t)length;
+}
+
+void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]) {
+    size_t used = append(text, VERSION_1_SIZE, "{'descr': '%s", types[head->type].code);
+    if (head->type == NPZ_TEXT) used = append(text, used, "%" PRId64, head->characters);
+    used = append(text, used, "', 'fortran_order': False, 'shape': (");
+    for (int i = 0; i < head->rank; i++)
+        used = append(text, used, i == 0 ? "%" PRId64 : ", %" PRId64, head->shape[i]);
+    used = append(text, used, head->rank == 1 ? ",), }" : "), }");
+    head->head_size = (used + 1 + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    memset(text + used, ' ', head->head_size - used);
+    text[head->head_size - 1] = '\n';
+    memcpy(text, MAGIC, MAGIC_SIZE);
+    size_t length = head->head_size - VERSION_1_SIZE;
+    text[MAGIC_SIZE] = 1;
+    text[MAGIC_SIZE + 1] = 0;
+    text[MAGIC_SIZE + 2] = (char)(length & 0xff);
+    text[MAGIC_SIZE + 3] = (char)(length >> 8);
+}
+
+static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) PRINTF_LIKE(2, 3);
+
+static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, NPY_REASON_SIZE, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* Steps over `word` where the text goes on with it. */
+static bool take(const char **text, const char *word) {
+    size_t length = strlen(word);
+    if (strncmp(*text, word, length) != 0) return false;
+    *text += length;
+    return true;
+}
+
+static bool take_number(const char **text, int64_t *number) {
+    const char *digit = *text;
+    *number = 0;
+    while (*digit >= '0' && *digit <= '9' && *number < (INT64_MAX - 9) / 10)
+        *number = *number * 10 + (*digit++ - '0');
+    if (digit == *text || (*digit >= '0' && *digit <= '9')) return false;
+    *text = digit;
+    return true;
+}
+
+static bool take_type(const char **text, NpyHead *head) {
+    for (head->type = NPZ_FLOAT32; head->type < NPZ_TEXT; head->type++)
+        if (take(text, types[head->type].code)) return true;
+    return take(text, types[NPZ_TEXT].code) && take_number(text, &head->characters);
+}
+
+/* "()", "(3,)", "(3, 2)" */
+static bool take_shape(const char **text, NpyHead *head) {
+    if (take(text, "()")) return true;
+    if (!take(text, "(")) return false;
+    do {
+        if (head->rank == NPZ_MAX_RANK || !take_number(text, &head->shape[head->rank++])) return false;
+    } while (take(text, ", "));
+    return (head->rank > 1 || take(text, ",")) && take(text, ")");
+}
+
+/* The dictionary, then blanks to the line feed. */
+static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_REASON_SIZE]) {
+    if (!take(&text, "{'descr': '")) return refuse(reason, "no plain array (or no .npy)");
+    const char *type = text;
+    if (!take_type(&text, head) || *text != '\'') {
+        int length =
+            (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
+        return refuse(reason, "of type '%.*s', which this program does not read", length < 32 ? length : 32,
+                      type);
+    }
+    if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged head");
+    if (take(&text, "True")) return refuse(reason, "in Fortran order; C order is needed");
+    if (!take(&text, "False, 'shape': ") || !take_shape(&text, head) || !take(&text, ", }"))
+        return refuse(reason, "with a damaged head, or of more than %d dimensions", NPZ_MAX_RANK);
+    text += strspn(text, " ");
+    if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged head");
+    if (head->type == NPZ_TEXT && head->rank > 0)
+        return refuse(reason, "an array of texts; a single one is needed");
+    return npy_measure(head) || refuse(reason, "larger than 2 GiB");
+}
+
+bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NPY_REASON_SIZE]) {
+    const unsigned char *bytes = (const unsigned char *)text;
+    *head = (NpyHead){0};
+    if (size < VERSION_2_SIZE || memcmp(text, MAGIC, MAGIC_SIZE) != 0) return refuse(reason, "no .npy array");
+    int version = bytes[MAGIC_SIZE];
+    if (version < 1 || version > 2 || bytes[MAGIC_SIZE + 1] != 0)
+        return refuse(reason, "in version %d.%d of .npy; 1.0 or 2.0 is needed", version,
+                      bytes[MAGIC_SIZE + 1]);
+    size_t start = version == 1 ? VERSION_1_SIZE : VERSION_2_SIZE;
+    uint64_t length = bytes[MAGIC_SIZE + 2] + 256U * bytes[MAGIC_SIZE + 3];
+    if (version == 2)
+        length += ((uint64_t)bytes[MAGIC_SIZE + 4] << 16) + ((uint64_t)bytes[MAGIC_SIZE + 5] << 24);
+    if (length > size - start)
+        return refuse(reason, "with a head that is cut off or longer than %d bytes", NPY_HEAD_MAX);
+    char dictionary[NPY_HEAD_MAX + 1];
+    memcpy(dictionary, text + start, length);
+    dictionary[length] = '\0';
+    if (strlen(dictionary) != length) return refuse(reason, "with a damaged head");
+    head->head_size = start + length;
+    return parse_dictionary(head, dictionary, reason);
+}

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writing .npz: the archive is built in memory, then put in place whole. */
+#include "common/file.h"
+#include "common/npy.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zip.h>
+
+/* Noon of 1980-01-01, in the local time of whoever reads it. libzip may go through the time zone of this
+   machine and back, which loses the hours that a zone skips at night. */
+enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
+
+/* zlib's own default. libzip's is 9, which made a file of positions no smaller. */
+enum { DEFLATE_LEVEL = 6 };
+
+enum { MEMBER_NAME_SIZE = 72 };
+
+/* What libzip reads when it closes the archive, so it must live until then. */
+typedef struct Member {
+    char head[NPY_HEAD_MAX];
+    uint32_t *characters; /* of a text, in UTF-32 */
+    zip_buffer_fragment_t fragments[2];
+} Member;
+
+/* Reads one character; NULL where the bytes are no UTF-8. Bytes to follow, and what they carry at least: a
+   character may not be written longer than it needs. */
+static const unsigned char *decode_utf8(const unsigned char *bytes, uint32_t *character) {
+    static const uint32_t least[] = {0, 0x80, 0x800, 0x10000};
+    unsigned lead = *bytes++;
+    int following = lead < 0x80 ? 0 : lead >= 0xc0 && lead < 0xe0 ? 1 : lead >= 0xe0 && lead < 0xf0 ? 2 : 3;
+    if ((lead >= 0x80 && lead < 0xc0) || lead >= 0xf8) return NULL;
+    *character = following == 0 ? lead : lead & (0x3fU >> following);
+    for (int i = 0; i < following; i++, bytes++) {
+        if ((*bytes & 0xc0) != 0x80) return NULL;
+        *character = *character << 6 | (*bytes & 0x3fU);
+    }
+    bool surrogate = *character >= 0xd800 && *character < 0xe000;
+    return *character < least[following] || *character > 0x10ffff || surrogate ? NULL : bytes;
+}
+
+/* NumPy has no text of length 0, so an empty one is one zero. */
+static bool decode_text(Member *member, NpyHead *head, const NpzArray *array, const char *path,
+                        Error *error) {
+    const unsigned char *bytes = array->data;
+    member->characters = calloc(strlen(array->data) + 1, sizeof *member->characters);
+    if (member->characters == NULL) return error_memory(error, path);
+    int64_t count = 0;
+    while (*bytes != '\0') {
+        bytes = decode_utf8(bytes, &member->characters[count++]);
+        if (bytes == NULL)
+            return error_input(error, path, "cannot store '%s': its text is no UTF-8", array->name);
+    }
+    head->characters = count > 0 ? count : 1;
+    return true;
+}
+
+static bool prepare(Member *member, const NpzArray *array, const char *path, Error *error) {
+    NpyHead head = {.type = array->type, .rank = array->rank};
+    assert(array->rank <= NPZ_MAX_RANK && (array->type != NPZ_TEXT || array->rank == 0));
+    memcpy(head.shape, array->shape, sizeof head.shape);
+    if (array->type == NPZ_TEXT && !decode_text(member, &head, array, path, error)) return false;
+    if (!npy_measure(&head))
+        return error_input(error, path, "cannot store '%s': larger than 2 GiB", array->name);
+    npy_write_head(&head, member->head);
+    const void *data = array->type == NPZ_TEXT ? member->characters : array->data;
+    member->fragments[0] = (zip_buffer_fragment_t){(zip_uint8_t *)member->head, head.head_size};
+    member->fragments[1] = (zip_buffer_fragment_t){(zip_uint8_t *)data, head.data_size};
+    return true;
+}
+
+static bool zip_failed(const char *path, zip_t *archive, Error *error) {
+    return error_system(error, path, "cannot write: %s", zip_strerror(archive));
+}
+
+static bool add(zip_t *archive, const char *name, const Member *member, const char *path, Error *error) {
+    char member_name[MEMBER_NAME_SIZE];
+    int length = snprintf(member_name, sizeof member_name, "%s.npy", name);
+    assert(length > 0 && length < MEMBER_NAME_SIZE);
+    (void)length;
+    zip_uint64_t fragments = member->fragments[1].length > 0 ? 2 : 1;
+    zip_source_t *source = zip_source_buffer_fragment(archive, member->fragments, fragments, 0);
+    if (source == NULL) return zip_failed(path, archive, error);
+    zip_int64_t index = zip_file_add(archive, member_name, source, 0);
+    if (index < 0) {
+        zip_source_free(source);
+        return zip_failed(path, archive, error);
+    }
+    if (zip_set_file_compression(archive, (zip_uint64_t)index, ZIP_CM_DEFLATE, DEFLATE_LEVEL) != 0 ||
+        zip_file_set_dostime(archive, (zip_uint64_t)index, DOS_TIME, DOS_DATE, 0) != 0)
+        return zip_failed(path, archive, error);
+    return true;
+}
+
+/* Fills `source` with the finished archive. */
+static bool build(zip_source_t *source, Member *members, const NpzArray *arrays, size_t count,
+                  const char *path, Error *error) {
+    zip_error_t cause;
+    zip_error_init(&cause);
+    zip_t *archive = zip_open_from_source(source, ZIP_CREATE | ZIP_TRUNCATE, &cause);
+    if (archive == NULL) {
+        error_system(error, path, "cannot write: %s", zip_error_strerror(&cause));
+        zip_error_fini(&cause);
+        return false;
+    }
+    /* The archive frees its source when it is closed or discarded, and the caller goes on with it. */
+    zip_source_keep(source);
+    bool done = true;
+    for (size_t i = 0; done && i < count; i++)
+        done = prepare(&members[i], &arrays[i], path, error) &&
+               add(archive, arrays[i].name, &members[i], path, error);
+    if (done && zip_close(archive) == 0) return true;
+    if (done) zip_failed(path, archive, error);
+    zip_discard(archive);
+    return false;
+}
+
+static bool put(zip_source_t *source, const char *path, Error *error) {
+    zip_stat_t status;
+    if (zip_source_stat(source, &status) != 0 || zip_source_open(source) != 0)
+        return error_system(error, path, "cannot write: %s", zip_error_strerror(zip_source_error(source)));
+    char *data = malloc(status.size);
+    bool done = data != NULL;
+    if (!done) error_memory(error, path);
+    if (done && zip_source_read(source, data, status.size) != (zip_int64_t)status.size)
+        done = error_system(error, path, "cannot write: %s", zip_error_strerror(zip_source_error(source)));
+    zip_source_close(source);
+    if (done) done = file_write(path, data, status.size, error);
+    free(data);
+    return done;
+}
+
+bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *error) {
+    assert(count > 0);
+    Member *members = calloc(count, sizeof *members);
+    zip_source_t *source = zip_source_buffer_create(NULL, 0, 0, NULL);
+    bool done = members != NULL && source != NULL;
+    if (!done) error_memory(error, path);
+    done = done && build(source, members, arrays, count, path, error) && put(source, path, error);
+    for (size_t i = 0; members != NULL && i < count; i++) free(members[i].characters);
+    free(members);
+    if (source != NULL) zip_source_free(source);
+    return done;
+}

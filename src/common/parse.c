@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers from text. */
+#include "common/parse.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <locale.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+static const char *skip_sign(const char *text) { return *text == '+' || *text == '-' ? text + 1 : text; }
+
+static const char *skip_digits(const char *text) {
+    while (*text >= '0' && *text <= '9') text++;
+    return text;
+}
+
+/* End of the decimal number that text begins with, or NULL. strtof alone would also take blanks, hex, inf and
+ * nan. */
+static const char *decimal_end(const char *text) {
+    const char *whole = skip_sign(text), *end = skip_digits(whole);
+    ptrdiff_t digits = end - whole;
+    if (*end == '.') {
+        const char *fraction = end + 1;
+        end = skip_digits(fraction);
+        digits += end - fraction;
+    }
+    if (digits == 0) return NULL;
+    if (*end == 'e' || *end == 'E') {
+        const char *exponent = skip_sign(end + 1);
+        end = skip_digits(exponent);
+        if (end == exponent) return NULL;
+    }
+    return end;
+}
+
+/* strtof and strtod read the decimal point of the thread's locale, so that must be the C locale's meanwhile.
+ */
+static locale_t enter_c_locale(void) {
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    return c == (locale_t)0 ? c : uselocale(c);
+}
+
+static void leave_c_locale(locale_t previous) { freelocale(uselocale(previous)); }
+
+/* The decimal number up to `terminator`; *rest is what follows it. Not through double: that would round
+ * twice. */
+static bool take_float(const char *text, char terminator, float *value, const char **rest) {
+    const char *end = decimal_end(text);
+    if (end == NULL || *end != terminator) return false;
+    locale_t previous = enter_c_locale();
+    if (previous == (locale_t)0) return false;
+    *value = strtof(text, NULL);
+    leave_c_locale(previous);
+    *rest = end + 1;
+    return isfinite(*value);
+}
+
+static bool take_double(const char *text, char terminator, double *value, const char **rest) {
+    const char *end = decimal_end(text);
+    if (end == NULL || *end != terminator) return false;
+    locale_t previous = enter_c_locale();
+    if (previous == (locale_t)0) return false;
+    *value = strtod(text, NULL);
+    leave_c_locale(previous);
+    *rest = end + 1;
+    return isfinite(*value);
+}
+
+bool parse_float(const char *text, float *value) {
+    float number, divisor;
+    const char *rest;
+    if (take_float(text, '\0', &number, &rest)) {
+        *value = number;
+        return true;
+    }
+    if (!take_float(text, '/', &number, &rest) || !take_float(rest, '\0', &divisor, &rest)) return false;
+    if (divisor == 0 || !isfinite(number / divisor)) return false;
+    *value = number / divisor;
+    return true;
+}
+
+bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value) {
+    const char *digits = skip_sign(text), *end = skip_digits(digits);
+    if (end == digits || *end != '\0') return false;
+    errno = 0;
+    intmax_t number = strtoimax(text, NULL, 10);
+    if (errno != 0 || number < minimum || number > maximum) return false;
+    *value = number;
+    return true;
+}
+
+/* A value this far past the end (in steps) still counts as the end, and one this near zero as zero: A, B and
+   STEP are decimals and seldom exact in binary. */
+static const double STEP_TOLERANCE = 1e-6;
+
+bool parse_range(const char *text, int max_count, FloatRange *range) {
+    double first, last, step;
+    const char *rest;
+    if (!take_double(text, ':', &first, &rest) || !take_double(rest, ':', &last, &rest) ||
+        !take_double(rest, '\0', &step, &rest))
+        return false;
+    if (!isfinite((float)first) || !isfinite((float)last) || !(step > 0) || first > last) return false;
+    double count = floor((last - first) / step + STEP_TOLERANCE) + 1;
+    if (!(count <= max_count)) return false;
+    *range = (FloatRange){first, step, (int)count};
+    return true;
+}
+
+float range_value(const FloatRange *range, int i) {
+    double value = range->first + i * range->step;
+    return fabs(value) < STEP_TOLERANCE * range->step ? 0 : (float)value;
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of keys, and the values that are alike in all of them. */
+#include "scene/fields.h"
+
+#include "scene/scene.h"
+
+#include "common/parse.h"
+#include "common/vec2.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+const Range range_size = {1e-3f, 1e4f, " m"};
+const Range range_mass = {1e-6f, 1e9f, " kg"};
+const Range range_position = {-SCENE_MAX_POSITION, SCENE_MAX_POSITION, " m"};
+const Range range_angle = {-1e4f, 1e4f, " rad"};
+const Range range_speed = {-1e4f, 1e4f, " m/s"};
+const Range range_spin = {-1e4f, 1e4f, " rad/s"};
+const Range range_friction = {0, 10, ""};
+const Range range_gravity = {-1e4f, 1e4f, " m/s^2"};
+const Range range_dt = {SCENE_MIN_DT, SCENE_MAX_DT, " s"};
+const Range range_rate = {-1e4f, 1e4f, " 1/s"};
+
+enum { KEY_SIZE = 32 };
+
+static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
+
+/* Letters to insert, drop or replace (Levenshtein 1966), kept row by row. */
+static size_t edits(const char *a, const char *b) {
+    size_t row[KEY_SIZE], columns = strlen(b);
+    for (size_t j = 0; j <= columns; j++) row[j] = j;
+    for (size_t i = 0; a[i] != '\0'; i++) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < columns; j++) {
+            size_t replaced = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = smaller(replaced, 1 + smaller(row[j], diagonal));
+        }
+    }
+    return row[columns];
+}
+
+/* The key that a mistyped one most likely stands for, or NULL. */
+static const char *nearest_key(const Field *fields, const char *key) {
+    const char *nearest = NULL;
+    size_t length = strlen(key), best = 1 + length / 3;
+    if (length >= KEY_SIZE) return NULL;
+    for (const Field *field = fields; field->key != NULL; field++) {
+        size_t distance = edits(key, field->key);
+        if (distance > best || (distance == best && nearest != NULL)) continue;
+        best = distance;
+        nearest = field->key;
+    }
+    return nearest;
+}
+
+static bool unknown_key(const YamlTree *tree, int node, const char *what, const Field *fields, Error *error) {
+    YamlShown shown = yaml_show(tree, node);
+    const char *nearest = nearest_key(fields, yaml_text(tree, node));
+    if (nearest != NULL)
+        return yaml_error(tree, node, error, "unknown key '%s'; did you mean '%s'?", shown.text, nearest);
+    char known[256] = "";
+    for (const Field *field = fields; field->key != NULL; field++) {
+        size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "", field->key);
+    }
+    return yaml_error(tree, node, error, "unknown key '%s'; %s has: %s", shown.text, what, known);
+}
+
+static const Field *find_field(const Field *fields, const char *key) {
+    while (fields->key != NULL && strcmp(fields->key, key) != 0) fields++;
+    return fields->key == NULL ? NULL : fields;
+}
+
+int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key) {
+    return nodes[find_field(fields, key) - fields];
+}
+
+static bool all_there(const YamlTree *tree, int node, const char *what, const Field *fields, const int *nodes,
+                      Error *error) {
+    for (int i = 0; fields[i].key != NULL; i++)
+        if (fields[i].required && nodes[i] == 0)
+            return yaml_error(tree, node, error, "%s needs the key '%s'", what, fields[i].key);
+    return true;
+}
+
+bool fields_read(const YamlTree *tree, int node, const char *what, const Field *fields, void *target,
+                 int nodes[FIELDS_MAX], Error *error) {
+    memset(nodes, 0, FIELDS_MAX * sizeof *nodes);
+    if (tree->nodes[node].kind != YAML_MAPPING)
+        return yaml_error(tree, node, error, "%s is a mapping of keys to values (got %s)", what,
+                          yaml_show(tree, node).text);
+    for (int key = node + 1; key < tree->nodes[node].end;) {
+        if (tree->nodes[key].kind != YAML_SCALAR) return yaml_error(tree, key, error, "a key must be a word");
+        int value = key + 1;
+        const Field *field = find_field(fields, yaml_text(tree, key));
+        if (field == NULL) return unknown_key(tree, key, what, fields, error);
+        if (nodes[field - fields] != 0)
+            return yaml_error(tree, key, error, "key '%s' is there twice", field->key);
+        nodes[field - fields] = value;
+        if (!field->parse(tree, value, field, (char *)target + field->offset, error)) return false;
+        key = tree->nodes[value].end;
+    }
+    return all_there(tree, node, what, fields, nodes, error);
+}
+
+static bool is_scalar(const YamlTree *tree, int node) { return tree->nodes[node].kind == YAML_SCALAR; }
+
+bool field_number(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    float value;
+    const Range *range = field->range;
+    if (!is_scalar(tree, node) || !parse_float(yaml_text(tree, node), &value))
+        return yaml_error(tree, node, error, "%s must be a number (got %s)", field->key,
+                          yaml_show(tree, node).text);
+    if (range->minimum > 0 && value <= 0)
+        return yaml_error(tree, node, error, "%s must be greater than 0 (got %s)", field->key,
+                          yaml_show(tree, node).text);
+    if (value < range->minimum || value > range->maximum)
+        return yaml_error(tree, node, error, "%s must be from %g to %g%s (got %s)", field->key,
+                          (double)range->minimum, (double)range->maximum, range->unit,
+                          yaml_show(tree, node).text);
+    *(float *)member = value;
+    return true;
+}
+
+bool field_vector(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    if (tree->nodes[node].kind != YAML_SEQUENCE)
+        return yaml_error(tree, node, error, "%s must be a list of two numbers (got %s)", field->key,
+                          yaml_show(tree, node).text);
+    if (tree->nodes[node].count != 2)
+        return yaml_error(tree, node, error, "%s must be a list of two numbers (got %d)", field->key,
+                          tree->nodes[node].count);
+    Vec2 *vector = member;
+    int x = node + 1, y = tree->nodes[x].end;
+    return field_number(tree, x, field, &vector->x, error) && field_number(tree, y, field, &vector->y, error);
+}
+
+bool field_int(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    int64_t value, minimum = (int64_t)field->range->minimum, maximum = (int64_t)field->range->maximum;
+    if (!is_scalar(tree, node) || !parse_int(yaml_text(tree, node), minimum, maximum, &value))
+        return yaml_error(tree, node, error, "%s must be a whole number from %d to %d (got %s)", field->key,
+                          (int)minimum, (int)maximum, yaml_show(tree, node).text);
+    *(int *)member = (int)value;
+    return true;
+}
+
+bool field_switch(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    static const char *const words[] = {"false", "true", "off", "on", "no", "yes"};
+    for (size_t i = 0; is_scalar(tree, node) && i < sizeof words / sizeof *words; i++) {
+        if (strcmp(yaml_text(tree, node), words[i]) != 0) continue;
+        *(bool *)member = i % 2 == 1;
+        return true;
+    }
+    return yaml_error(tree, node, error, "%s must be on or off (got %s)", field->key,
+                      yaml_show(tree, node).text);
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Mappings of a scene file, read by tables: each key with the parser of its value and the member it goes to.
+ */
+#pragma once
+#include "scene/yaml_tree.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { FIELDS_MAX = 16 };
+
+/* What a number may be, ends included. */
+typedef struct Range {
+    float minimum, maximum;
+    const char *unit;
+} Range;
+
+/* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */
+extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin,
+    range_friction, range_gravity, range_dt, range_rate;
+
+typedef struct Field Field;
+
+/* Reads a value node into *member. */
+typedef bool FieldParser(const YamlTree *tree, int node, const Field *field, void *member, Error *error);
+
+struct Field {
+    const char *key; /* NULL ends a table, of FIELDS_MAX rows at most */
+    FieldParser *parse;
+    size_t offset;      /* of the member in the struct that the mapping describes */
+    const Range *range; /* of field_number, field_vector, field_int */
+    bool required;
+};
+
+/* Reads a mapping into *target and tells the value's node of each field in `nodes`, 0 where the key is
+   missing. Refused: what is no mapping, keys that are unknown (the nearest is proposed), twice there, or
+   missing. */
+bool fields_read(const YamlTree *tree, int node, const char *what, const Field *fields, void *target,
+                 int nodes[FIELDS_MAX], Error *error);
+
+/* The value's node of a key, 0 where it is missing, from what fields_read told. */
+int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key);
+
+/* float; float32 nearest to the decimal, or a fraction such as 1/60. */
+FieldParser field_number;
+/* Vec2: a list of two numbers. */
+FieldParser field_vector;
+/* int */
+FieldParser field_int;
+/* bool: true, false, on, off, yes, no. */
+FieldParser field_switch;

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The key `bodies` of a scene. */
+#pragma once
+#include "scene/fields.h"
+
+/* Box2D-Lite's, for bodies that name none. */
+#define DEFAULT_FRICTION 0.2f
+
+/* Fills bodies and body_count of the Scene that member points to. */
+FieldParser field_bodies;

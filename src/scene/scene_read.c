@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A scene file's tables of keys: from YAML to Scene. */
+#include "common/file.h"
+#include "scene/scene.h"
+#include "scene/scene_bodies.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Range range_iterations = {1, SCENE_MAX_ITERATIONS, ""};
+static const Range range_frames = {1, SCENE_MAX_FRAMES, ""};
+static const Range range_bomb_frame = {0, SCENE_MAX_FRAMES, ""};
+
+static bool field_camera(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    (void)field;
+    static const Field fields[] = {
+        {"center", field_vector, offsetof(Scene, camera_center), &range_position, true},
+        {"size", field_vector, offsetof(Scene, camera_size), &range_size, true},
+        {NULL, NULL, 0, NULL, false}};
+    int nodes[FIELDS_MAX];
+    return fields_read(tree, node, "a camera", fields, member, nodes, error);
+}
+
+/* Either [vx, vy] or the mapping {times_position: 1/s}. */
+static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *field, void *member,
+                                Error *error) {
+    static const Field law[] = {
+        {"times_position", field_number, offsetof(SceneBomb, velocity_factor), &range_rate, true},
+        {NULL, NULL, 0, NULL, false}};
+    SceneBomb *bomb = member;
+    bomb->velocity_from_position = tree->nodes[node].kind == YAML_MAPPING;
+    int nodes[FIELDS_MAX];
+    if (bomb->velocity_from_position)
+        return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
+    return field_vector(tree, node, field, &bomb->body.velocity, error);
+}
+
+static const Field bomb_fields[] = {
+    {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
+    {"x", field_number, offsetof(SceneBomb, body.position.x), &range_position, true},
+    {"y", field_number, offsetof(SceneBomb, body.position.y), &range_position, true},
+    {"size", field_vector, offsetof(SceneBomb, body.size), &range_size, true},
+    {"mass", field_number, offsetof(SceneBomb, body.mass), &range_mass, true},
+    {"friction", field_number, offsetof(SceneBomb, body.friction), &range_friction, false},
+    {"rotation", field_number, offsetof(SceneBomb, body.angle), &range_angle, false},
+    {"spin", field_number, offsetof(SceneBomb, body.angular_velocity), &range_spin, false},
+    {"velocity", field_bomb_velocity, 0, &range_speed, false},
+    {NULL, NULL, 0, NULL, false}};
+
+static bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    (void)field;
+    Scene *scene = member;
+    scene->bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION};
+    int nodes[FIELDS_MAX];
+    if (!fields_read(tree, node, "a bomb", bomb_fields, &scene->bomb, nodes, error)) return false;
+    Vec2 velocity = scene_bomb_body(scene).velocity;
+    if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) <= range_speed.maximum) return true;
+    return yaml_error(tree, fields_node(bomb_fields, nodes, "velocity"), error,
+                      "the bomb would start with (%g, %g) m/s, above %g", (double)velocity.x,
+                      (double)velocity.y, (double)range_speed.maximum);
+}
+
+/* Letters, digits and dashes, as the table of methods has them. */
+static bool copy_method(const YamlTree *tree, int node, char *method, Error *error) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
+    size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789-");
+    if (length == 0 || text[length] != '\0' || length >= SCENE_NAME_SIZE)
+        return yaml_error(tree, node, error, "a method's name is made of a-z, 0-9 and - (got %s)",
+                          yaml_show(tree, node).text);
+    memcpy(method, text, length + 1);
+    return true;
+}
+
+static bool has_control_character(const char *text) {
+    for (; *text != '\0'; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) return true;
+    return false;
+}
+
+static bool copy_path(const YamlTree *tree, int node, char *path, Error *error) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
+    if (text[0] == '\0' || has_control_character(text))
+        return yaml_error(tree, node, error, "a network is the path of a file (got %s)",
+                          yaml_show(tree, node).text);
+    int folder = text[0] == '/' ? 0 : (int)file_folder_length(tree->source.path);
+    int length = snprintf(path, SCENE_PATH_SIZE, "%.*s%s", folder, tree->source.path, text);
+    return (length >= 0 && length < SCENE_PATH_SIZE) ||
+           yaml_error(tree, node, error, "the path of a network may have at most %d bytes",
+                      SCENE_PATH_SIZE - 1);
+}
+
+static bool field_networks(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    Scene *scene = member;
+    if (tree->nodes[node].kind != YAML_MAPPING)
+        return yaml_error(tree, node, error, "%s is a mapping of methods to files (got %s)", field->key,
+                          yaml_show(tree, node).text);
+    for (int key = node + 1; key < tree->nodes[node].end;) {
+        int value = tree->nodes[key].end;
+        if (scene->network_count == SCENE_MAX_NETWORKS)
+            return yaml_error(tree, key, error, "a scene may name at most %d networks", SCENE_MAX_NETWORKS);
+        SceneNetwork *network = &scene->networks[scene->network_count];
+        if (!copy_method(tree, key, network->method, error) || !copy_path(tree, value, network->path, error))
+            return false;
+        if (scene_network(scene, network->method) != NULL)
+            return yaml_error(tree, key, error, "key '%s' is there twice", network->method);
+        scene->network_count++;
+        key = tree->nodes[value].end;
+    }
+    return true;
+}
+
+static const Field scene_fields[] = {
+    {"gravity", field_vector, offsetof(Scene, gravity), &range_gravity, true},
+    {"dt", field_number, offsetof(Scene, dt), &range_dt, true},
+    {"iterations", field_int, offsetof(Scene, iterations), &range_iterations, true},
+    {"warm_starting", field_switch, offsetof(Scene, warm_starting), NULL, false},
+    {"accumulate_impulses", field_switch, offsetof(Scene, accumulate_impulses), NULL, false},
+    {"position_correction", field_switch, offsetof(Scene, position_correction), NULL, false},
+    {"frames", field_int, offsetof(Scene, frames), &range_frames, true},
+    {"camera", field_camera, 0, NULL, false},
+    {"bodies", field_bodies, 0, NULL, true},
+    {"bomb", field_bomb, 0, NULL, false},
+    {"networks", field_networks, 0, NULL, false},
+    {NULL, NULL, 0, NULL, false}};
+
+static bool read_tree(const YamlTree *tree, Scene *scene, Error *error) {
+    int nodes[FIELDS_MAX];
+    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
+    return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
+           yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
+                      "the bomb would come in frame %d, after the last (frames: %d)", scene->bomb.frame,
+                      scene->frames);
+}
+
+/* The name goes into captions and files, so it must be text that prints. */
+static void name_scene(Scene *scene, const char *path) {
+    char file[NAME_MAX + 1];
+    snprintf(file, sizeof file, "%s", path + file_folder_length(path));
+    char *ending = strrchr(file, '.');
+    if (ending != NULL && ending != file) *ending = '\0';
+    source_printable(scene->name, sizeof scene->name, file);
+}
+
+Scene *scene_read(const char *path, Error *error) {
+    YamlTree tree;
+    if (!yaml_read(&tree, path, error)) return NULL;
+    Scene *scene = calloc(1, sizeof *scene);
+    if (scene == NULL) {
+        error_memory(error, path);
+    } else {
+        scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
+        name_scene(scene, path);
+        if (!read_tree(&tree, scene, error)) {
+            scene_destroy(scene);
+            scene = NULL;
+        }
+    }
+    yaml_free(&tree);
+    return scene;
+}
+
+void scene_destroy(Scene *scene) {
+    if (scene == NULL) return;
+    free(scene->bodies);
+    free(scene);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scene file text: what is refused before any parser sees it, and excerpts with a caret. */
+#include "scene/source.h"
+
+#include "common/file.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Characters of the line that an excerpt shows, and how many of them stand before the caret at most. */
+enum { EXCERPT_WIDTH = 100, EXCERPT_BEFORE = 70 };
+
+/* One character of UTF-8 (Unicode 15, table 3-7): its length in bytes, or 0 where it is not well-formed. */
+static size_t decode(const char *text, size_t size, uint32_t *character) {
+    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned char lead = (unsigned char)text[0];
+    size_t length = lead < 0x80   ? 1
+                    : lead < 0xc0 ? 0
+                    : lead < 0xe0 ? 2
+                    : lead < 0xf0 ? 3
+                    : lead < 0xf8 ? 4
+                                  : 0;
+    if (length == 0 || length > size) return 0;
+    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
+        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
+    }
+    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
+    *character = c;
+    return length;
+}
+
+/* Control characters could drive the terminal; direction marks could show the line as something else. */
+static bool prints(uint32_t c) {
+    if (c < 0x20 || (c >= 0x7f && c < 0xa0)) return false;
+    return !((c >= 0x200b && c <= 0x200f) || (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) ||
+             c == 0xfeff);
+}
+
+/* Copies one character or '?' to out (room for 5 bytes); returns the bytes read and adds those written. */
+static size_t copy_character(char *out, size_t *written, const char *text, size_t size) {
+    uint32_t character;
+    size_t length = decode(text, size, &character);
+    if (length > 0 && (prints(character) || character == '\t')) {
+        memcpy(out + *written, text, length);
+        *written += length;
+    } else {
+        out[(*written)++] = '?';
+    }
+    out[*written] = '\0';
+    return length > 0 ? length : 1;
+}
+
+void source_printable(char *out, size_t room, const char *text) {
+    size_t size = strlen(text), written = 0, read = 0;
+    out[0] = '\0';
+    while (read < size) {
+        if (written + 8 > room) { /* one character of 4 bytes, "..." and the NUL */
+            strcpy(out + written, "...");
+            return;
+        }
+        read += copy_character(out, &written, text + read, size - read);
+        if (out[written - 1] == '\t') out[written - 1] = ' ';
+    }
+}
+
+static bool ends_line(char c) { return c == '\n' || c == '\r'; }
+
+/* Where the line of a byte begins, and its number from 1. "\r\n" is one line end, as in YAML. */
+static size_t line_start(const Source *source, size_t offset, int *number) {
+    size_t start = 0;
+    *number = 1;
+    for (size_t i = 0; i < offset; i++) {
+        bool inside_pair = source->text[i] == '\r' && source->text[i + 1] == '\n';
+        if (!ends_line(source->text[i]) || inside_pair) continue;
+        start = i + 1;
+        ++*number;
+    }
+    return start;
+}
+
+/* Bytes of the character at `at`; a byte that is no UTF-8 counts as one. */
+static size_t character_length(const Source *source, size_t at) {
+    uint32_t character;
+    size_t length = decode(source->text + at, source->size - at, &character);
+    return length > 0 ? length : 1;
+}
+
+static int count_characters(const Source *source, size_t from, size_t to) {
+    int count = 0;
+    for (size_t at = from; at < to; at += character_length(source, at)) count++;
+    return count;
+}
+
+/* The shown part of the line, and below it blanks up to the caret. */
+typedef struct Excerpt {
+    char line[4 * EXCERPT_WIDTH + 8], blanks[EXCERPT_WIDTH];
+} Excerpt;
+
+static void excerpt_line(Excerpt *excerpt, const Source *source, size_t start, size_t offset, int column) {
+    size_t written = 0, blanks = 0, at = start;
+    for (int skip = column - 1 - EXCERPT_BEFORE; skip > 0; skip--) at += character_length(source, at);
+    if (at > start) {
+        written = blanks = strlen(strcpy(excerpt->line, "..."));
+        memset(excerpt->blanks, ' ', blanks);
+    }
+    for (int shown = 0; at < source->size && !ends_line(source->text[at]); shown++) {
+        if (shown == EXCERPT_WIDTH) {
+            memcpy(excerpt->line + written, "...", 3);
+            written += 3;
+            break;
+        }
+        if (at < offset) excerpt->blanks[blanks++] = source->text[at] == '\t' ? '\t' : ' ';
+        at += copy_character(excerpt->line, &written, source->text + at, source->size - at);
+    }
+    excerpt->line[written] = excerpt->blanks[blanks] = '\0';
+}
+
+/* The end of the file is shown behind its last line and not on an empty one below it. */
+static size_t within_text(const Source *source, size_t offset) {
+    if (offset < source->size) return offset;
+    size_t end = source->size;
+    if (end > 0 && source->text[end - 1] == '\n') end--;
+    if (end > 0 && source->text[end - 1] == '\r') end--;
+    return end;
+}
+
+bool source_error(const Source *source, size_t offset, Error *error, const char *format, ...) {
+    char what[512], where[1280], number[16];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+
+    offset = within_text(source, offset);
+    int line;
+    size_t start = line_start(source, offset, &line);
+    int column = 1 + count_characters(source, start, offset);
+    Excerpt excerpt;
+    excerpt_line(&excerpt, source, start, offset, column);
+    snprintf(where, sizeof where, "%.1200s:%d:%d", source->path, line, column);
+    snprintf(number, sizeof number, "%5d", line);
+    return error_input(error, where, "%s\n%s | %s\n%*s | %s^", what, number, excerpt.line,
+                       (int)strlen(number), "", excerpt.blanks);
+}
+
+/* What YAML does not allow, or libfyaml (0.7.12) lets pass or takes minutes over. */
+static bool check(const Source *source, Error *error) {
+    size_t start = 0;
+    for (size_t at = 0, length; at < source->size; at += length) {
+        uint32_t character = 0;
+        length = decode(source->text + at, source->size - at, &character);
+        if (length == 0) return source_error(source, at, error, "this is not UTF-8 text");
+        if (ends_line(source->text[at])) {
+            start = at + 1;
+            continue;
+        }
+        if ((character < 0x20 && character != '\t') || character == 0x7f)
+            return source_error(source, at, error, "control character 0x%02x in a text file",
+                                (unsigned)character);
+        if (at - start >= SOURCE_MAX_LINE)
+            return source_error(source, at, error, "a line may have at most %d bytes", SOURCE_MAX_LINE);
+        if (at == start && character == '%')
+            return source_error(source, at, error, "YAML directives are not allowed in a scene");
+    }
+    return true;
+}
+
+bool source_read(Source *source, const char *path, Error *error) {
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
+    *source = (Source){.path = path};
+    source->text = file_read(path, SOURCE_MAX_SIZE, &source->size, error);
+    if (source->text == NULL) return false;
+    if (source->size >= 3 && memcmp(source->text, byte_order_mark, 3) == 0) {
+        source->size -= 3;
+        memmove(source->text, source->text + 3, source->size + 1);
+    }
+    if (check(source, error)) return true;
+    source_free(source);
+    return false;
+}
+
+void source_free(Source *source) {
+    free(source->text);
+    source->text = NULL;
+}

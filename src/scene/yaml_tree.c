@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libfyaml's events -> YamlTree. */
+#include "scene/yaml_tree.h"
+
+#include "common/array.h"
+
+#include <libfyaml.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Builder {
+    YamlTree *tree;
+    size_t node_capacity, text_size, text_capacity;
+    int depth, documents;
+    int open[YAML_MAX_DEPTH]; /* lists and mappings not yet ended, outermost first */
+    size_t offset;            /* of the last event that had a place */
+} Builder;
+
+static bool fail(const Builder *builder, Error *error, const char *what) {
+    return source_error(&builder->tree->source, builder->offset, error, "%s", what);
+}
+
+/* A mapping counts keys and values here; yaml_read halves it. */
+static bool count_in_parent(Builder *builder, Error *error) {
+    if (builder->depth == 0) return true;
+    YamlNode *parent = &builder->tree->nodes[builder->open[builder->depth - 1]];
+    parent->count++;
+    if (parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
+        return source_error(&builder->tree->source, builder->offset, error,
+                            "a mapping may have at most %d keys", YAML_MAX_KEYS);
+    return true;
+}
+
+static bool add_node(Builder *builder, YamlKind kind, Error *error) {
+    YamlTree *tree = builder->tree;
+    if (tree->node_count == YAML_MAX_NODES)
+        return source_error(&tree->source, builder->offset, error, "more than %d values in one file",
+                            YAML_MAX_NODES);
+    if (!count_in_parent(builder, error)) return false;
+    void *nodes = tree->nodes;
+    bool room =
+        array_reserve(&nodes, &builder->node_capacity, (size_t)tree->node_count + 1, sizeof *tree->nodes);
+    tree->nodes = nodes;
+    if (!room) return error_memory(error, tree->source.path);
+    YamlNode node = {kind, tree->node_count + 1, 0, (int)builder->offset, (int)builder->text_size};
+    tree->nodes[tree->node_count++] = node;
+    return true;
+}
+
+static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
+    if (!add_node(builder, YAML_SCALAR, error)) return false;
+    size_t length = 0;
+    const char *text = value == NULL ? "" : fy_token_get_text(value, &length);
+    if (text == NULL) return error_memory(error, builder->tree->source.path);
+    if (memchr(text, '\0', length) != NULL)
+        return fail(builder, error, "a text may not contain the character \\0");
+    void *texts = builder->tree->texts;
+    bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
+    builder->tree->texts = texts;
+    if (!room) return error_memory(error, builder->tree->source.path);
+    memcpy(builder->tree->texts + builder->text_size, text, length);
+    builder->text_size += length;
+    builder->tree->texts[builder->text_size++] = '\0';
+    return true;
+}
+
+static bool open_node(Builder *builder, YamlKind kind, Error *error) {
+    if (builder->depth == YAML_MAX_DEPTH)
+        return source_error(&builder->tree->source, builder->offset, error,
+                            "lists and mappings may be nested %d deep at most", YAML_MAX_DEPTH);
+    if (!add_node(builder, kind, error)) return false;
+    builder->open[builder->depth++] = builder->tree->node_count - 1;
+    return true;
+}
+
+static void close_node(Builder *builder) {
+    YamlNode *node = &builder->tree->nodes[builder->open[--builder->depth]];
+    node->end = builder->tree->node_count;
+    if (node->kind == YAML_MAPPING) node->count /= 2;
+}
+
+/* Anchors stand before their value, so refusing them refuses aliases too; an alias alone is a mistake as
+ * well. */
+static bool refuse_extras(const Builder *builder, const struct fy_token *anchor, const struct fy_token *tag,
+                          Error *error) {
+    if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed in a scene");
+    return tag == NULL || fail(builder, error, "tags (!) are not allowed in a scene");
+}
+
+static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
+    const struct fy_mark *mark = fy_event_start_mark(event);
+    /* A value left out has no mark: it is shown at its key. */
+    if (mark != NULL) builder->offset = mark->input_pos;
+    switch (event->type) {
+    case FYET_DOCUMENT_START:
+        return ++builder->documents == 1 || fail(builder, error, "a scene file holds one document only");
+    case FYET_MAPPING_START:
+        return refuse_extras(builder, event->mapping_start.anchor, event->mapping_start.tag, error) &&
+               open_node(builder, YAML_MAPPING, error);
+    case FYET_SEQUENCE_START:
+        return refuse_extras(builder, event->sequence_start.anchor, event->sequence_start.tag, error) &&
+               open_node(builder, YAML_SEQUENCE, error);
+    case FYET_MAPPING_END:
+    case FYET_SEQUENCE_END:
+        close_node(builder);
+        return true;
+    case FYET_SCALAR:
+        return refuse_extras(builder, event->scalar.anchor, event->scalar.tag, error) &&
+               add_scalar(builder, event->scalar.value, error);
+    case FYET_ALIAS:
+        return fail(builder, error, "aliases (*) are not allowed in a scene");
+    default:
+        return true;
+    }
+}
+
+/* Passes on what libfyaml found wrong: the first error that it collected. */
+static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Error *error) {
+    const Source *source = &builder->tree->source;
+    void *position = NULL;
+    for (const struct fy_diag_error *found; (found = fy_diag_errors_iterate(diagnosis, &position)) != NULL;) {
+        if (found->type != FYET_ERROR) continue;
+        const struct fy_mark *mark = found->fyt == NULL ? NULL : fy_token_start_mark(found->fyt);
+        char words[200];
+        source_printable(words, sizeof words, found->msg);
+        return source_error(source, mark == NULL ? builder->offset : mark->input_pos, error, "%s", words);
+    }
+    return error_memory(error, source->path);
+}
+
+static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_diag *diagnosis, Error *error) {
+    for (bool more = true; more;) {
+        struct fy_event *event = fy_parser_parse(parser);
+        if (event == NULL) return syntax_error(builder, diagnosis, error);
+        more = event->type != FYET_STREAM_END;
+        bool taken = take_event(builder, event, error);
+        fy_parser_event_free(parser, event);
+        if (!taken) return false;
+    }
+    return builder->tree->node_count > 0 ||
+           source_error(&builder->tree->source, 0, error, "there is no scene in this file");
+}
+
+static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
+    const struct fy_parse_cfg settings = {.flags = FYPCF_QUIET | FYPCF_DEFAULT_VERSION_1_2 | FYPCF_JSON_NONE,
+                                          .diag = diagnosis};
+    struct fy_parser *parser = fy_parser_create(&settings);
+    if (parser == NULL) return error_memory(error, tree->source.path);
+    Builder builder = {.tree = tree};
+    bool done = fy_parser_set_string(parser, tree->source.text, tree->source.size) == 0
+                    ? take_events(&builder, parser, diagnosis, error)
+                    : error_memory(error, tree->source.path);
+    fy_parser_destroy(parser);
+    return done;
+}
+
+/* libfyaml's messages are collected; without an object of their own they would go to stderr, however quiet.
+ */
+static bool build_silently(YamlTree *tree, Error *error) {
+    struct fy_diag_cfg nowhere;
+    fy_diag_cfg_default(&nowhere);
+    nowhere.fp = NULL;
+    struct fy_diag *diagnosis = fy_diag_create(&nowhere);
+    if (diagnosis == NULL) return error_memory(error, tree->source.path);
+    fy_diag_set_collect_errors(diagnosis, true);
+    bool done = build(tree, diagnosis, error);
+    fy_diag_destroy(diagnosis);
+    return done;
+}
+
+bool yaml_read(YamlTree *tree, const char *path, Error *error) {
+    *tree = (YamlTree){.node_count = 0};
+    if (!source_read(&tree->source, path, error)) return false;
+    if (build_silently(tree, error)) return true;
+    yaml_free(tree);
+    return false;
+}
+
+void yaml_free(YamlTree *tree) {
+    source_free(&tree->source);
+    free(tree->nodes);
+    free(tree->texts);
+}
+
+const char *yaml_text(const YamlTree *tree, int node) { return tree->texts + tree->nodes[node].text; }
+
+YamlShown yaml_show(const YamlTree *tree, int node) {
+    YamlShown shown;
+    switch (tree->nodes[node].kind) {
+    case YAML_SEQUENCE:
+        strcpy(shown.text, "a list");
+        break;
+    case YAML_MAPPING:
+        strcpy(shown.text, "a mapping");
+        break;
+    case YAML_SCALAR:
+        source_printable(shown.text, sizeof shown.text, yaml_text(tree, node));
+        if (shown.text[0] == '\0') strcpy(shown.text, "nothing");
+        break;
+    }
+    return shown;
+}
+
+bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return source_error(&tree->source, (size_t)tree->nodes[node].offset, error, "%s", what);
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A YAML file as a small tree: plain arrays, built from libfyaml's events within fixed limits.
+
+   libfyaml's own documents take seconds over thousands of keys and minutes over aliases of aliases. Here
+   there are no aliases, anchors, tags or second documents: no scene needs them. */
+#pragma once
+#include "scene/source.h"
+
+#include <stdbool.h>
+
+enum {
+    YAML_MAX_DEPTH = 8,      /* nested lists and mappings */
+    YAML_MAX_KEYS = 64,      /* of one mapping */
+    YAML_MAX_NODES = 250000, /* 10,000 bodies with every key take 210,000 */
+    YAML_SHOWN_SIZE = 48     /* room for a scalar in a message */
+};
+
+typedef enum YamlKind { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
+
+/* Nodes stand in the order of the file: the first below node n is n + 1, its next sibling is nodes[n].end. A
+   mapping holds key, value, key, value. */
+typedef struct YamlNode {
+    YamlKind kind;
+    int end;    /* the node after this one and all below it */
+    int count;  /* items of a sequence, pairs of a mapping */
+    int offset; /* byte of the file where it begins */
+    int text;   /* of a scalar: where its text begins in texts */
+} YamlNode;
+
+typedef struct YamlTree {
+    Source source;
+    int node_count;  /* >= 1; node 0 is the root */
+    YamlNode *nodes; /* [node_count] */
+    char *texts;     /* the scalars, each with a NUL */
+} YamlTree;
+
+/* Reads the file. An error shows the place (source_error). On failure nothing is to be freed. */
+bool yaml_read(YamlTree *tree, const char *path, Error *error);
+void yaml_free(YamlTree *tree);
+
+/* The text of a scalar. */
+const char *yaml_text(const YamlTree *tree, int node);
+
+/* What a node is, in words for a message: 'abc', nothing, a list, a mapping. */
+typedef struct YamlShown {
+    char text[YAML_SHOWN_SIZE];
+} YamlShown;
+YamlShown yaml_show(const YamlTree *tree, int node);
+
+/* Sets an input error at the place of a node. Returns false. */
+bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);

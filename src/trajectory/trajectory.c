@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The trajectory in memory. */
+#include "trajectory/trajectory.h"
+
+#include "common/array.h"
+#include "common/hash.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Bytes of all arrays in a file. No reader takes more than 2 GiB, so none is made. */
+static const double MAX_BYTES = 2147483648.0;
+
+static double measure(double frames, double bodies, double contacts) {
+    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 1024;
+    return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) +
+           small;
+}
+
+/* calloc, but never NULL for no items. */
+static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count : 1, size); }
+
+static bool allocate(Trajectory *t) {
+    size_t bodies = (size_t)t->bodies, poses = (size_t)t->frames * bodies;
+    t->size = zeros(bodies, sizeof *t->size);
+    t->fixed = zeros(bodies, sizeof *t->fixed);
+    t->position = zeros(poses, sizeof *t->position);
+    t->angle = zeros(poses, sizeof *t->angle);
+    t->velocity = zeros(poses, sizeof *t->velocity);
+    t->angular_velocity = zeros(poses, sizeof *t->angular_velocity);
+    t->contact_start = zeros((size_t)t->frames + 1, sizeof *t->contact_start);
+    return t->size != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL &&
+           t->velocity != NULL && t->angular_velocity != NULL && t->contact_start != NULL;
+}
+
+Trajectory *trajectory_create(int frames, int bodies, Error *error) {
+    assert(frames >= 1 && bodies >= 0);
+    if (measure(frames, bodies, 0) > MAX_BYTES) {
+        error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies);
+        return NULL;
+    }
+    Trajectory *t = calloc(1, sizeof *t);
+    if (t != NULL) *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1};
+    if (t == NULL || !allocate(t)) {
+        trajectory_destroy(t);
+        error_memory(error, "trajectory");
+        return NULL;
+    }
+    for (size_t i = 0; i < (size_t)frames * (size_t)bodies; i++) {
+        t->position[i] = t->velocity[i] = vec2(NAN, NAN);
+        t->angle[i] = t->angular_velocity[i] = NAN;
+    }
+    return t;
+}
+
+void trajectory_destroy(Trajectory *t) {
+    if (t == NULL) return;
+    free(t->size);
+    free(t->fixed);
+    free(t->position);
+    free(t->angle);
+    free(t->velocity);
+    free(t->angular_velocity);
+    free(t->contact_start);
+    free(t->contacts);
+    free(t);
+}
+
+bool trajectory_has(const Trajectory *t, int frame, int body) {
+    Vec2 position = t->position[(size_t)frame * (size_t)t->bodies + (size_t)body];
+    return isfinite(position.x) && isfinite(position.y);
+}
+
+bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
+    assert(frame >= 1 && frame < t->frames);
+    int64_t count = t->contact_start[t->frames];
+    assert(t->contact_start[frame + 1] == count);
+    if (measure(t->frames, t->bodies, (double)count + 1) > MAX_BYTES)
+        return error_input(error, "trajectory", "its contacts take more than 2 GiB");
+    void *contacts = t->contacts;
+    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)count + 1, sizeof *t->contacts))
+        return error_memory(error, "trajectory");
+    t->contacts = contacts;
+    t->contacts[count] = *contact;
+    /* Every later step begins behind this contact: most of them have none yet, and some never will. */
+    for (int step = frame + 1; step <= t->frames; step++) t->contact_start[step] = count + 1;
+    return true;
+}
+
+uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
+    uint64_t hash = FNV1A64_START;
+    for (int body = 0; body < t->bodies; body++) {
+        if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
+        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+        float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
+                         t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
+        hash = hash_fnv1a64(hash, state, sizeof state);
+    }
+    return hash;
+}

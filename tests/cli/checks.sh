@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the command line tests share. Sourced with the binary and the sources as $1 and $2; leaves a fresh folder as
+# the working directory. Ends with `finish`.
+set -u
+twinbox=$1
+sources=$2
+scenes=$sources/scenes
+failures=0
+checks=0
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# run STATUS ARGUMENT...: output goes to out, errors to err; the exit status must be STATUS.
+run() {
+    local wanted=$1 status
+    shift
+    "$twinbox" "$@" >out 2>err </dev/null
+    status=$?
+    checks=$((checks + 1))
+    [ $status -eq "$wanted" ] || fail "twinbox $*: exit status $status, not $wanted: $(head -c 400 err)"
+}
+
+# The last run's output, or errors, contain this text.
+says() {
+    checks=$((checks + 1))
+    grep -qF -- "$1" out || fail "no '$1' in the output: $(head -c 400 out)"
+}
+complains() {
+    checks=$((checks + 1))
+    grep -qF -- "$1" err || fail "no '$1' in the errors: $(head -c 400 err)"
+}
+
+# equal WHAT A B
+equal() {
+    checks=$((checks + 1))
+    [ "$2" = "$3" ] || fail "$1: '$2', not '$3'"
+}
+
+finish() {
+    echo "$checks checks, $failures failed"
+    [ $checks -gt 0 ] && [ $failures -eq 0 ]
+    exit $?
+}

@@ -1,0 +1,39 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Help of the program and of every command it lists; usage errors.
+. "$(dirname "$0")/checks.sh"
+
+run 0 --help
+[ "$(wc -l <out)" -le 24 ] || fail "--help does not fit a screen of 24 lines"
+[ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "--help is wider than 100 columns"
+names=$(awk '/^  [a-z]/ { print $1 }' out)
+equal "commands listed" "$(echo $names)" "simulate render compare dataset train methods"
+
+for name in $names; do
+    run 0 "$name" --help
+    says "Usage: twinbox $name"
+    says "Example: twinbox "
+    run 2 "$name" --no-such-option
+    complains "--no-such-option"
+done
+for name in simulate render compare dataset train; do
+    run 2 "$name"
+    complains "needed"
+done
+
+run 2
+complains "Usage: twinbox COMMAND"
+run 2 simulat
+complains "no command 'simulat'"
+run 0 --version
+says "twinbox "
+
+run 0 methods
+says "engine"
+says "pair-net"
+says "iterations:"
+says "network:"
+
+"$twinbox" methods >/dev/full 2>err
+equal "status where standard output is full" $? 3
+finish

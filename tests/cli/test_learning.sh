@@ -1,0 +1,82 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# dataset -> train -> simulate by the network, small.
+. "$(dirname "$0")/checks.sh"
+
+sed 's/^frames:.*/frames: 60/' "$scenes/single.yaml" >single.yaml
+sed 's/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
+grep -q '^frames: 60' single.yaml || fail "no frames in single.yaml"
+
+run 0 dataset single.yaml stack.yaml -o pairs.npz --bomb-x=-2:2:0.5
+says "of 18 launches -> pairs.npz"
+OMP_NUM_THREADS=1 run 0 dataset single.yaml stack.yaml -o again.npz --bomb-x=-2:2:0.5
+cmp -s pairs.npz again.npz || fail "the dataset depends on the number of threads"
+run 0 dataset single.yaml stack.yaml -o other.npz --bomb-x=-2:2:0.5 --seed 2
+cmp -s pairs.npz other.npz && fail "--seed has no effect on the split"
+/usr/bin/python3 - <<'PYTHON' || fail "what the dataset holds"
+import numpy
+data = numpy.load("pairs.npz", allow_pickle=False)
+inputs, changes, launch = data["inputs"], data["changes"], data["launch"]
+assert inputs.shape == (len(launch), 10) and changes.shape == (len(launch), 6)
+assert (numpy.diff(launch) >= 0).all() and set(launch) == set(range(18))
+x, test = data["launch_x"], data["launch_test"]
+assert x.tolist() == 2 * [-2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2]
+assert test[:9].sum() == 1 and test[9:].sum() == 1, test
+# The pair (ground, box) at the end of a launch of one box: at rest, gravity is all that has to be undone.
+rows = (launch == 8) & (data["frame"] == 60) & (data["bodies"] == [0, 1]).all(axis=1)
+assert rows.sum() == 1
+assert abs(inputs[rows][0, 5] + 10 / 60) < 0.02 and abs(changes[rows][0, 4] - 10 / 60) < 0.02
+assert (changes[rows][0, :3] == 0).all()
+PYTHON
+
+run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
+equal "iterations printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 10 50 100 "
+run 0 train pairs.npz -o same.npz --iterations 100 --seed 3
+run 0 train pairs.npz -o seed.npz --iterations 100 --seed 4
+/usr/bin/python3 - <<'PYTHON' || fail "the same seed gives the same network, another seed another"
+import numpy
+a, b, c = (numpy.load(name, allow_pickle=False) for name in ("net.npz", "same.npz", "seed.npz"))
+assert a["widths"].tolist() == [10, 10, 2]
+assert (a["weights_0"] == b["weights_0"]).all() and (a["biases_1"] == b["biases_1"]).all()
+assert (a["weights_0"] != c["weights_0"]).any()
+assert str(a["command"]).startswith("twinbox train pairs.npz -o net.npz --layers 10-10-2")
+PYTHON
+# Trained on, it starts where the other ended.
+run 0 train pairs.npz -o more.npz --iterations 10 --from net.npz
+first=$(awk '$1 == 0 { print $3 }' out)
+run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
+/usr/bin/python3 -c "import sys; sys.exit(not float('$first') <= 1.02 * float('$(awk '$1 == 100 { print $3 }' out)'))" ||
+    fail "--from does not start from the network's weights"
+for optimizer in bfgs lm; do
+    run 0 train pairs.npz -o $optimizer.npz --optimizer $optimizer --iterations 5
+done
+run 0 train pairs.npz -o six.npz --layers 10-8-8-6 --optimizer lm --iterations 3
+
+for network in net lm six; do
+    run 0 simulate single.yaml --method pair-net:network=$network.npz --hash $network.hash
+    run 0 simulate single.yaml --method pair-net:network=$network.npz --hash again.hash
+    cmp -s $network.hash again.hash || fail "the network's run is not repeatable"
+done
+cmp -s net.hash lm.hash && fail "two networks, one run"
+
+run 2 dataset single.yaml -o x.npz --bomb-x=0:1
+complains "--bomb-x"
+run 2 dataset single.yaml -o x.npz --bomb-x=0:1:0.5
+complains "at least 5"
+run 2 train single.yaml -o x.npz
+complains "single.yaml"
+run 2 train pairs.npz -o x.npz --layers 10
+complains "--layers"
+run 2 train pairs.npz -o x.npz --layers 9-10-2
+run 2 train pairs.npz -o x.npz --layers 10-10-3
+run 2 train pairs.npz -o x.npz --optimizer magic
+complains "magic"
+run 2 train pairs.npz -o x.npz --iterations -1
+head -c 2000 pairs.npz >cut.npz
+run 2 train cut.npz -o x.npz
+complains "cut.npz: error:"
+head -c 500 net.npz >cut.npz
+run 2 simulate single.yaml --method pair-net:network=cut.npz
+complains "cut.npz: error:"
+[ -e x.npz ] && fail "a refused command left a file"
+finish

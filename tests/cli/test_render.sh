@@ -1,0 +1,54 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+. "$(dirname "$0")/checks.sh"
+
+# A scene: the engine and its network, side by side; frames, runs and video in one go.
+sed "s|^frames:.*|frames: 7|; s|networks/|$scenes/networks/|" "$scenes/single.yaml" >single.yaml
+run 0 render single.yaml -o pictures --size 192x108 --video clip.mp4
+says "8 frames"
+equal "files" "$(ls pictures | tr '\n' ' ')" \
+    "$(printf 'frame_%06d.png ' 0 1 2 3 4 5 6 7)single-engine.npz single-pair-net.npz "
+equal "frames of the video" \
+    "$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height -of csv=p=0 clip.mp4)" "192,108,8"
+for frame in pictures/frame_*.png; do
+    pngcheck -q "$frame" || fail "$frame"
+done
+pngcheck -7 pictures/frame_000003.png >out
+for text in single engine pair-net 3; do says "$text"; done
+
+# The same frames from the stored runs, from any number of jobs, in either context.
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o one --size 192x108 --jobs 1 --context osmesa
+run 0 compare pictures one
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o three --size 192x108 --jobs 3 --context egl
+run 0 compare pictures three
+
+# A part of it; then a shorter run, whose frames are all there is.
+run 0 render one/single-engine.npz -o part --size 192x108 --frames 2:4
+equal "frames of a part" "$(ls part | tr '\n' ' ')" "frame_000002.png frame_000003.png frame_000004.png single-engine.npz "
+run 0 simulate single.yaml --frames 3 -o short.npz
+run 0 render short.npz -o one --size 192x108
+equal "frames of a shorter run" "$(ls one | grep -c png)" 4
+
+run 2 render single.yaml -o x --size 10x10
+complains "--size"
+run 2 render single.yaml -o x --size 1920
+run 2 render single.yaml -o x --frames 5:99
+complains "beyond the last frame, 7"
+run 2 render single.yaml -o x --frames 5:2
+run 2 render single.yaml -o x --jobs 0
+run 2 render single.yaml -o x --context vulkan
+complains "neither osmesa nor egl"
+run 2 render single.yaml -o x --size 193x108 --video odd.mp4
+complains "even width and height"
+run 2 render single.yaml -o x --video clip.avi
+complains ".mp4"
+run 2 render nowhere.npz -o x
+complains "nowhere.npz"
+head -c 700 short.npz >cut.npz
+run 2 render cut.npz -o x
+complains "cut.npz: error:"
+[ -e x ] && fail "a refused command made a folder"
+run 3 render short.npz -o /proc/nowhere --size 192x108
+run 3 render short.npz -o part --size 192x108 --video nowhere/clip.mp4
+[ -z "$(ls | grep part.mp4)" ] || fail "half a video left behind"
+finish

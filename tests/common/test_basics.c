@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hashes, arrays and errors: the small parts. */
+#include "testing.h"
+
+#include "common/array.h"
+#include "common/hash.h"
+
+/* The step of FNV-1a, written out; the start value is the one that the reference trajectories define. */
+static void fnv_is_xor_then_multiply(void **state) {
+    (void)state;
+    uint64_t expected = ((FNV1A64_START ^ 'a') * 0x100000001b3ULL ^ 'b') * 0x100000001b3ULL;
+    assert_true(hash_fnv1a64(FNV1A64_START, "ab", 2) == expected);
+    assert_true(hash_fnv1a64(hash_fnv1a64(FNV1A64_START, "a", 1), "b", 1) == expected);
+    assert_true(hash_fnv1a64(FNV1A64_START, "", 0) == FNV1A64_START);
+}
+
+/* The published value of XXH3 of nothing. */
+static void xxh3_of_nothing(void **state) {
+    (void)state;
+    assert_true(hash_xxh3("", 0) == 0x2d06800538d394c2ULL);
+}
+
+static void arrays_grow_by_doubling_and_keep_their_items(void **state) {
+    (void)state;
+    void *items = NULL;
+    size_t capacity = 0, grown = 0;
+    for (size_t i = 0; i < 1000; i++) {
+        size_t before = capacity;
+        assert_true(array_reserve(&items, &capacity, i + 1, sizeof(int)));
+        grown += capacity != before;
+        ((int *)items)[i] = (int)i;
+    }
+    assert_true(grown <= 10);
+    for (int i = 0; i < 1000; i++) assert_int_equal(((int *)items)[i], i);
+    void *kept = items;
+    assert_false(array_reserve(&items, &capacity, SIZE_MAX, sizeof(int)));
+    assert_false(array_reserve(&items, &capacity, SIZE_MAX / 4, 8));
+    assert_ptr_equal(items, kept);
+    free(items);
+}
+
+static void the_first_error_stays(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_false(error_input(&error, "a.yaml:1:2", "mass is %d", 0));
+    assert_false(error_system(&error, "b", "later"));
+    assert_int_equal(error.kind, ERROR_INPUT);
+    assert_string_equal(error.message, "a.yaml:1:2: error: mass is 0");
+}
+
+static void long_errors_are_cut(void **state) {
+    (void)state;
+    static char long_text[5000];
+    memset(long_text, 'x', sizeof long_text - 1);
+    Error error = {0}, other = {0};
+    assert_false(error_input(&error, long_text, "text"));
+    assert_false(error_system(&other, "file", "%s", long_text));
+    assert_int_equal(strlen(error.message), sizeof error.message - 1);
+    assert_int_equal(strlen(other.message), sizeof other.message - 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fnv_is_xor_then_multiply),
+        cmocka_unit_test(xxh3_of_nothing),
+        cmocka_unit_test(arrays_grow_by_doubling_and_keep_their_items),
+        cmocka_unit_test(the_first_error_stays),
+        cmocka_unit_test(long_errors_are_cut),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

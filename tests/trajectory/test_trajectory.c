@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The trajectory in memory: who is there, contacts by step, the hash of a frame. */
+#include "testing.h"
+
+#include "example.h"
+
+#include <math.h>
+
+static void a_new_trajectory_is_empty(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *t = trajectory_create(3, 2, &error);
+    assert_ok(t != NULL, error);
+    for (int i = 0; i < 6; i++) {
+        assert_true(isnan(t->position[i].x) && isnan(t->position[i].y) && isnan(t->angle[i]));
+        assert_true(isnan(t->velocity[i].x) && isnan(t->velocity[i].y) && isnan(t->angular_velocity[i]));
+        assert_false(trajectory_has(t, i / 2, i % 2));
+    }
+    for (int k = 0; k <= 3; k++) assert_int_equal(t->contact_start[k], 0);
+    assert_int_equal(t->bomb, -1);
+    trajectory_destroy(t);
+}
+
+static void too_large_a_trajectory_is_refused(void **state) {
+    (void)state;
+    static const int cases[][2] = {{INT32_MAX, INT32_MAX}, {1000001, 10000}, {INT32_MAX, 1}, {1, INT32_MAX}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        Error error = {0};
+        assert_null(trajectory_create(cases[i][0], cases[i][1], &error));
+        assert_error(error, ERROR_INPUT, "bodies take more than 2 GiB");
+    }
+}
+
+static void a_body_is_there_where_its_position_is_finite(void **state) {
+    (void)state;
+    Trajectory *t = example_trajectory();
+    assert_false(trajectory_has(t, 1, 2));
+    assert_true(trajectory_has(t, 2, 2));
+    t->position[2 * EXAMPLE_BODIES + 2].y = INFINITY;
+    assert_false(trajectory_has(t, 2, 2));
+    trajectory_destroy(t);
+}
+
+/* Steps with 2, 0, 1, 0, ... contacts: every step finds its own. */
+static void contacts_are_found_by_step(void **state) {
+    (void)state;
+    enum { FRAMES = 50 };
+    Error error = {0};
+    Trajectory *t = trajectory_create(FRAMES, 2, &error);
+    for (int step = 1; step < FRAMES - 5; step++) {
+        for (int i = 0; i < step % 3; i++) {
+            TrajectoryContact contact = {.a = step, .b = i};
+            assert_ok(trajectory_add_contact(t, step, &contact, &error), error);
+        }
+    }
+    assert_int_equal(t->contact_start[0], 0);
+    for (int step = 0; step < FRAMES; step++) {
+        int64_t first = t->contact_start[step], count = t->contact_start[step + 1] - first;
+        assert_int_equal(count, step < FRAMES - 5 ? step % 3 : 0);
+        for (int i = 0; i < count; i++) {
+            assert_int_equal(t->contacts[first + i].a, step);
+            assert_int_equal(t->contacts[first + i].b, i);
+        }
+    }
+    trajectory_destroy(t);
+}
+
+/* The definition, byte by byte: body 1 and, once it is there, body 2; never the floor. */
+static uint64_t hash_by_hand(const float *numbers, int count) {
+    uint64_t hash = 1469598103934665603U;
+    for (int i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &numbers[i], sizeof bits);
+        for (int byte = 0; byte < 4; byte++) hash = (hash ^ (bits >> (8 * byte) & 0xff)) * 1099511628211U;
+    }
+    return hash;
+}
+
+static void the_hash_is_fnv_of_dynamic_bodies_that_are_there(void **state) {
+    (void)state;
+    Trajectory *t = example_trajectory();
+    float without[] = {0.1F, 0.25F, -0.0F, 1, -0.5F, 3e-30F};
+    float with[] = {0.1F * 2, 0.25F, -0.0F, 2, -0.5F, 3e-30F, -3, 15, 1.5F, 7.5F, -22.5F, -1};
+    assert_true(trajectory_frame_hash(t, 1) == hash_by_hand(without, 6));
+    assert_true(trajectory_frame_hash(t, 2) == hash_by_hand(with, 12));
+    t->fixed[1] = t->fixed[2] = 1;
+    assert_true(trajectory_frame_hash(t, 2) == 1469598103934665603U);
+    trajectory_destroy(t);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_new_trajectory_is_empty),
+        cmocka_unit_test(too_large_a_trajectory_is_refused),
+        cmocka_unit_test(a_body_is_there_where_its_position_is_finite),
+        cmocka_unit_test(contacts_are_found_by_step),
+        cmocka_unit_test(the_hash_is_fnv_of_dynamic_bodies_that_are_there),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
