@@ -10,9 +10,9 @@
 
 static bool add(Panels *panels, Trajectory *run, const char *input, Error *error) {
     if (run == NULL) return false;
-    if (panels->count == RENDER_MAX_PANELS) {
+    if (panels->count == RENDER_PANELS_MAX) {
         trajectory_destroy(run);
-        return error_input(error, input, "more than %d panels", RENDER_MAX_PANELS);
+        return error_input(error, input, "more than %d panels", RENDER_PANELS_MAX);
     }
     panels->runs[panels->count++] = run;
     return true;

@@ -7,7 +7,7 @@
 
 typedef struct Panels {
     int count;
-    Trajectory *runs[RENDER_MAX_PANELS];
+    Trajectory *runs[RENDER_PANELS_MAX];
 } Panels;
 
 /* What has been loaded before an error is freed by panels_free, too. */

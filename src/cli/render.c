@@ -23,7 +23,7 @@ static const struct argp_option option_table[] = {
     {0}};
 
 typedef struct Options {
-    const char *inputs[RENDER_MAX_PANELS];
+    const char *inputs[RENDER_PANELS_MAX];
     int input_count;
     const char *output, *size, *frames, *video, *jobs, *context;
 } Options;
@@ -38,7 +38,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case JOBS: options->jobs = value; break;
     case CONTEXT: options->context = value; break;
     case ARGP_KEY_ARG:
-        if (options->input_count == RENDER_MAX_PANELS) argp_error(state, "at most %d panels", RENDER_MAX_PANELS);
+        if (options->input_count == RENDER_PANELS_MAX) argp_error(state, "at most %d panels", RENDER_PANELS_MAX);
         options->inputs[options->input_count++] = value;
         break;
     case ARGP_KEY_END:
@@ -74,15 +74,15 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
                               .height = 1080,
                               .first = 0,
                               .last = -1,
-                              .jobs = cores < 1 ? 1 : cores > RENDER_MAX_JOBS ? RENDER_MAX_JOBS : (int)cores,
+                              .jobs = cores < 1 ? 1 : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX : (int)cores,
                               .directory = options->output};
     return choose_context(options->context, &render->context, error) &&
-           (options->size == NULL || option_size("--size", options->size, RENDER_MIN_SIZE, RENDER_MAX_SIZE,
+           (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||
             option_frames("--frames", options->frames, &render->first, &render->last, error)) &&
            (options->jobs == NULL ||
-            option_int("--jobs", options->jobs, 1, RENDER_MAX_JOBS, &render->jobs, error)) &&
+            option_int("--jobs", options->jobs, 1, RENDER_JOBS_MAX, &render->jobs, error)) &&
            (options->video == NULL || video_check(options->video, render->width, render->height, error));
 }
 

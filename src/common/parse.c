@@ -76,7 +76,8 @@ bool parse_float(const char *text, float *value) {
         return true;
     }
     if (!take_float(text, '/', &number, &rest) || !take_float(rest, '\0', &divisor, &rest)) return false;
-    if (divisor == 0 || !isfinite(number / divisor)) return false;
+    /* A divisor of 0 gives what is not finite either. */
+    if (!isfinite(number / divisor)) return false;
     *value = number / divisor;
     return true;
 }

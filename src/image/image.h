@@ -3,6 +3,7 @@
 #pragma once
 #include "common/error.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct Image {
@@ -28,9 +29,14 @@ enum { IMAGE_MAX_PIXELS = 100000000 };
    inflated). Refuses damaged and truncated files: ERROR_INPUT, naming the file. */
 Image *image_read_png(const char *path, Error *error);
 
+/* The value of the first text with this key that stands before the pixels, into value. ERROR_INPUT where
+   there is none, or it takes size bytes or more. */
+bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error);
+
 /* XXH3 over width, height and the pixels: equal for equal pictures, however the file was compressed. */
 uint64_t image_hash(const Image *image);
 
+/* Of two pictures of different size only same_size is filled. */
 typedef struct ImageDifference {
     bool equal, same_size;
     int64_t pixels;       /* that differ */

@@ -126,7 +126,8 @@ bool image_sequence_compare(const ImageSequence *a, const ImageSequence *b, Sequ
         } else {
             if (!compare_frame(&a->frames[i++], &b->frames[j++], difference, error)) return false;
             if (!progress_report(progress, i, a->count))
-                return error_input(error, a->frames[i - 1].path, "stopped after %d frames", difference->compared);
+                return error_input(error, a->frames[i - 1].path, "stopped after %d frames",
+                                   difference->compared);
         }
     }
     return true;

@@ -12,11 +12,13 @@ enum { NETWORK_VERSION = 1, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NE
 
 typedef enum Activation { ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH } Activation;
 
-/* x -> (x - offset) * scale, number by number: min-max or standardisation, undone on outputs. */
+/* x -> (x - offset) * scale, number by number: min-max or standardisation. Undone on outputs:
+   y / scale + offset. */
 typedef struct Normalisation {
     float *offset, *scale; /* [width]; scale > 0 */
 } Normalisation;
 
+/* All numbers are one block that begins at weights[0]: weights_0, biases_0, weights_1, ..., normalisations. */
 typedef struct Network {
     int layers;                         /* of weights: 2 for 10-10-2 */
     int widths[NETWORK_MAX_LAYERS + 1]; /* inputs, hidden ..., outputs */
@@ -31,6 +33,7 @@ typedef struct Network {
 
 /* Weights, biases zero; normalisations the identity. widths has layers + 1 numbers. */
 Network *network_create(int layers, const int *widths, Error *error);
+Network *network_copy(const Network *network, Error *error);
 void network_destroy(Network *network);
 
 /* Number of weights and biases. */

@@ -36,6 +36,5 @@ void network_backward(NetworkBlock *block, const double *parameters);
    used must have a d loss / d output of 0. */
 void network_add_gradient(const NetworkBlock *block, double *gradient);
 
-/* After a backward pass: d loss / d parameters of each row by itself. Row p of the jacobian, `stride` numbers
-   from the next, is [BLOCK_ROWS]: the derivative by parameter p. */
-void network_jacobian(const NetworkBlock *block, double *jacobian, size_t stride);
+/* Sum over the rows of a[BLOCK_ROWS] * b[BLOCK_ROWS], in one order on every machine. */
+double network_block_dot(const double *a, const double *b);

@@ -48,8 +48,8 @@ static bool send_frames(Process *ffmpeg, const VideoOptions *options, int width,
         Image *image = read_frame(options, frame, error);
         ok = image != NULL;
         if (ok && (image->width != width || image->height != height))
-            ok = error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", frame, image->width,
-                             image->height, width, height);
+            ok = error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", frame,
+                             image->width, image->height, width, height);
         if (ok) *stopped = !write_frame(ffmpeg, image, rgb);
         image_destroy(image);
         if (ok && !progress_report(progress, frame - options->first + 1, options->last - options->first + 1))
@@ -61,26 +61,64 @@ static bool send_frames(Process *ffmpeg, const VideoOptions *options, int width,
 
 /* Frames that a decoder finds in the video. */
 static bool count_frames(const char *path, int *count, Error *error) {
-    const char *argv[] = {"ffprobe",       "-v",      "error",           "-select_streams",
-                          "v:0",           "-count_frames", "-show_entries", "stream=nb_read_frames",
-                          "-of",           "csv=p=0", path,              NULL};
+    const char *argv[] = {"ffprobe",
+                          "-v",
+                          "error",
+                          "-select_streams",
+                          "v:0",
+                          "-count_frames",
+                          "-show_entries",
+                          "stream=nb_read_frames",
+                          "-of",
+                          "csv=p=0",
+                          path,
+                          NULL};
     Process ffprobe;
     char text[256];
-    if (!process_start(&ffprobe, argv, error) || !process_finish(&ffprobe, text, sizeof text, error)) return false;
+    if (!process_start(&ffprobe, argv, error) || !process_finish(&ffprobe, text, sizeof text, error))
+        return false;
     *count = atoi(text);
     return true;
 }
 
-static bool run_ffmpeg(const VideoOptions *options, const char *part, int width, int height, const Progress *progress,
-                       Error *error) {
+static bool run_ffmpeg(const VideoOptions *options, const char *part, int width, int height,
+                       const Progress *progress, Error *error) {
     char size[32], rate[32];
     snprintf(size, sizeof size, "%dx%d", width, height);
     snprintf(rate, sizeof rate, "%.0f/1000", 1000 * options->frame_rate);
     /* BT.709 said and meant: players otherwise guess the matrix by the size of the picture. */
-    const char *argv[] = {"ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
-                          size, "-framerate", rate, "-i", "-", "-vf", "scale=out_color_matrix=bt709", "-colorspace",
-                          "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-c:v", "libx264", "-crf", "18",
-                          "-pix_fmt", "yuv420p", "-movflags", "+faststart", part, NULL};
+    const char *argv[] = {"ffmpeg",
+                          "-y",
+                          "-v",
+                          "error",
+                          "-f",
+                          "rawvideo",
+                          "-pixel_format",
+                          "rgb24",
+                          "-video_size",
+                          size,
+                          "-framerate",
+                          rate,
+                          "-i",
+                          "-",
+                          "-vf",
+                          "scale=out_color_matrix=bt709",
+                          "-colorspace",
+                          "bt709",
+                          "-color_primaries",
+                          "bt709",
+                          "-color_trc",
+                          "bt709",
+                          "-c:v",
+                          "libx264",
+                          "-crf",
+                          "18",
+                          "-pix_fmt",
+                          "yuv420p",
+                          "-movflags",
+                          "+faststart",
+                          part,
+                          NULL};
     Process ffmpeg;
     if (!process_start(&ffmpeg, argv, error)) return false;
     bool stopped = false;
@@ -101,7 +139,8 @@ static bool encode_to(const VideoOptions *options, const char *part, const Progr
     if (!video_check(options->path, width, height, error) ||
         !run_ffmpeg(options, part, width, height, progress, error) || !count_frames(part, &count, error))
         return false;
-    if (count != wanted) return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
+    if (count != wanted)
+        return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
     return rename(part, options->path) == 0 || error_system(error, options->path, "%s", strerror(errno));
 }
 

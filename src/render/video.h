@@ -14,6 +14,6 @@ typedef struct VideoOptions {
 /* True where a video may have that name and size; else the error says why not. */
 bool video_check(const char *path, int width, int height, Error *error);
 
-/* Every frame is decoded here and handed on raw, since ffmpeg passes over PNGs that are missing or damaged; the
-   frames of the video are counted before it is put in place. */
+/* Every frame is decoded here and handed on raw, since ffmpeg passes over PNGs that are missing or damaged;
+   the frames of the video are counted before it is put in place. */
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error);

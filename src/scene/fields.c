@@ -93,7 +93,8 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
         return yaml_error(tree, node, error, "%s is a mapping of keys to values (got %s)", what,
                           yaml_show(tree, node).text);
     for (int key = node + 1; key < tree->nodes[node].end;) {
-        if (tree->nodes[key].kind != YAML_SCALAR) return yaml_error(tree, key, error, "a key must be a word");
+        if (tree->nodes[key].kind != YAML_SCALAR || yaml_text(tree, key)[0] == '\0')
+            return yaml_error(tree, key, error, "a key must be a word");
         int value = key + 1;
         const Field *field = find_field(fields, yaml_text(tree, key));
         if (field == NULL) return unknown_key(tree, key, what, fields, error);

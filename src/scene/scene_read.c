@@ -39,7 +39,6 @@ static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *fie
 }
 
 static const Field bomb_fields[] = {
-    {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
     {"x", field_number, offsetof(SceneBomb, body.position.x), &range_position, true},
     {"y", field_number, offsetof(SceneBomb, body.position.y), &range_position, true},
     {"size", field_vector, offsetof(SceneBomb, body.size), &range_size, true},
@@ -47,6 +46,7 @@ static const Field bomb_fields[] = {
     {"friction", field_number, offsetof(SceneBomb, body.friction), &range_friction, false},
     {"rotation", field_number, offsetof(SceneBomb, body.angle), &range_angle, false},
     {"spin", field_number, offsetof(SceneBomb, body.angular_velocity), &range_spin, false},
+    {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
     {"velocity", field_bomb_velocity, 0, &range_speed, false},
     {NULL, NULL, 0, NULL, false}};
 

@@ -4,6 +4,7 @@
 
 #include "common/file.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -70,17 +71,15 @@ void source_printable(char *out, size_t room, const char *text) {
 
 static bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
-/* Where the line of a byte begins, and its number from 1. "\r\n" is one line end, as in YAML. */
-static size_t line_start(const Source *source, size_t offset, int *number) {
-    size_t start = 0;
-    *number = 1;
-    for (size_t i = 0; i < offset; i++) {
-        bool inside_pair = source->text[i] == '\r' && source->text[i + 1] == '\n';
-        if (!ends_line(source->text[i]) || inside_pair) continue;
-        start = i + 1;
-        ++*number;
-    }
-    return start;
+/* The byte behind the end of the line that `at` lies in; "\r\n" is one end, as in YAML. */
+static size_t next_line(const Source *source, size_t at) {
+    while (at < source->size && !ends_line(source->text[at])) at++;
+    if (at < source->size) at += source->text[at] == '\r' && source->text[at + 1] == '\n' ? 2 : 1;
+    return at;
+}
+
+static bool in_line(const Source *source, size_t at) {
+    return at < source->size && !ends_line(source->text[at]);
 }
 
 /* Bytes of the character at `at`; a byte that is no UTF-8 counts as one. */
@@ -90,10 +89,20 @@ static size_t character_length(const Source *source, size_t at) {
     return length > 0 ? length : 1;
 }
 
-static int count_characters(const Source *source, size_t from, size_t to) {
-    int count = 0;
-    for (size_t at = from; at < to; at += character_length(source, at)) count++;
-    return count;
+/* Where the line of a place begins. The end of the file is shown behind its last line and not on an empty one
+   below it. *place is moved into the line where it lies beyond. */
+static size_t find_place(const Source *source, Place *place) {
+    size_t start = 0;
+    for (int line = 0; line < place->line; line++) {
+        size_t next = next_line(source, start);
+        if (next >= source->size) *place = (Place){line, INT_MAX};
+        start = next < source->size ? next : start;
+    }
+    int column = 0;
+    for (size_t at = start; column < place->column && in_line(source, at); column++)
+        at += character_length(source, at);
+    place->column = column;
+    return start;
 }
 
 /* The shown part of the line, and below it blanks up to the caret. */
@@ -101,71 +110,87 @@ typedef struct Excerpt {
     char line[4 * EXCERPT_WIDTH + 8], blanks[EXCERPT_WIDTH];
 } Excerpt;
 
-static void excerpt_line(Excerpt *excerpt, const Source *source, size_t start, size_t offset, int column) {
+static Excerpt excerpt_line(const Source *source, size_t start, int column) {
+    Excerpt excerpt;
     size_t written = 0, blanks = 0, at = start;
-    for (int skip = column - 1 - EXCERPT_BEFORE; skip > 0; skip--) at += character_length(source, at);
-    if (at > start) {
-        written = blanks = strlen(strcpy(excerpt->line, "..."));
-        memset(excerpt->blanks, ' ', blanks);
+    int first = column > EXCERPT_BEFORE ? column - EXCERPT_BEFORE : 0;
+    for (int i = 0; i < first; i++) at += character_length(source, at);
+    if (first > 0) {
+        written = blanks = strlen(strcpy(excerpt.line, "..."));
+        memset(excerpt.blanks, ' ', blanks);
     }
-    for (int shown = 0; at < source->size && !ends_line(source->text[at]); shown++) {
-        if (shown == EXCERPT_WIDTH) {
-            memcpy(excerpt->line + written, "...", 3);
+    for (int i = first; in_line(source, at); i++) {
+        if (i == first + EXCERPT_WIDTH) {
+            memcpy(excerpt.line + written, "...", 3);
             written += 3;
             break;
         }
-        if (at < offset) excerpt->blanks[blanks++] = source->text[at] == '\t' ? '\t' : ' ';
-        at += copy_character(excerpt->line, &written, source->text + at, source->size - at);
+        if (i < column) excerpt.blanks[blanks++] = source->text[at] == '\t' ? '\t' : ' ';
+        at += copy_character(excerpt.line, &written, source->text + at, source->size - at);
     }
-    excerpt->line[written] = excerpt->blanks[blanks] = '\0';
+    excerpt.line[written] = excerpt.blanks[blanks] = '\0';
+    return excerpt;
 }
 
-/* The end of the file is shown behind its last line and not on an empty one below it. */
-static size_t within_text(const Source *source, size_t offset) {
-    if (offset < source->size) return offset;
-    size_t end = source->size;
-    if (end > 0 && source->text[end - 1] == '\n') end--;
-    if (end > 0 && source->text[end - 1] == '\r') end--;
-    return end;
-}
-
-bool source_error(const Source *source, size_t offset, Error *error, const char *format, ...) {
+bool source_error(const Source *source, Place place, Error *error, const char *format, ...) {
     char what[512], where[1280], number[16];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
 
-    offset = within_text(source, offset);
-    int line;
-    size_t start = line_start(source, offset, &line);
-    int column = 1 + count_characters(source, start, offset);
-    Excerpt excerpt;
-    excerpt_line(&excerpt, source, start, offset, column);
-    snprintf(where, sizeof where, "%.1200s:%d:%d", source->path, line, column);
-    snprintf(number, sizeof number, "%5d", line);
+    size_t start = find_place(source, &place);
+    Excerpt excerpt = excerpt_line(source, start, place.column);
+    snprintf(where, sizeof where, "%.1200s:%d:%d", source->path, place.line + 1, place.column + 1);
+    snprintf(number, sizeof number, "%5d", place.line + 1);
     return error_input(error, where, "%s\n%s | %s\n%*s | %s^", what, number, excerpt.line,
                        (int)strlen(number), "", excerpt.blanks);
 }
 
-/* What YAML does not allow, or libfyaml (0.7.12) lets pass or takes minutes over. */
-static bool check(const Source *source, Error *error) {
-    size_t start = 0;
+/* What the checks keep from one character to the next. */
+typedef struct Check {
+    Place place;
+    size_t line_start;
+    size_t blanks, squares; /* length of the run of blanks so far, and the sum of squares of all of them */
+} Check;
+
+/* Adds to the sum of squares as the run grows: n^2 = 1 + 3 + ... + (2n - 1). */
+static void count_blanks(Check *check, char c) {
+    if (c == ' ' || c == '\t' || ends_line(c))
+        check->squares += 2 * ++check->blanks - 1;
+    else
+        check->blanks = 0;
+}
+
+/* What YAML does not allow, or libfyaml lets pass (0.7.12: bytes that are no UTF-8) or takes minutes over. */
+static bool check_character(const Source *source, size_t at, uint32_t character, Check *check, Error *error) {
+    count_blanks(check, source->text[at]);
+    if (check->squares > SOURCE_MAX_BLANKS)
+        return source_error(source, check->place, error, "too many blanks and empty lines in a row");
+    if (ends_line(source->text[at])) {
+        bool inside_pair = source->text[at] == '\r' && source->text[at + 1] == '\n';
+        check->place = (Place){check->place.line + !inside_pair, 0};
+        check->line_start = at + 1;
+        return true;
+    }
+    if ((character < 0x20 && character != '\t') || character == 0x7f)
+        return source_error(source, check->place, error, "control character 0x%02x in a text file",
+                            (unsigned)character);
+    if (at - check->line_start >= SOURCE_MAX_LINE)
+        return source_error(source, check->place, error, "a line may have at most %d bytes", SOURCE_MAX_LINE);
+    if (at == check->line_start && character == '%')
+        return source_error(source, check->place, error, "YAML directives are not allowed in a scene");
+    check->place.column++;
+    return true;
+}
+
+static bool check_text(const Source *source, Error *error) {
+    Check check = {.line_start = 0};
     for (size_t at = 0, length; at < source->size; at += length) {
-        uint32_t character = 0;
+        uint32_t character;
         length = decode(source->text + at, source->size - at, &character);
-        if (length == 0) return source_error(source, at, error, "this is not UTF-8 text");
-        if (ends_line(source->text[at])) {
-            start = at + 1;
-            continue;
-        }
-        if ((character < 0x20 && character != '\t') || character == 0x7f)
-            return source_error(source, at, error, "control character 0x%02x in a text file",
-                                (unsigned)character);
-        if (at - start >= SOURCE_MAX_LINE)
-            return source_error(source, at, error, "a line may have at most %d bytes", SOURCE_MAX_LINE);
-        if (at == start && character == '%')
-            return source_error(source, at, error, "YAML directives are not allowed in a scene");
+        if (length == 0) return source_error(source, check.place, error, "this is not UTF-8 text");
+        if (!check_character(source, at, character, &check, error)) return false;
     }
     return true;
 }
@@ -179,7 +204,7 @@ bool source_read(Source *source, const char *path, Error *error) {
         source->size -= 3;
         memmove(source->text, source->text + 3, source->size + 1);
     }
-    if (check(source, error)) return true;
+    if (check_text(source, error)) return true;
     source_free(source);
     return false;
 }

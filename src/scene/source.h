@@ -5,10 +5,18 @@
 
 #include <stddef.h>
 
+/* libfyaml looks ahead to the end of the line for the colon of a key, and skips blanks in time that grows
+   with the square of their number: these limits keep any file below a tenth of a second. */
 enum {
-    SOURCE_MAX_SIZE = 2 << 20, /* bytes: 10,000 bodies written one a line have 200 each */
-    SOURCE_MAX_LINE = 4096     /* bytes: libfyaml looks ahead to the end of the line for the colon of a key */
+    SOURCE_MAX_SIZE = 3 << 19,   /* bytes: 10,000 bodies written one a line have 157 each */
+    SOURCE_MAX_LINE = 4096,      /* bytes */
+    SOURCE_MAX_BLANKS = 50000000 /* sum over the runs of blanks and line ends of their length squared */
 };
+
+/* Line and column from 0, the column in characters, as libfyaml counts them. */
+typedef struct Place {
+    int line, column;
+} Place;
 
 typedef struct Source {
     const char *path; /* as the user gave it; not owned */
@@ -22,10 +30,9 @@ typedef struct Source {
 bool source_read(Source *source, const char *path, Error *error);
 void source_free(Source *source);
 
-/* Sets an input error "path:line:column: error: text", the line around the byte at `offset`, a caret. Line
-   and column count from 1, the column in characters. Returns false. */
-bool source_error(const Source *source, size_t offset, Error *error, const char *format, ...)
-    PRINTF_LIKE(4, 5);
+/* Sets an input error "path:line:column: error: text", the line, a caret; shown line and column count from 1.
+   Returns false. */
+bool source_error(const Source *source, Place place, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* Copies UTF-8 text for a message: what does not print becomes '?', what does not fit is cut to "...". */
 void source_printable(char *out, size_t room, const char *text);

@@ -9,17 +9,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 typedef struct Builder {
     YamlTree *tree;
     size_t node_capacity, text_size, text_capacity;
     int depth, documents;
-    int open[YAML_MAX_DEPTH]; /* lists and mappings not yet ended, outermost first */
-    size_t offset;            /* of the last event that had a place */
+    int open[YAML_MAX_DEPTH];             /* lists and mappings not yet ended, outermost first */
+    Place place;                          /* of the last event that had one */
+    size_t handed_out, handed_out_before; /* bytes that libfyaml has had, now and at the last event */
+    bool gap_too_long;
 } Builder;
 
 static bool fail(const Builder *builder, Error *error, const char *what) {
-    return source_error(&builder->tree->source, builder->offset, error, "%s", what);
+    return source_error(&builder->tree->source, builder->place, error, "%s", what);
 }
 
 /* A mapping counts keys and values here; yaml_read halves it. */
@@ -28,7 +31,7 @@ static bool count_in_parent(Builder *builder, Error *error) {
     YamlNode *parent = &builder->tree->nodes[builder->open[builder->depth - 1]];
     parent->count++;
     if (parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
-        return source_error(&builder->tree->source, builder->offset, error,
+        return source_error(&builder->tree->source, builder->place, error,
                             "a mapping may have at most %d keys", YAML_MAX_KEYS);
     return true;
 }
@@ -36,7 +39,7 @@ static bool count_in_parent(Builder *builder, Error *error) {
 static bool add_node(Builder *builder, YamlKind kind, Error *error) {
     YamlTree *tree = builder->tree;
     if (tree->node_count == YAML_MAX_NODES)
-        return source_error(&tree->source, builder->offset, error, "more than %d values in one file",
+        return source_error(&tree->source, builder->place, error, "more than %d values in one file",
                             YAML_MAX_NODES);
     if (!count_in_parent(builder, error)) return false;
     void *nodes = tree->nodes;
@@ -44,7 +47,7 @@ static bool add_node(Builder *builder, YamlKind kind, Error *error) {
         array_reserve(&nodes, &builder->node_capacity, (size_t)tree->node_count + 1, sizeof *tree->nodes);
     tree->nodes = nodes;
     if (!room) return error_memory(error, tree->source.path);
-    YamlNode node = {kind, tree->node_count + 1, 0, (int)builder->offset, (int)builder->text_size};
+    YamlNode node = {kind, tree->node_count + 1, 0, (int)builder->text_size, builder->place};
     tree->nodes[tree->node_count++] = node;
     return true;
 }
@@ -68,7 +71,7 @@ static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
 
 static bool open_node(Builder *builder, YamlKind kind, Error *error) {
     if (builder->depth == YAML_MAX_DEPTH)
-        return source_error(&builder->tree->source, builder->offset, error,
+        return source_error(&builder->tree->source, builder->place, error,
                             "lists and mappings may be nested %d deep at most", YAML_MAX_DEPTH);
     if (!add_node(builder, kind, error)) return false;
     builder->open[builder->depth++] = builder->tree->node_count - 1;
@@ -92,7 +95,8 @@ static bool refuse_extras(const Builder *builder, const struct fy_token *anchor,
 static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     const struct fy_mark *mark = fy_event_start_mark(event);
     /* A value left out has no mark: it is shown at its key. */
-    if (mark != NULL) builder->offset = mark->input_pos;
+    if (mark != NULL) builder->place = (Place){mark->line, mark->column};
+    builder->handed_out_before = builder->handed_out;
     switch (event->type) {
     case FYET_DOCUMENT_START:
         return ++builder->documents == 1 || fail(builder, error, "a scene file holds one document only");
@@ -122,25 +126,44 @@ static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Erro
     void *position = NULL;
     for (const struct fy_diag_error *found; (found = fy_diag_errors_iterate(diagnosis, &position)) != NULL;) {
         if (found->type != FYET_ERROR) continue;
-        const struct fy_mark *mark = found->fyt == NULL ? NULL : fy_token_start_mark(found->fyt);
         char words[200];
         source_printable(words, sizeof words, found->msg);
-        return source_error(source, mark == NULL ? builder->offset : mark->input_pos, error, "%s", words);
+        return source_error(source, (Place){found->line - 1, found->column - 1}, error, "%s", words);
     }
-    return error_memory(error, source->path);
+    return fail(builder, error, "this is not valid YAML");
+}
+
+static bool gap_error(const Builder *builder, Error *error) {
+    return source_error(&builder->tree->source, builder->place, error,
+                        "more than %d bytes from here to the next value", YAML_MAX_GAP);
 }
 
 static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_diag *diagnosis, Error *error) {
     for (bool more = true; more;) {
         struct fy_event *event = fy_parser_parse(parser);
-        if (event == NULL) return syntax_error(builder, diagnosis, error);
-        more = event->type != FYET_STREAM_END;
-        bool taken = take_event(builder, event, error);
+        more = event != NULL && event->type != FYET_STREAM_END;
+        bool taken = builder->gap_too_long ? gap_error(builder, error)
+                     : event == NULL       ? syntax_error(builder, diagnosis, error)
+                                           : take_event(builder, event, error);
         fy_parser_event_free(parser, event);
         if (!taken) return false;
     }
     return builder->tree->node_count > 0 ||
-           source_error(&builder->tree->source, 0, error, "there is no scene in this file");
+           source_error(&builder->tree->source, (Place){0, 0}, error, "there is no scene in this file");
+}
+
+/* Hands the text out piece by piece, so that what libfyaml reads ahead of its events has an end: a million
+   brackets would cost it a second and half a gigabyte before the first event. */
+static ssize_t hand_out(void *user, void *buffer, size_t size) {
+    Builder *builder = user;
+    const Source *source = &builder->tree->source;
+    builder->gap_too_long = builder->handed_out - builder->handed_out_before > YAML_MAX_GAP;
+    if (builder->gap_too_long) return 0;
+    size_t left = source->size - builder->handed_out;
+    if (size > left) size = left;
+    memcpy(buffer, source->text + builder->handed_out, size);
+    builder->handed_out += size;
+    return (ssize_t)size;
 }
 
 static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
@@ -149,7 +172,7 @@ static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
     struct fy_parser *parser = fy_parser_create(&settings);
     if (parser == NULL) return error_memory(error, tree->source.path);
     Builder builder = {.tree = tree};
-    bool done = fy_parser_set_string(parser, tree->source.text, tree->source.size) == 0
+    bool done = fy_parser_set_input_callback(parser, &builder, hand_out) == 0
                     ? take_events(&builder, parser, diagnosis, error)
                     : error_memory(error, tree->source.path);
     fy_parser_destroy(parser);
@@ -209,5 +232,5 @@ bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
-    return source_error(&tree->source, (size_t)tree->nodes[node].offset, error, "%s", what);
+    return source_error(&tree->source, tree->nodes[node].place, error, "%s", what);
 }

@@ -11,7 +11,8 @@
 enum {
     YAML_MAX_DEPTH = 8,      /* nested lists and mappings */
     YAML_MAX_KEYS = 64,      /* of one mapping */
-    YAML_MAX_NODES = 250000, /* 10,000 bodies with every key take 210,000 */
+    YAML_MAX_NODES = 220000, /* 10,000 bodies with every key take 210,000 */
+    YAML_MAX_GAP = 65536,    /* bytes of one value, of comments, or that libfyaml reads ahead */
     YAML_SHOWN_SIZE = 48     /* room for a scalar in a message */
 };
 
@@ -21,10 +22,10 @@ typedef enum YamlKind { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
    mapping holds key, value, key, value. */
 typedef struct YamlNode {
     YamlKind kind;
-    int end;    /* the node after this one and all below it */
-    int count;  /* items of a sequence, pairs of a mapping */
-    int offset; /* byte of the file where it begins */
-    int text;   /* of a scalar: where its text begins in texts */
+    int end;   /* the node after this one and all below it */
+    int count; /* items of a sequence, pairs of a mapping */
+    int text;  /* of a scalar: where its text begins in texts */
+    Place place;
 } YamlNode;
 
 typedef struct YamlTree {
@@ -41,7 +42,7 @@ void yaml_free(YamlTree *tree);
 /* The text of a scalar. */
 const char *yaml_text(const YamlTree *tree, int node);
 
-/* What a node is, in words for a message: 'abc', nothing, a list, a mapping. */
+/* What a node is, for a message: the text of a scalar or "nothing", "a list", "a mapping". */
 typedef struct YamlShown {
     char text[YAML_SHOWN_SIZE];
 } YamlShown;

@@ -111,6 +111,7 @@ static bool record(Run *run, Trajectory *trajectory, const Progress *progress, E
         if (!progress_report(progress, frame, run->scene->frames))
             return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
     }
+    trajectory_end_contacts(trajectory);
     return true;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trains a pair network on a dataset as the paper does (3.2, 3.3): full-batch mean squared error of normalised
-   outputs. */
+/* Trains a pair network on a dataset as the paper does (3.2, 3.3): full-batch mean squared error of
+   normalised outputs. */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
@@ -9,7 +9,7 @@
 
 typedef struct TrainingScore {
     int iteration;
-    double test, train;       /* mean squared error of the normalised outputs */
+    double test, train;                   /* mean squared error of the normalised outputs */
     double constant_test, constant_train; /* of predicting the training mean */
 } TrainingScore;
 
@@ -19,13 +19,21 @@ typedef struct TrainingOptions {
     const char *optimizer;              /* a name of the optimiser table: adam, bfgs, lm */
     int iterations;                     /* full-batch steps */
     uint64_t seed;                      /* of the initial weights */
-    /* Called with the scores at iterations 0, 10, 50, 100, 1000, 2000, ... and the last one. */
+    /* Called with the scores of the weights at iterations 0, 10, 50, 100, 1000, 2000, 5000, 10000, ... and
+       the last one; may be NULL. */
     void (*on_score)(void *context, const TrainingScore *score);
     void *context;
-    const Network *start;               /* go on from these weights, or NULL */
+    const Network *start; /* go on from these weights and with its normalisation, or NULL */
 } TrainingOptions;
 
-/* NULL with error set: shapes that do not fit, memory, or training that left the finite numbers (with the
-   iteration). When progress asks to stop, returns the best network so far. */
+/* Two outputs learn the change of the velocity of b relative to a, min-max normalised, with sigmoids
+   throughout (paper, 3.2); six learn pair_changes(), standardised, with a linear last layer (3.1). Inputs are
+   standardised. All normalisations come from the rows to train on.
+
+   Returns the network with the lowest train loss seen, also when progress asks to stop early or an optimiser
+   finds no way on; its `command` is left empty. The same bits at any number of threads.
+
+   NULL with error set: shapes that do not fit, no rows to train on or to test on, memory, or training that
+   left the finite numbers (with the iteration). */
 Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
                       Error *error);

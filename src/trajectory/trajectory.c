@@ -72,10 +72,15 @@ bool trajectory_has(const Trajectory *t, int frame, int body) {
     return isfinite(position.x) && isfinite(position.y);
 }
 
+/* The steps after the last one that has contacts, up to `step`, begin and end where it ends. */
+static void end_steps(Trajectory *t, int step, int64_t count) {
+    for (int k = t->last_step + 1; k <= step; k++) t->contact_start[k + 1] = count;
+    if (step > t->last_step) t->last_step = step;
+}
+
 bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
-    assert(frame >= 1 && frame < t->frames);
-    int64_t count = t->contact_start[t->frames];
-    assert(t->contact_start[frame + 1] == count);
+    assert(frame >= 1 && frame < t->frames && frame >= t->last_step);
+    int64_t count = t->contact_start[t->last_step + 1];
     if (measure(t->frames, t->bodies, (double)count + 1) > MAX_BYTES)
         return error_input(error, "trajectory", "its contacts take more than 2 GiB");
     void *contacts = t->contacts;
@@ -83,10 +88,12 @@ bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *c
         return error_memory(error, "trajectory");
     t->contacts = contacts;
     t->contacts[count] = *contact;
-    /* Every later step begins behind this contact: most of them have none yet, and some never will. */
-    for (int step = frame + 1; step <= t->frames; step++) t->contact_start[step] = count + 1;
+    end_steps(t, frame, count);
+    t->contact_start[frame + 1] = count + 1;
     return true;
 }
+
+void trajectory_end_contacts(Trajectory *t) { end_steps(t, t->frames - 1, t->contact_start[t->last_step + 1]); }
 
 uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
     uint64_t hash = FNV1A64_START;

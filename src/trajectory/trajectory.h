@@ -39,6 +39,7 @@ typedef struct Trajectory {
     int64_t *contact_start;            /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts;       /* [contact_start[T]] */
     size_t contact_capacity;
+    int last_step; /* while contacts are added: contact_start is right up to the end of this step */
 } Trajectory;
 
 /* All poses NaN, no contacts, contact_start all 0. NULL with error set when memory is short or the whole would be
@@ -49,8 +50,11 @@ void trajectory_destroy(Trajectory *trajectory);
 /* True where the body is there in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
-/* Appends a contact of step `frame` (from 1); frames in rising order. contact_start fits at any time. */
+/* Appends a contact of step `frame` (from 1); frames in rising order. */
 bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryContact *contact, Error *error);
+
+/* To be called after the last contact: fills the rest of contact_start. */
+void trajectory_end_contacts(Trajectory *trajectory);
 
 /* FNV-1a 64 over the little-endian bytes of x, y, angle, vx, vy, omega of each dynamic body that is there, by
    rising index: the definition of the reference trajectories. */

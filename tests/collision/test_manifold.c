@@ -42,6 +42,11 @@ static void overhanging_box_is_clipped_to_the_box_below(void **state) {
     assert_near(m.points[1].position.x, 0.5f, tolerance);
     /* The cut takes the reference box's edge in place of the incident box's. */
     assert_int_equal(m.points[1].feature, feature(NO_EDGE, EDGE_RIGHT, EDGE_BOTTOM, NO_EDGE));
+
+    m = collide(box_make(vec2(0, 0), vec2(1, 1), 0), box_make(vec2(-0.5f, 0.99f), vec2(1, 1), 0));
+    assert_int_equal(m.count, 2);
+    assert_near(m.points[1].position.x, -0.5f, tolerance);
+    assert_int_equal(m.points[1].feature, feature(EDGE_LEFT, NO_EDGE, NO_EDGE, EDGE_BOTTOM));
 }
 
 /* A corner of a box turned by 45 degrees pokes 0.01 m into the ground. */

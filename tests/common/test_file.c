@@ -12,6 +12,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 static void write_file(const char *path, const char *text) {
     Error error = {0};
@@ -100,13 +101,30 @@ static void links_are_followed(void **state) {
     assert_true(S_ISLNK(status.st_mode));
 }
 
+/* The path of a device to write to; false where there is none. Who may replace the machine's own devices gets
+   one of the test's own instead: a file_write that is broken would do it. */
+static bool find_device(char path[256], const char *name, unsigned minor_number) {
+    strcpy(path, temporary_path(name));
+    if (mknod(path, S_IFCHR | 0600, makedev(1, minor_number)) != 0) {
+        if (access("/dev", W_OK) == 0) return false;
+        snprintf(path, 256, "/dev/%s", name);
+    }
+    int file = open(path, O_WRONLY);
+    if (file >= 0) close(file);
+    return file >= 0;
+}
+
 static void devices_are_written_into(void **state) {
     (void)state;
-    write_file("/dev/null", "text");
+    char null[256], full[256];
+    if (!find_device(null, "null", 3) || !find_device(full, "full", 7)) skip();
+    write_file(null, "text");
     struct stat status;
-    assert_int_equal(stat("/dev/null", &status), 0);
+    assert_int_equal(lstat(null, &status), 0);
     assert_true(S_ISCHR(status.st_mode));
-    if (access("/dev/full", W_OK) == 0) expect_write_error("/dev/full", strerror(ENOSPC));
+    expect_write_error(full, strerror(ENOSPC));
+    assert_int_equal(lstat(full, &status), 0);
+    assert_true(S_ISCHR(status.st_mode));
 }
 
 static void *read_fifo(void *path) {
@@ -131,10 +149,11 @@ static void fifos_are_written_into(void **state) {
     assert_string_equal(text, "text");
 }
 
-/* /dev/stdout, when it leads to a file, is written where the program's output has got to. */
+/* A link such as /dev/stdout, when it leads to a file, is written where the program's output has got to. */
 static void standard_output_is_written_into(void **state) {
     (void)state;
-    const char *path = temporary_path("output");
+    const char *path = temporary_path("output"), *link = temporary_path("stdout");
+    assert_int_equal(symlink("/proc/self/fd/1", link), 0);
     fflush(stdout);
     int saved = dup(STDOUT_FILENO), output = open(path, O_WRONLY | O_CREAT, 0600);
     assert_true(saved >= 0 && output >= 0);
@@ -142,7 +161,7 @@ static void standard_output_is_written_into(void **state) {
     close(output);
     bool before = write(STDOUT_FILENO, "before ", 7) == 7;
     Error error = {0};
-    bool done = file_write("/dev/stdout", "text", 4, &error);
+    bool done = file_write(link, "text", 4, &error);
     bool after = write(STDOUT_FILENO, " after", 6) == 6;
     dup2(saved, STDOUT_FILENO);
     close(saved);
@@ -155,7 +174,7 @@ static void failed_writes_leave_nothing(void **state) {
     (void)state;
     const char *folder = fresh_folder("failed");
     expect_write_error(temporary_path("failed/missing/file"), strerror(ENOENT));
-    expect_write_error("", strerror(ENOENT));
+    expect_write_error("", "cannot write: ");
     expect_write_error("/proc/twinbox", "cannot write: ");
     expect_write_error(folder, strerror(EISDIR));
     char longest[NAME_MAX + 16];
@@ -172,7 +191,7 @@ static void failed_writes_leave_nothing(void **state) {
 /* A file that may not grow stands for a full disk. */
 static void a_full_disk_keeps_the_old_file(void **state) {
     (void)state;
-    const char *folder = fresh_folder("full"), *path = temporary_path("full/file");
+    const char *folder = fresh_folder("quota"), *path = temporary_path("quota/file");
     write_file(path, "old");
     struct rlimit previous, small;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &previous), 0);

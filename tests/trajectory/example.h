@@ -45,5 +45,6 @@ static inline Trajectory *example_trajectory(void) {
         contact.tangent_impulse = -0.25F;
         if (!trajectory_add_contact(t, 2, &contact, &error)) abort();
     }
+    trajectory_end_contacts(t);
     return t;
 }

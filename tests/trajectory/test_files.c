@@ -5,7 +5,6 @@
 #include "common/file.h"
 #include "example.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 
@@ -34,7 +33,6 @@ static void written_is_read(void **state) {
     assert_memory_equal(r->contact_start, t->contact_start, (EXAMPLE_FRAMES + 1) * sizeof *t->contact_start);
     assert_int_equal(t->contact_start[EXAMPLE_FRAMES], 2);
     assert_memory_equal(r->contacts, t->contacts, 2 * sizeof *t->contacts);
-    assert_ok(trajectory_add_contact(r, 3, &t->contacts[0], &error), error);
     trajectory_destroy(r);
     trajectory_destroy(t);
 }
@@ -121,6 +119,11 @@ static void bad_contacts_are_refused(void **state) {
     REFUSE(contact_start[2], -1, "contact_start does not rise");
     REFUSE(contact_start[3], 3, "contact_start does not rise");
     REFUSE(contact_start[3], INT64_MAX, "contact_start does not rise");
+    /* Rising, but with a contact in step 0. */
+    Trajectory *t = example_trajectory();
+    t->contact_start[1] = t->contact_start[2] = 1;
+    expect_refused(t, "contact_start does not rise");
+    trajectory_destroy(t);
 }
 
 /* In step 1 the bomb is not there yet. */
@@ -133,6 +136,7 @@ static void a_contact_of_an_absent_body_is_refused(void **state) {
     for (int frame = 0; frame < 2; frame++) example_pose(t, frame, 0, (float[6]){0});
     TrajectoryContact contact = {.a = 0, .b = 1};
     assert_ok(trajectory_add_contact(t, 1, &contact, &error), error);
+    trajectory_end_contacts(t);
     expect_refused(t, "step 1, contact 0: no pair of bodies that are there (0 and 1)");
     trajectory_destroy(t);
 }
@@ -186,6 +190,8 @@ static void csv_gives_every_float_back(void **state) {
     (void)state;
     const char *path = temporary_path("run.csv");
     Trajectory *t = example_trajectory();
+    /* With 8 digits this float and the next read the same. */
+    t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
     Error error = {0};
     assert_ok(trajectory_write_csv(t, path, &error), error);
     char *text = text_of(path), *line = strtok(text, "\n");
@@ -237,12 +243,9 @@ static void failed_writes_tell(void **state) {
                             Error *) = {trajectory_write, trajectory_write_csv, trajectory_write_hashes};
     Trajectory *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
-        Error error = {0}, full = {0};
+        Error error = {0};
         assert_false(writers[i](t, temporary_path("nowhere/run"), &error));
         assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
-        if (access("/dev/full", W_OK) != 0) continue;
-        assert_false(writers[i](t, "/dev/full", &full));
-        assert_error(full, ERROR_SYSTEM, strerror(ENOSPC));
     }
     trajectory_destroy(t);
 }

@@ -99,6 +99,8 @@ static void what_does_not_fit_is_refused(void **state) {
                    "array 'position' has shape (3, 1, 3); (3, 1, 2)");
     expect_refused("arrays['position'] = n((0, 1, 2), 'f4')", "0 frames of 1 bodies");
     expect_refused("arrays['contact_feature'] = n(1, 'u4')", "array 'contact_feature' has shape (1)");
+    expect_refused("arrays['contact_start'][3] = 1",
+                   "contact_start does not rise from 0, 0 to the number of contacts");
     expect_refused("arrays['scene'] = 'x' * 128", "text 'scene' is");
     expect_refused("arrays['scene'] = '\\u00e4' * 64", "text 'scene' is");
 }

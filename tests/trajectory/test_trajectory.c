@@ -53,6 +53,7 @@ static void contacts_are_found_by_step(void **state) {
             assert_ok(trajectory_add_contact(t, step, &contact, &error), error);
         }
     }
+    trajectory_end_contacts(t);
     assert_int_equal(t->contact_start[0], 0);
     for (int step = 0; step < FRAMES; step++) {
         int64_t first = t->contact_start[step], count = t->contact_start[step + 1] - first;

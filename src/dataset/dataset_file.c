@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), launch_scene, launch_x,
+   launch_test [launches], inputs [rows, 10], changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
+#include "dataset/dataset.h"
+
+#include "common/npz.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define KIND "dataset"
+
+enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
+
+void dataset_destroy(Dataset *dataset) {
+    if (dataset == NULL) return;
+    free(dataset->inputs);
+    free(dataset->changes);
+    free(dataset->launch);
+    free(dataset->frame);
+    free(dataset->bodies);
+    free(dataset->launch_scene);
+    free(dataset->launch_x);
+    free(dataset->launch_test);
+    free(dataset);
+}
+
+static void join_scenes(const Dataset *dataset, char text[SCENES_SIZE]) {
+    text[0] = '\0';
+    for (int s = 0; s < dataset->scene_count; s++) {
+        if (s > 0) strcat(text, "\n");
+        strcat(text, dataset->scenes[s]);
+    }
+}
+
+bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
+    const int32_t version = DATASET_VERSION;
+    const int64_t rows = dataset->rows, launches = dataset->launches;
+    char scenes[SCENES_SIZE];
+    join_scenes(dataset, scenes);
+    const NpzArray arrays[] = {
+        {"version", NPZ_INT32, 0, {0}, &version},
+        {"kind", NPZ_TEXT, 0, {0}, KIND},
+        {"scenes", NPZ_TEXT, 0, {0}, scenes},
+        {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
+        {"launch_x", NPZ_FLOAT32, 1, {launches}, dataset->launch_x},
+        {"launch_test", NPZ_UINT8, 1, {launches}, dataset->launch_test},
+        {"inputs", NPZ_FLOAT32, 2, {rows, PAIR_INPUTS}, dataset->inputs},
+        {"changes", NPZ_FLOAT32, 2, {rows, PAIR_CHANGES}, dataset->changes},
+        {"launch", NPZ_INT32, 1, {rows}, dataset->launch},
+        {"frame", NPZ_INT32, 1, {rows}, dataset->frame},
+        {"bodies", NPZ_INT32, 2, {rows, 2}, dataset->bodies},
+    };
+    return npz_write(path, arrays, sizeof arrays / sizeof arrays[0], error);
+}
+
+static bool check_version(NpzFile *file, const char *path, Error *error) {
+    char kind[32] = "";
+    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) ||
+        strcmp(kind, KIND) != 0)
+        return error_input(error, path, "holds no dataset");
+    int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
+    if (version == NULL) return false;
+    int32_t found = *version;
+    free(version);
+    if (found == DATASET_VERSION) return true;
+    return error_input(error, path, "dataset of version %d; this program reads version %d", found,
+                       DATASET_VERSION);
+}
+
+static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+    char text[SCENES_SIZE], *line = text;
+    if (!npz_read_text(file, "scenes", text, sizeof text, error)) return false;
+    while (line != NULL) {
+        size_t length = strcspn(line, "\n");
+        if (dataset->scene_count == DATASET_MAX_SCENES)
+            return error_input(error, path, "scenes: more than %d names", DATASET_MAX_SCENES);
+        if (length == 0 || length >= DATASET_NAME_SIZE)
+            return error_input(error, path, "scenes: a name of %zu bytes; 1 to %d are possible", length,
+                               DATASET_NAME_SIZE - 1);
+        char *name = dataset->scenes[dataset->scene_count++];
+        memcpy(name, line, length);
+        name[length] = '\0';
+        line = line[length] == '\n' ? line + length + 1 : NULL;
+    }
+    return true;
+}
+
+static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+    int64_t launches, shape[2];
+    if (!npz_shape(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) return false;
+    if (!npz_shape(file, "inputs", NPZ_FLOAT32, 2, shape, error)) return false;
+    const int64_t rows = shape[0];
+    if (launches < 1 || launches > INT_MAX || rows < 1)
+        return error_input(error, path, "%lld launches and %lld rows; at least one of each is needed",
+                           (long long)launches, (long long)rows);
+    dataset->launches = (int)launches;
+    dataset->rows = rows;
+    dataset->capacity = (size_t)rows;
+    const int64_t inputs[] = {rows, PAIR_INPUTS}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
+    return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
+           (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
+           (dataset->launch_test = npz_read(file, "launch_test", NPZ_UINT8, 1, &launches, error)) != NULL &&
+           (dataset->inputs = npz_read(file, "inputs", NPZ_FLOAT32, 2, inputs, error)) != NULL &&
+           (dataset->changes = npz_read(file, "changes", NPZ_FLOAT32, 2, changes, error)) != NULL &&
+           (dataset->launch = npz_read(file, "launch", NPZ_INT32, 1, &rows, error)) != NULL &&
+           (dataset->frame = npz_read(file, "frame", NPZ_INT32, 1, &rows, error)) != NULL &&
+           (dataset->bodies = npz_read(file, "bodies", NPZ_INT32, 2, bodies, error)) != NULL;
+}
+
+static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path,
+                         Error *error) {
+    for (int64_t i = 0; i < count; i++)
+        if (!isfinite(numbers[i]))
+            return error_input(error, path, "%s: number %lld is %g; all must be finite", name, (long long)i,
+                               (double)numbers[i]);
+    return true;
+}
+
+/* Every number in [0, limit). */
+static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, const char *name,
+                          const char *path, Error *error) {
+    for (int64_t i = 0; i < count; i++)
+        if (numbers[i] < 0 || numbers[i] >= limit)
+            return error_input(error, path, "%s: number %lld is %d; 0 to %d are possible", name, (long long)i,
+                               numbers[i], limit - 1);
+    return true;
+}
+
+static bool check_split(const Dataset *dataset, const char *path, Error *error) {
+    for (int i = 0; i < dataset->launches; i++)
+        if (dataset->launch_test[i] > 1)
+            return error_input(error, path, "launch_test: number %d is %d; 0 and 1 are possible", i,
+                               dataset->launch_test[i]);
+    int64_t test_rows = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset->launch_test[dataset->launch[r]];
+    if (test_rows > 0 && test_rows < dataset->rows) return true;
+    return error_input(error, path,
+                       "%lld rows to train on and %lld to test on; at least one of each is needed",
+                       (long long)(dataset->rows - test_rows), (long long)test_rows);
+}
+
+static bool check_contents(const Dataset *dataset, const char *path, Error *error) {
+    const int64_t rows = dataset->rows, launches = dataset->launches;
+    return check_indices(dataset->launch_scene, launches, dataset->scene_count, "launch_scene", path,
+                         error) &&
+           check_finite(dataset->launch_x, launches, "launch_x", path, error) &&
+           check_finite(dataset->inputs, rows * PAIR_INPUTS, "inputs", path, error) &&
+           check_finite(dataset->changes, rows * PAIR_CHANGES, "changes", path, error) &&
+           check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
+           check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
+           check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error) &&
+           check_split(dataset, path, error);
+}
+
+Dataset *dataset_read(const char *path, Error *error) {
+    NpzFile *file = npz_open(path, error);
+    if (file == NULL) return NULL;
+    Dataset *dataset = calloc(1, sizeof *dataset);
+    if (dataset == NULL) error_memory(error, path);
+    if (dataset != NULL &&
+        !(check_version(file, path, error) && read_scenes(file, path, dataset, error) &&
+          read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
+        dataset_destroy(dataset);
+        dataset = NULL;
+    }
+    npz_close(file);
+    return dataset;
+}

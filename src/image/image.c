@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory, hash and comparison of pictures. */
+#include "image/image.h"
+
+#include "common/hash.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+Image *image_create(int width, int height, Error *error) {
+    Image *image = malloc(sizeof *image);
+    uint8_t *pixels = calloc((size_t)width * (size_t)height, 4);
+    if (image == NULL || pixels == NULL) {
+        free(image);
+        free(pixels);
+        error_memory(error, "image");
+        return NULL;
+    }
+    *image = (Image){width, height, pixels};
+    return image;
+}
+
+void image_destroy(Image *image) {
+    if (image == NULL) return;
+    free(image->pixels);
+    free(image);
+}
+
+static void put_little_endian(uint8_t *bytes, uint64_t value, int count) {
+    for (int i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
+}
+
+uint64_t image_hash(const Image *image) {
+    uint64_t pixels = hash_xxh3(image->pixels, (size_t)image->width * (size_t)image->height * 4);
+    uint8_t whole[16];
+    put_little_endian(whole, (uint64_t)image->width, 4);
+    put_little_endian(whole + 4, (uint64_t)image->height, 4);
+    put_little_endian(whole + 8, pixels, 8);
+    return hash_xxh3(whole, sizeof whole);
+}
+
+static int largest_channel_difference(const uint8_t *a, const uint8_t *b) {
+    int largest = 0;
+    for (int channel = 0; channel < 4; channel++) {
+        int difference = abs(a[channel] - b[channel]);
+        if (difference > largest) largest = difference;
+    }
+    return largest;
+}
+
+void image_compare(const Image *a, const Image *b, ImageDifference *difference) {
+    bool same_size = a->width == b->width && a->height == b->height;
+    *difference = (ImageDifference){.same_size = same_size, .first_x = -1, .first_y = -1};
+    if (!same_size) return;
+    size_t row = (size_t)a->width * 4;
+    for (int y = 0; y < a->height; y++) {
+        const uint8_t *row_a = a->pixels + (size_t)y * row, *row_b = b->pixels + (size_t)y * row;
+        if (memcmp(row_a, row_b, row) == 0) continue;
+        for (int x = 0; x < a->width; x++) {
+            int here = largest_channel_difference(row_a + 4 * x, row_b + 4 * x);
+            if (here == 0) continue;
+            if (difference->pixels++ == 0) difference->first_x = x, difference->first_y = y;
+            if (here > difference->largest) difference->largest = here;
+        }
+    }
+    difference->equal = difference->pixels == 0;
+}

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reading PNG files, which may come from anywhere: damaged, truncated, or made to eat memory. */
+#include "common/file.h"
+#include "image/image.h"
+
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More than IMAGE_MAX_PIXELS take at 16 bits a channel, stored uncompressed. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
+enum { MAX_TEXT_SIZE = 1 << 16, MAX_TEXTS = 64 };
+
+/* All that the decoder changes lies here and not in locals, which longjmp would clobber. */
+typedef struct Decoder {
+    png_structp png;
+    png_infop info;
+    const char *path;
+    const uint8_t *data;
+    size_t size, position;
+    Image *image;
+    Error *error;
+} Decoder;
+
+static void take(png_structp png, png_bytep data, size_t size) {
+    Decoder *decoder = png_get_io_ptr(png);
+    if (size > decoder->size - decoder->position) png_error(png, "it ends too early");
+    memcpy(data, decoder->data + decoder->position, size);
+    decoder->position += size;
+}
+
+static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
+    Decoder *decoder = png_get_error_ptr(png);
+    error_input(decoder->error, decoder->path, "no PNG file, or a damaged one: %s", message);
+    png_longjmp(png, 1);
+}
+
+static void ignore_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
+
+static bool open_decoder(Decoder *decoder, const char *path, Error *error) {
+    *decoder = (Decoder){.path = path, .error = error};
+    decoder->data = (uint8_t *)file_read(path, MAX_FILE_SIZE, &decoder->size, error);
+    if (decoder->data == NULL) return false;
+    decoder->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning);
+    if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
+    return decoder->info != NULL || error_memory(error, path);
+}
+
+static void close_decoder(Decoder *decoder) {
+    png_destroy_read_struct(&decoder->png, &decoder->info, NULL);
+    free((void *)decoder->data);
+}
+
+/* Everything doubtful is an error: a frame of which a part is a guess must not count as a frame. */
+static void be_strict(Decoder *decoder) {
+    png_set_read_fn(decoder->png, decoder, take);
+    png_set_crc_action(decoder->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_benign_errors(decoder->png, 0);
+    png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
+    png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
+}
+
+static void refuse_bomb(Decoder *decoder) {
+    uint64_t width = png_get_image_width(decoder->png, decoder->info);
+    uint64_t height = png_get_image_height(decoder->png, decoder->info);
+    if (width * height <= IMAGE_MAX_PIXELS) return;
+    error_input(decoder->error, decoder->path,
+                "the picture has %llu x %llu pixels; at most %d in all can be read",
+                (unsigned long long)width, (unsigned long long)height, IMAGE_MAX_PIXELS);
+    png_longjmp(decoder->png, 1);
+}
+
+static void ask_for_rgba(Decoder *decoder) {
+    png_set_expand(decoder->png);
+    png_set_scale_16(decoder->png);
+    png_set_gray_to_rgb(decoder->png);
+    png_set_add_alpha(decoder->png, 0xff, PNG_FILLER_AFTER);
+}
+
+static bool decode(Decoder *decoder) {
+    if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
+    png_structp png = decoder->png;
+    be_strict(decoder);
+    /* Only what makes the pixels: no other chunk is even unpacked. */
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(png, decoder->info);
+    refuse_bomb(decoder);
+    ask_for_rgba(decoder);
+    int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, decoder->info);
+    decoder->image = image_create((int)png_get_image_width(png, decoder->info),
+                                  (int)png_get_image_height(png, decoder->info), decoder->error);
+    if (decoder->image == NULL) return false;
+    for (int pass = 0; pass < passes; pass++)
+        for (int y = 0; y < decoder->image->height; y++)
+            png_read_row(png, decoder->image->pixels + (size_t)y * (size_t)decoder->image->width * 4, NULL);
+    png_read_end(png, NULL);
+    return true;
+}
+
+Image *image_read_png(const char *path, Error *error) {
+    Decoder decoder;
+    bool ok = open_decoder(&decoder, path, error) && decode(&decoder);
+    close_decoder(&decoder);
+    if (ok) return decoder.image;
+    image_destroy(decoder.image);
+    return NULL;
+}
+
+static bool decode_texts(Decoder *decoder) {
+    if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
+    be_strict(decoder);
+    png_read_info(decoder->png, decoder->info);
+    return true;
+}
+
+static bool find_text(const Decoder *decoder, const char *key, char *value, size_t size) {
+    png_textp texts = NULL;
+    int count = png_get_text(decoder->png, decoder->info, &texts, NULL);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(texts[i].key, key) != 0) continue;
+        size_t length = strlen(texts[i].text);
+        if (length >= size)
+            return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
+        memcpy(value, texts[i].text, length + 1);
+        return true;
+    }
+    return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
+}
+
+bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
+    Decoder decoder;
+    bool ok = open_decoder(&decoder, path, error) && decode_texts(&decoder) &&
+              find_text(&decoder, key, value, size);
+    close_decoder(&decoder);
+    return ok;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From metres to pixels: one camera for all panels, at rest over the whole run. */
+#pragma once
+#include "trajectory/trajectory.h"
+
+/* A point (x, y) in metres lies at pixel (left + scale * x, top - scale * y) of a panel. `left` and `top` are
+   whole, and so is the scale where it is large: lines at whole metres fall between pixels and stay crisp. */
+typedef struct Camera {
+    double scale; /* pixels a metre */
+    double left, top;
+} Camera;
+
+/* Shows what the trajectory asks to see; where it asks nothing, all that its bodies pass over the whole run.
+   Of static bodies only what lies near that counts. The panel's size in pixels. */
+Camera camera_fit(const Trajectory *trajectory, int width, int height);

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Paints drawings with OpenGL and reads the pixels back. */
+#pragma once
+#include "image/image.h"
+#include "render/drawing.h"
+#include "render/gl_functions.h"
+
+typedef struct Canvas Canvas;
+
+/* Needs a current context then and in every later call. `gl` must outlive the canvas. */
+Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error);
+void canvas_destroy(Canvas *canvas);
+
+/* Paints a drawing over the background into an image of the canvas's size. */
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, Image *image, Error *error);

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "render/caption.h"
+
+#include "render/panel.h"
+#include "render/style.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { TEXT_SIZE = 256 };
+static const double FAR_APART = 1000.0; /* m; beyond it the figures say no more */
+
+typedef struct Item {
+    char label[16], number[TEXT_SIZE], unit[8];
+} Item;
+
+/* Pads a number on the left to the width that the longest of the run will take. */
+static void pad(char *number, size_t size, const char *text, const char *longest) {
+    size_t used = 0;
+    for (size_t i = strlen(text); i < strlen(longest); i++)
+        used += (size_t)snprintf(number + used, size - used, "%s", FIGURE_SPACE);
+    snprintf(number + used, size - used, "%s", text);
+}
+
+static void format_apart(char *text, size_t size, double apart) {
+    if (isnan(apart))
+        snprintf(text, size, "\xE2\x80\x93");
+    else if (apart < FAR_APART)
+        snprintf(text, size, "%.2f", apart);
+    else
+        snprintf(text, size, ">%.0f", FAR_APART);
+}
+
+static Item apart_item(const Picture *picture, int frame) {
+    Item item = {.label = "apart ", .unit = " m"};
+    char text[32], longest[32];
+    format_apart(text, sizeof text, picture_apart(picture, frame));
+    format_apart(longest, sizeof longest, picture->largest_apart);
+    pad(item.number, sizeof item.number, text, longest);
+    return item;
+}
+
+static Item frame_item(const Picture *picture, int frame) {
+    Item item = {.label = "frame "};
+    char text[32], longest[32];
+    snprintf(text, sizeof text, "%d", frame);
+    snprintf(longest, sizeof longest, "%d", picture->frames - 1);
+    pad(item.number, sizeof item.number, text, longest);
+    return item;
+}
+
+static Item time_item(const Picture *picture, int frame) {
+    Item item = {.label = "t = ", .unit = " s"};
+    double dt = (double)picture->panels[0]->dt;
+    char text[64], longest[64];
+    snprintf(text, sizeof text, "%.3f", frame * dt);
+    snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
+    pad(item.number, sizeof item.number, text, longest);
+    return item;
+}
+
+static int item_width(const Font *font, const Item *item) {
+    return font_width(font, item->label) + font_width(font, item->number) + font_width(font, item->unit);
+}
+
+static void draw_item(const Layout *layout, const Item *item, int x, Drawing *drawing) {
+    x = font_add(drawing, &layout->status, item->label, x, layout->header_baseline, INK_SOFT);
+    x = font_add(drawing, &layout->status, item->number, x, layout->header_baseline, INK);
+    font_add(drawing, &layout->status, item->unit, x, layout->header_baseline, INK_SOFT);
+}
+
+/* "pyramid_settled" -> "Pyramid settled" */
+static void scene_title(char *title, size_t size, const char *scene) {
+    snprintf(title, size, "%s", scene);
+    for (char *c = title; *c != '\0'; c++)
+        if (*c == '_') *c = ' ';
+    if (title[0] >= 'a' && title[0] <= 'z') title[0] = (char)(title[0] - 'a' + 'A');
+}
+
+void caption_header(const Picture *picture, int frame, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    Item items[3] = {time_item(picture, frame), frame_item(picture, frame), apart_item(picture, frame)};
+    int count = picture->count > 1 ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
+    for (int i = 0; i < count; i++) {
+        int left = x - item_width(&layout->status, &items[i]);
+        if (left < layout->left) break;
+        draw_item(layout, &items[i], left, drawing);
+        x = left - gap;
+    }
+    char title[TRAJECTORY_NAME_SIZE];
+    scene_title(title, sizeof title, picture->panels[0]->scene);
+    font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left,
+                     INK);
+}
+
+static bool is_method(const char *text, const char *name) {
+    size_t length = strlen(name);
+    return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
+}
+
+/* Copies a method without the folders of the files it names: they belong to a machine and not to a picture.
+ */
+static void shorten_method(char *text, size_t size, const char *method) {
+    size_t length = 0, value = 0;
+    for (const char *c = method; *c != '\0' && length + 1 < size; c++) {
+        if (*c == '/') {
+            length = value;
+            continue;
+        }
+        text[length++] = *c;
+        if (*c == ':' || *c == '=' || *c == ',') value = length;
+    }
+    text[length] = '\0';
+}
+
+static void describe(const char *method, const char **title, char *note, size_t size) {
+    char text[TRAJECTORY_NAME_SIZE];
+    shorten_method(text, sizeof text, method);
+    *title = NULL;
+    if (is_method(method, "engine")) {
+        *title = "Physics engine";
+        snprintf(note, size, "sequential impulses, %s", text);
+    } else {
+        if (is_method(method, "pair-net")) *title = "Neural network";
+        snprintf(note, size, "%s", text);
+    }
+}
+
+void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    if (layout->title.glyphs == NULL) return;
+    const Trajectory *trajectory = picture->panels[panel];
+    const Rect *rect = &layout->panels[panel];
+    int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2, right = rect->right;
+    if (frame >= trajectory->frames) {
+        right -= font_width(&layout->method, "ended");
+        font_add(drawing, &layout->method, "ended", right, baseline, INK_SOFT);
+        right -= gap;
+    }
+    const char *title;
+    char note[TEXT_SIZE];
+    describe(trajectory->method, &title, note, sizeof note);
+    int x = panel_draw_swatch(picture, panel, rect->left, baseline, drawing) + gap;
+    if (title == NULL) {
+        font_add_fitting(drawing, &layout->title, note, x, baseline, right - x, INK);
+        return;
+    }
+    x = font_add_fitting(drawing, &layout->title, title, x, baseline, right - x, INK) + gap;
+    font_add_fitting(drawing, &layout->method, note, x, baseline, right - x, INK_SOFT);
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where everything stands in a picture of a given size. */
+#pragma once
+#include "render/font.h"
+#include "render/render.h"
+
+typedef struct Layout {
+    Font scene, status, title, method, axis; /* without glyphs where the picture is too small for text */
+    int columns, rows;
+    int left, right; /* the margins' inner edges */
+    int header_baseline;
+    int title_rise;                 /* from the top of a panel up to the baseline of its title */
+    int axis_drop;                  /* from the bottom of a panel down to the baseline of its axis */
+    int tick;                       /* length of a tick at the axis */
+    int hairline;                   /* thickness of the thinnest line */
+    Rect panels[RENDER_PANELS_MAX]; /* all of one size */
+} Layout;
+
+Layout layout_make(int width, int height, int panels);

@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One panel: grid, bodies, axes. */
+#pragma once
+#include "render/picture.h"
+
+void panel_draw(const Picture *picture, int panel, int frame, Drawing *drawing);
+
+/* A small box in the colours of the panel's bodies, standing on a line of text. Returns its right edge. */
+int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline, Drawing *drawing);

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shares the frames of a sequence out to worker processes and listens to them. They are forked before any
+   OpenGL context is made: a context does not survive a fork. */
+#include "common/file.h"
+#include "render/worker.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+typedef struct Worker {
+    pid_t process; /* 0 once it has ended */
+    int pipe;      /* -1 once it is closed */
+} Worker;
+
+typedef struct Sequence {
+    Worker *workers;
+    struct pollfd *polls;
+    int jobs, listening;
+    double done, total; /* frames */
+} Sequence;
+
+static bool choose_range(const RenderOptions *options, const Picture *picture, int *first, int *last,
+                         Error *error) {
+    *first = options->first;
+    *last = options->last < 0 ? picture->frames - 1 : options->last;
+    if (*first >= 0 && *first <= *last && *last < picture->frames) return true;
+    return error_input(error, "render", "frames %d to %d asked for; the frames are 0 to %d", *first, *last,
+                       picture->frames - 1);
+}
+
+/* In the child the pipes of workers forked before would keep these alive when the parent has gone. */
+static void run_child(const Sequence *sequence, int index, const WorkerJob *job, int pipe) {
+    for (int i = 0; i < index; i++) close(sequence->workers[i].pipe);
+    bool ok = worker_run(job, pipe);
+    _exit(ok ? 0 : 1);
+}
+
+static bool start_worker(Sequence *sequence, int index, const WorkerJob *job, Error *error) {
+    int ends[2];
+    if (pipe(ends) != 0) return error_system(error, "render", "cannot make a pipe: %s", strerror(errno));
+    pid_t process = fork();
+    if (process == 0) {
+        close(ends[0]);
+        run_child(sequence, index, job, ends[1]);
+    }
+    close(ends[1]);
+    if (process < 0) {
+        close(ends[0]);
+        return error_system(error, "render", "cannot start a process: %s", strerror(errno));
+    }
+    sequence->workers[index] = (Worker){process, ends[0]};
+    sequence->listening++;
+    return true;
+}
+
+/* Neighbouring frames go to the same worker, and no two shares differ by more than one frame. */
+static bool start_workers(Sequence *sequence, WorkerJob job, int first, Error *error) {
+    int frames = (int)sequence->total;
+    for (int i = 0; i < sequence->jobs; i++) {
+        job.first = first + (int)((long long)frames * i / sequence->jobs);
+        job.last = first + (int)((long long)frames * (i + 1) / sequence->jobs) - 1;
+        if (!start_worker(sequence, i, &job, error)) return false;
+    }
+    return true;
+}
+
+/* A worker still at work notices at its next report. */
+static void stop_listening(Sequence *sequence, Worker *worker) {
+    if (worker->pipe < 0) return;
+    close(worker->pipe);
+    worker->pipe = -1;
+    sequence->listening--;
+}
+
+static void await_end(Worker *worker, Error *error) {
+    int status = 0;
+    if (worker->process == 0) return;
+    while (waitpid(worker->process, &status, 0) < 0 && errno == EINTR) continue;
+    worker->process = 0;
+    if (WIFSIGNALED(status))
+        error_system(error, "render", "a drawing process was ended by signal %d", WTERMSIG(status));
+    else if (WEXITSTATUS(status) != 0)
+        error_system(error, "render", "a drawing process ended without a word");
+}
+
+static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
+    Error report;
+    ssize_t size = read(worker->pipe, &report, sizeof report);
+    if (size < 0 && errno == EINTR) return true;
+    if (size == sizeof report && report.kind == ERROR_NONE) {
+        sequence->done++;
+        return true;
+    }
+    if (size == sizeof report) *error = report;
+    stop_listening(sequence, worker);
+    await_end(worker, error);
+    return error->kind == ERROR_NONE;
+}
+
+static bool wait_for_workers(Sequence *sequence, const Progress *progress, Error *error) {
+    while (sequence->listening > 0) {
+        for (int i = 0; i < sequence->jobs; i++)
+            sequence->polls[i] = (struct pollfd){.fd = sequence->workers[i].pipe, .events = POLLIN};
+        if (poll(sequence->polls, (nfds_t)sequence->jobs, -1) < 0 && errno != EINTR)
+            return error_system(error, "render", "cannot wait for the drawing processes: %s",
+                                strerror(errno));
+        for (int i = 0; i < sequence->jobs; i++)
+            if (sequence->polls[i].revents != 0 && !listen_to(sequence, &sequence->workers[i], error))
+                return false;
+        if (!progress_report(progress, sequence->done, sequence->total))
+            return error_input(error, "render", "stopped");
+    }
+    return true;
+}
+
+/* After an error the others end too; they are asked all before the first is waited for. */
+static void end_all(Sequence *sequence) {
+    Error ignored = {0};
+    if (sequence->workers == NULL) return;
+    for (int i = 0; i < sequence->jobs; i++) stop_listening(sequence, &sequence->workers[i]);
+    for (int i = 0; i < sequence->jobs; i++) await_end(&sequence->workers[i], &ignored);
+}
+
+static bool draw_all(Sequence *sequence, const WorkerJob *job, int first, const Progress *progress,
+                     Error *error) {
+    sequence->workers = calloc((size_t)sequence->jobs, sizeof *sequence->workers);
+    sequence->polls = calloc((size_t)sequence->jobs, sizeof *sequence->polls);
+    for (int i = 0; sequence->workers != NULL && i < sequence->jobs; i++) sequence->workers[i].pipe = -1;
+    bool ok = (sequence->workers != NULL && sequence->polls != NULL) || error_memory(error, "render");
+    ok = ok && start_workers(sequence, *job, first, error) && wait_for_workers(sequence, progress, error);
+    end_all(sequence);
+    free(sequence->workers);
+    free(sequence->polls);
+    return ok;
+}
+
+bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
+                     const Progress *progress, Error *error) {
+    Picture picture;
+    int first, last;
+    if (options->jobs < 1 || options->jobs > RENDER_JOBS_MAX)
+        return error_input(error, "render", "%d jobs asked for; there can be 1 to %d", options->jobs,
+                           RENDER_JOBS_MAX);
+    if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error) ||
+        !choose_range(options, &picture, &first, &last, error) ||
+        !file_make_directory(options->directory, error))
+        return false;
+    int frames = last - first + 1;
+    Sequence sequence = {.jobs = options->jobs < frames ? options->jobs : frames, .total = frames};
+    WorkerJob job = {.picture = &picture, .options = options, .sink = sink_png(options->directory)};
+    return draw_all(&sequence, &job, first, progress, error);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The derivative of output k by the weight from unit i to unit j is d_j(k) x_i, so an entry of J^T J is
+
+       sum over rows of D x_i x_i',   D = sum over outputs k of d_j(k) d_j'(k)
+
+   D is formed once for a pair of units and the products x_i x_i' once for a pair of layers: a sixth of the
+   multiplications of J^T J from J for 10-10-2, a tenth for 10-8-8-6. Measured on two cores, 10^6 rows of
+   10-10-2: OpenBLAS's dsyrk on J took 2 s. */
+#include "training/gauss_newton.h"
+
+#include "training/loss.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* As in loss.c, but each chunk has a matrix. */
+enum { MAX_CHUNKS = 32, MAX_MATRIX_NUMBERS = 1 << 24 };
+
+typedef struct Chunk {
+    NetworkBlock *block;
+    double *deltas;   /* [outputs, units, BLOCK_ROWS]: d prediction k / d sum of each unit of all layers */
+    double *products; /* [pairs of inputs, BLOCK_ROWS] of a pair of layers */
+    double *jtu;      /* [parameters] */
+    double *jtj;      /* [parameters, parameters], lower half */
+} Chunk;
+
+struct GaussNewton {
+    const Network *shape;
+    size_t parameters;
+    int units; /* of all layers but the inputs */
+    int first_unit[NETWORK_MAX_LAYERS];
+    size_t first_parameter[NETWORK_MAX_LAYERS];
+    double ones[BLOCK_ROWS]; /* the input of a bias */
+    int chunk_count;
+    Chunk chunks[MAX_CHUNKS];
+};
+
+static bool create_chunk(const GaussNewton *work, Chunk *chunk, Error *error) {
+    const Network *shape = work->shape;
+    size_t outputs = (size_t)shape->widths[shape->layers], widest = (size_t)network_scratch_width(shape) + 1;
+    chunk->block = network_block_create(shape, error);
+    chunk->deltas = calloc(outputs * (size_t)work->units * BLOCK_ROWS, sizeof(double));
+    chunk->products = calloc(widest * widest * BLOCK_ROWS, sizeof(double));
+    chunk->jtu = calloc(work->parameters, sizeof(double));
+    chunk->jtj = calloc(work->parameters * work->parameters, sizeof(double));
+    return chunk->block != NULL && chunk->deltas != NULL && chunk->products != NULL && chunk->jtu != NULL &&
+           chunk->jtj != NULL;
+}
+
+GaussNewton *gauss_newton_create(const Network *shape, Error *error) {
+    GaussNewton *work = calloc(1, sizeof *work);
+    if (work == NULL) return error_memory(error, "training"), NULL;
+    work->shape = shape;
+    for (int l = 0; l < shape->layers; l++) {
+        work->first_unit[l] = work->units;
+        work->first_parameter[l] = work->parameters;
+        work->units += shape->widths[l + 1];
+        work->parameters += (size_t)shape->widths[l + 1] * (size_t)(shape->widths[l] + 1);
+    }
+    for (int r = 0; r < BLOCK_ROWS; r++) work->ones[r] = 1;
+    size_t affordable = MAX_MATRIX_NUMBERS / (work->parameters * work->parameters);
+    work->chunk_count = affordable < 1 ? 1 : affordable < MAX_CHUNKS ? (int)affordable : MAX_CHUNKS;
+    for (int c = 0; c < work->chunk_count; c++)
+        if (!create_chunk(work, &work->chunks[c], error))
+            return error_memory(error, "training"), gauss_newton_destroy(work), NULL;
+    return work;
+}
+
+void gauss_newton_destroy(GaussNewton *work) {
+    if (work == NULL) return;
+    for (int c = 0; c < work->chunk_count; c++) {
+        network_block_destroy(work->chunks[c].block);
+        free(work->chunks[c].deltas);
+        free(work->chunks[c].products);
+        free(work->chunks[c].jtu);
+        free(work->chunks[c].jtj);
+    }
+    free(work);
+}
+
+/* The values that go into layer l by input i; the last is the bias's. */
+static const double *input_values(const GaussNewton *work, const Chunk *chunk, int l, int i) {
+    return i < work->shape->widths[l] ? chunk->block->values[l] + i * BLOCK_ROWS : work->ones;
+}
+
+/* Of the weight from input i to unit j of layer l. */
+static size_t parameter_index(const GaussNewton *work, int l, int j, int i) {
+    int inputs = work->shape->widths[l], outputs = work->shape->widths[l + 1];
+    return work->first_parameter[l] + (size_t)(i < inputs ? j * inputs + i : outputs * inputs + j);
+}
+
+static void add_symmetric(const GaussNewton *work, Chunk *chunk, size_t a, size_t b, double value) {
+    size_t row = a > b ? a : b, column = a > b ? b : a;
+    chunk->jtj[row * work->parameters + column] += value;
+}
+
+/* x_i x_i' of layers l and m; of one layer with itself only i' <= i. */
+static void fill_products(const GaussNewton *work, Chunk *chunk, int l, int m) {
+    double *product = chunk->products;
+    for (int i = 0; i <= work->shape->widths[l]; i++)
+        for (int i2 = 0; i2 <= (l == m ? i : work->shape->widths[m]); i2++, product += BLOCK_ROWS) {
+            const double *a = input_values(work, chunk, l, i), *b = input_values(work, chunk, m, i2);
+            for (int r = 0; r < BLOCK_ROWS; r++) product[r] = a[r] * b[r];
+        }
+}
+
+/* D of unit j of layer l and unit j2 of layer m. */
+static void fill_weights(const GaussNewton *work, const Chunk *chunk, int unit, int unit2,
+                         double weights[BLOCK_ROWS]) {
+    memset(weights, 0, BLOCK_ROWS * sizeof *weights);
+    for (int k = 0; k < work->shape->widths[work->shape->layers]; k++) {
+        const double *a = chunk->deltas + (k * work->units + unit) * BLOCK_ROWS;
+        const double *b = chunk->deltas + (k * work->units + unit2) * BLOCK_ROWS;
+        for (int r = 0; r < BLOCK_ROWS; r++) weights[r] += a[r] * b[r];
+    }
+}
+
+static void add_unit_pair(const GaussNewton *work, Chunk *chunk, int l, int j, int m, int j2) {
+    double weights[BLOCK_ROWS];
+    fill_weights(work, chunk, work->first_unit[l] + j, work->first_unit[m] + j2, weights);
+    const double *product = chunk->products;
+    for (int i = 0; i <= work->shape->widths[l]; i++)
+        for (int i2 = 0; i2 <= (l == m ? i : work->shape->widths[m]); i2++, product += BLOCK_ROWS) {
+            double sum = network_block_dot(weights, product);
+            add_symmetric(work, chunk, parameter_index(work, l, j, i), parameter_index(work, m, j2, i2), sum);
+            if (l == m && j != j2 && i != i2)
+                add_symmetric(work, chunk, parameter_index(work, l, j, i2), parameter_index(work, m, j2, i),
+                              sum);
+        }
+}
+
+static void add_layer_pair(const GaussNewton *work, Chunk *chunk, int l, int m) {
+    fill_products(work, chunk, l, m);
+    bool both_last = m == work->shape->layers - 1; /* m <= l */
+    for (int j = 0; j < work->shape->widths[l + 1]; j++)
+        for (int j2 = 0; j2 <= (l == m ? j : work->shape->widths[m + 1] - 1); j2++)
+            if (!both_last || j == j2)
+                add_unit_pair(work, chunk, l, j, m, j2); /* outputs share no prediction */
+}
+
+/* The deltas of every prediction by itself: backward from d prediction k / d prediction = 1. */
+static void fill_deltas(const GaussNewton *work, Chunk *chunk, int rows, const double *parameters) {
+    const Network *shape = work->shape;
+    int outputs = shape->widths[shape->layers];
+    double *last = chunk->block->deltas[shape->layers - 1];
+    for (int k = 0; k < outputs; k++) {
+        for (int i = 0; i < outputs * BLOCK_ROWS; i++) last[i] = i / BLOCK_ROWS == k && i % BLOCK_ROWS < rows;
+        network_backward(chunk->block, parameters);
+        for (int l = 0; l < shape->layers; l++)
+            memcpy(chunk->deltas + (k * work->units + work->first_unit[l]) * BLOCK_ROWS,
+                   chunk->block->deltas[l], (size_t)shape->widths[l + 1] * BLOCK_ROWS * sizeof(double));
+    }
+}
+
+static void add_block(const GaussNewton *work, Chunk *chunk, const Samples *samples, int64_t b,
+                      const double *parameters, const double *u, bool with_jtj) {
+    int layers = work->shape->layers, numbers = samples->outputs * BLOCK_ROWS;
+    loss_forward(chunk->block, samples, b, parameters);
+    memcpy(chunk->block->deltas[layers - 1], u + b * numbers, (size_t)numbers * sizeof *u);
+    network_backward(chunk->block, parameters);
+    network_add_gradient(chunk->block, chunk->jtu);
+    if (!with_jtj) return;
+    fill_deltas(work, chunk, samples_in_block(samples, b), parameters);
+    for (int l = 0; l < layers; l++)
+        for (int m = 0; m <= l; m++) add_layer_pair(work, chunk, l, m);
+}
+
+/* total = the chunks' sums in rising order */
+static void add_chunk(double *total, const double *part, size_t count, bool first) {
+    for (size_t i = 0; i < count; i++) total[i] = first ? part[i] : total[i] + part[i];
+}
+
+void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u,
+                      double *jtu, double *jtj) {
+    size_t count = work->parameters;
+    /* Waking threads for less than a block each costs more than it saves. */
+#pragma omp parallel for schedule(dynamic, 1) if (samples->blocks >= work->chunk_count)
+    for (int c = 0; c < work->chunk_count; c++) {
+        Chunk *chunk = &work->chunks[c];
+        memset(chunk->jtu, 0, count * sizeof(double));
+        memset(chunk->jtj, 0, count * count * sizeof(double));
+        for (int64_t b = samples->blocks * c / work->chunk_count;
+             b < samples->blocks * (c + 1) / work->chunk_count; b++)
+            add_block(work, chunk, samples, b, parameters, u, jtj != NULL);
+    }
+    for (int c = 0; c < work->chunk_count; c++) {
+        add_chunk(jtu, work->chunks[c].jtu, count, c == 0);
+        if (jtj != NULL) add_chunk(jtj, work->chunks[c].jtj, count * count, c == 0);
+    }
+}

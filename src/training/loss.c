@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sums over all rows, in parallel. Loops by hand and no BLAS: for layers of ten units a call to it costs more
+   than the sums. */
+#include "training/loss.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Enough to keep many cores busy to the end; a large network has fewer, for each has a gradient of its own.
+ */
+enum { MAX_CHUNKS = 32, MAX_GRADIENT_NUMBERS = 1 << 23 };
+
+/* One thread's share of the rows. */
+typedef struct Chunk {
+    NetworkBlock *block;
+    double *gradient; /* [parameters] */
+    double sum;       /* of squared errors */
+} Chunk;
+
+struct Loss {
+    int parameters, outputs, last; /* last: index of the last layer */
+    int chunk_count;
+    Chunk chunks[MAX_CHUNKS];
+};
+
+Loss *loss_create(const Network *shape, Error *error) {
+    Loss *loss = calloc(1, sizeof *loss);
+    if (loss == NULL) return error_memory(error, "training"), NULL;
+    loss->parameters = network_parameter_count(shape);
+    loss->last = shape->layers - 1;
+    loss->outputs = shape->widths[shape->layers];
+    int affordable = MAX_GRADIENT_NUMBERS / loss->parameters;
+    loss->chunk_count = affordable < 1 ? 1 : affordable < MAX_CHUNKS ? affordable : MAX_CHUNKS;
+    for (int c = 0; c < loss->chunk_count; c++) {
+        loss->chunks[c].block = network_block_create(shape, error);
+        loss->chunks[c].gradient = calloc((size_t)loss->parameters, sizeof(double));
+        if (loss->chunks[c].block == NULL || loss->chunks[c].gradient == NULL)
+            return error_memory(error, "training"), loss_destroy(loss), NULL;
+    }
+    return loss;
+}
+
+void loss_destroy(Loss *loss) {
+    if (loss == NULL) return;
+    for (int c = 0; c < loss->chunk_count; c++) {
+        network_block_destroy(loss->chunks[c].block);
+        free(loss->chunks[c].gradient);
+    }
+    free(loss);
+}
+
+void loss_forward(NetworkBlock *block, const Samples *samples, int64_t b, const double *parameters) {
+    int count = samples->inputs * BLOCK_ROWS;
+    const float *x = samples->x + b * count;
+    for (int i = 0; i < count; i++) block->values[0][i] = (double)x[i];
+    network_forward(block, parameters);
+}
+
+/* errors[outputs, BLOCK_ROWS] = prediction - target, 0 in the rows that fill up; returns the sum of squares.
+ */
+static double block_errors(const NetworkBlock *block, const Samples *samples, int64_t b, double *errors) {
+    const double *prediction = block->values[block->shape->layers];
+    const float *target = samples->y + b * samples->outputs * BLOCK_ROWS;
+    int rows = samples_in_block(samples, b);
+    double sum = 0;
+    for (int k = 0; k < samples->outputs; k++)
+        for (int r = 0; r < BLOCK_ROWS; r++) {
+            int i = k * BLOCK_ROWS + r;
+            errors[i] = r < rows ? prediction[i] - (double)target[i] : 0;
+            sum += errors[i] * errors[i];
+        }
+    return sum;
+}
+
+/* First block of chunk c; that of chunk c + 1 ends it. */
+static int64_t chunk_start(const Loss *loss, const Samples *samples, int c) {
+    return samples->blocks * c / loss->chunk_count;
+}
+
+static void sum_chunk(const Loss *loss, Chunk *chunk, const Samples *samples, int c, const double *parameters,
+                      bool with_gradient) {
+    double *errors = chunk->block->deltas[loss->last];
+    chunk->sum = 0;
+    memset(chunk->gradient, 0, (size_t)loss->parameters * sizeof(double));
+    for (int64_t b = chunk_start(loss, samples, c); b < chunk_start(loss, samples, c + 1); b++) {
+        loss_forward(chunk->block, samples, b, parameters);
+        chunk->sum += block_errors(chunk->block, samples, b, errors);
+        if (!with_gradient) continue;
+        network_backward(chunk->block, parameters);
+        network_add_gradient(chunk->block, chunk->gradient);
+    }
+}
+
+static double sum_chunks(Loss *loss, const Samples *samples, const double *parameters, bool with_gradient) {
+    /* Waking threads for less than a block each costs more than it saves. */
+#pragma omp parallel for schedule(dynamic, 1) if (samples->blocks >= loss->chunk_count)
+    for (int c = 0; c < loss->chunk_count; c++)
+        sum_chunk(loss, &loss->chunks[c], samples, c, parameters, with_gradient);
+    double sum = 0;
+    for (int c = 0; c < loss->chunk_count; c++) sum += loss->chunks[c].sum;
+    return sum / ((double)samples->rows * loss->outputs);
+}
+
+double loss_value(Loss *loss, const Samples *samples, const double *parameters) {
+    return sum_chunks(loss, samples, parameters, false);
+}
+
+double loss_gradient(Loss *loss, const Samples *samples, const double *parameters, double *gradient) {
+    double value = sum_chunks(loss, samples, parameters, true);
+    /* The chunks summed error * d prediction; d (error^2) / count has twice that. */
+    double factor = 2 / ((double)samples->rows * loss->outputs);
+    for (int p = 0; p < loss->parameters; p++) {
+        double sum = 0;
+        for (int c = 0; c < loss->chunk_count; c++) sum += loss->chunks[c].gradient[p];
+        gradient[p] = factor * sum;
+    }
+    return value;
+}
+
+void loss_residuals(Loss *loss, const Samples *samples, const double *parameters, double *residuals) {
+#pragma omp parallel for schedule(dynamic, 1) if (samples->blocks >= loss->chunk_count)
+    for (int c = 0; c < loss->chunk_count; c++)
+        for (int64_t b = chunk_start(loss, samples, c); b < chunk_start(loss, samples, c + 1); b++) {
+            loss_forward(loss->chunks[c].block, samples, b, parameters);
+            block_errors(loss->chunks[c].block, samples, b, residuals + b * loss->outputs * BLOCK_ROWS);
+        }
+}

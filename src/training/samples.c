@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dataset rows -> normalised blocks. */
+#include "training/samples.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static bool is_test(const Dataset *dataset, int64_t row) {
+    return dataset->launch_test[dataset->launch[row]] != 0;
+}
+
+static float input_at(const Dataset *dataset, int64_t row, int column) {
+    return dataset->inputs[row * PAIR_INPUTS + column];
+}
+
+static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {
+    const float *changes = dataset->changes + row * PAIR_CHANGES;
+    return outputs == PAIR_CHANGES ? changes[column] : changes[column + 3] - changes[column];
+}
+
+/* What a normalisation is made from. */
+typedef struct Spread {
+    double minimum, maximum, mean, deviation;
+} Spread;
+
+/* Over the rows to train on; outputs 0 means an input column. Two passes: the deviation of a column far from
+   0 would drown in the rounding of its squares. */
+static Spread column_spread(const Dataset *dataset, int outputs, int column) {
+    Spread spread = {.minimum = INFINITY, .maximum = -INFINITY};
+    for (int pass = 0; pass < 2; pass++) {
+        double sum = 0;
+        int64_t count = 0;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (is_test(dataset, row)) continue;
+            double x =
+                outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
+            spread.minimum = fmin(spread.minimum, x);
+            spread.maximum = fmax(spread.maximum, x);
+            sum += pass == 0 ? x : (x - spread.mean) * (x - spread.mean);
+            count++;
+        }
+        if (pass == 0)
+            spread.mean = sum / (double)count;
+        else
+            spread.deviation = sqrt(sum / (double)count);
+    }
+    return spread;
+}
+
+static void set_scale(Normalisation *normalisation, int column, double offset, double width) {
+    float scale = (float)(1 / width);
+    normalisation->offset[column] = (float)offset;
+    normalisation->scale[column] = isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+static void standardise(Normalisation *normalisation, int column, const Spread *spread) {
+    bool constant = spread->minimum == spread->maximum;
+    set_scale(normalisation, column, constant ? spread->minimum : spread->mean,
+              constant ? 1 : spread->deviation);
+}
+
+void samples_fit_normalisation(const Dataset *dataset, Network *network) {
+    int outputs = network->widths[network->layers];
+    for (int i = 0; i < network->widths[0]; i++) {
+        Spread spread = column_spread(dataset, 0, i);
+        standardise(&network->input, i, &spread);
+    }
+    for (int k = 0; k < outputs; k++) {
+        Spread spread = column_spread(dataset, outputs, k);
+        if (network->activations[network->layers - 1] == ACTIVATION_LINEAR)
+            standardise(&network->output, k, &spread);
+        else
+            set_scale(&network->output, k, spread.minimum, spread.maximum - spread.minimum);
+    }
+}
+
+/* The float32 expression of network_predict(), so that training sees what inference will. */
+static float normalise(const Normalisation *normalisation, int column, float x) {
+    return (x - normalisation->offset[column]) * normalisation->scale[column];
+}
+
+static void put_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row,
+                    const Network *network) {
+    int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
+    for (int i = 0; i < samples->inputs; i++)
+        samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
+            normalise(&network->input, i, input_at(dataset, row, i));
+    for (int k = 0; k < samples->outputs; k++)
+        samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
+            normalise(&network->output, k, target_at(dataset, row, samples->outputs, k));
+}
+
+Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error) {
+    Samples *samples = calloc(1, sizeof *samples);
+    if (samples == NULL) return error_memory(error, "training"), NULL;
+    samples->inputs = network->widths[0];
+    samples->outputs = network->widths[network->layers];
+    for (int64_t row = 0; row < dataset->rows; row++) samples->rows += is_test(dataset, row) == test;
+    samples->blocks = (samples->rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
+    size_t padded = (size_t)samples->blocks * BLOCK_ROWS;
+    samples->x = calloc(padded * (size_t)samples->inputs, sizeof *samples->x);
+    samples->y = calloc(padded * (size_t)samples->outputs, sizeof *samples->y);
+    if (samples->x == NULL || samples->y == NULL)
+        return error_memory(error, "training"), samples_destroy(samples), NULL;
+    int64_t to = 0;
+    for (int64_t row = 0; row < dataset->rows; row++)
+        if (is_test(dataset, row) == test) put_row(samples, to++, dataset, row, network);
+    return samples;
+}
+
+void samples_destroy(Samples *samples) {
+    if (samples == NULL) return;
+    free(samples->x);
+    free(samples->y);
+    free(samples);
+}
+
+static const float *target_column(const Samples *samples, int64_t b, int k) {
+    return samples->y + (b * samples->outputs + k) * BLOCK_ROWS;
+}
+
+void samples_mean(const Samples *samples, double *mean) {
+    for (int k = 0; k < samples->outputs; k++) {
+        double sum = 0;
+        for (int64_t b = 0; b < samples->blocks; b++)
+            for (int r = 0; r < samples_in_block(samples, b); r++) sum += target_column(samples, b, k)[r];
+        mean[k] = sum / (double)samples->rows;
+    }
+}
+
+double samples_constant_error(const Samples *samples, const double *constant) {
+    double sum = 0;
+    for (int64_t b = 0; b < samples->blocks; b++)
+        for (int k = 0; k < samples->outputs; k++)
+            for (int r = 0; r < samples_in_block(samples, b); r++) {
+                double e = target_column(samples, b, k)[r] - constant[k];
+                sum += e * e;
+            }
+    return sum / ((double)samples->rows * samples->outputs);
+}

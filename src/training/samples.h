@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rows of a dataset as training sees them: targets chosen, numbers normalised, in blocks of the
+   gradient's layout. */
+#pragma once
+#include "dataset/dataset.h"
+#include "network/network_gradient.h"
+
+typedef struct Samples {
+    int64_t rows, blocks; /* the last block is filled up with zeros */
+    int inputs, outputs;
+    float *x; /* [blocks, inputs, BLOCK_ROWS], normalised */
+    float *y; /* [blocks, outputs, BLOCK_ROWS], normalised */
+} Samples;
+
+/* Numbers of samples that block b holds. */
+static inline int samples_in_block(const Samples *samples, int64_t b) {
+    int64_t left = samples->rows - b * BLOCK_ROWS;
+    return left < BLOCK_ROWS ? (int)left : BLOCK_ROWS;
+}
+
+/* Sets the network's normalisations from the rows to train on: inputs to mean 0 and standard deviation 1;
+   outputs the same way where the last layer is linear (paper, 3.1), else minimum and maximum to 0 and 1
+   (3.2). A column that never changes has scale 1. */
+void samples_fit_normalisation(const Dataset *dataset, Network *network);
+
+/* The rows to train on, or those held out for the test. Two outputs: change of the velocity of b relative to
+   a (x, y); six: pair_changes(). */
+Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error);
+void samples_destroy(Samples *samples);
+
+/* Mean over rows and outputs of the squared distance from constant[outputs]. */
+double samples_constant_error(const Samples *samples, const double *constant);
+
+/* mean[outputs] of y */
+void samples_mean(const Samples *samples, double *mean);

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
+#include "training/training.h"
+
+#include "training/optimizer.h"
+
+#include <float.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_lm, NULL};
+
+static const Optimizer *find_optimizer(const char *name, Error *error) {
+    char known[128] = "";
+    for (int i = 0; optimizers[i] != NULL; i++) {
+        if (strcmp(optimizers[i]->name, name) == 0) return optimizers[i];
+        size_t length = strlen(known);
+        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", optimizers[i]->name);
+    }
+    error_input(error, "optimizer", "there is no \"%s\"; known are %s", name, known);
+    return NULL;
+}
+
+static bool check_options(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+    if (options->layers < 1 || options->layers > NETWORK_MAX_LAYERS)
+        return error_input(error, "layers", "%d layers of weights; 1 to %d are possible", options->layers,
+                           NETWORK_MAX_LAYERS);
+    int first = options->widths[0], last = options->widths[options->layers];
+    if (first != PAIR_INPUTS)
+        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
+                           PAIR_INPUTS);
+    if (last != 2 && last != PAIR_CHANGES)
+        return error_input(error, "layers",
+                           "the last width is %d; 2 (relative velocity) or %d (both bodies) are known", last,
+                           PAIR_CHANGES);
+    if (options->iterations < 0)
+        return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
+    int64_t test_rows = 0;
+    for (int64_t row = 0; row < dataset->rows; row++)
+        test_rows += dataset->launch_test[dataset->launch[row]] != 0;
+    if (test_rows > 0 && test_rows < dataset->rows) return true;
+    return error_input(error, "dataset",
+                       "%lld rows to train on and %lld to test on; at least one of each is needed",
+                       (long long)(dataset->rows - test_rows), (long long)test_rows);
+}
+
+/* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
+   uniform in +- sqrt(6 / (inputs + outputs)), biases 0. */
+static void set_first_weights(Network *network, const gsl_rng *rng) {
+    for (int l = 0; l < network->layers; l++) {
+        int inputs = network->widths[l], outputs = network->widths[l + 1];
+        double limit = sqrt(6.0 / (inputs + outputs));
+        for (int i = 0; i < inputs * outputs; i++)
+            network->weights[l][i] = (float)(limit * (2 * gsl_rng_uniform(rng) - 1));
+    }
+}
+
+static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    if (rng == NULL) return error_memory(error, "training");
+    gsl_rng_set(rng, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* the generator takes 32 bits */
+    set_first_weights(network, rng);
+    gsl_rng_free(rng);
+    return true;
+}
+
+/* Sigmoids throughout for the two outputs of the paper's 3.2, a linear last layer for the six of 3.1. */
+static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+    Network *network = network_create(options->layers, options->widths, error);
+    if (network == NULL) return NULL;
+    bool six = options->widths[options->layers] == PAIR_CHANGES;
+    for (int l = 0; l < network->layers; l++) network->activations[l] = ACTIVATION_SIGMOID;
+    if (six) network->activations[network->layers - 1] = ACTIVATION_LINEAR;
+    snprintf(network->inputs, sizeof network->inputs, "%s", pair_input_names);
+    snprintf(network->outputs, sizeof network->outputs, "%s", six ? pair_change_names : "dvx dvy");
+    samples_fit_normalisation(dataset, network);
+    if (set_random_weights(network, options->seed, error)) return network;
+    network_destroy(network);
+    return NULL;
+}
+
+static Network *continued_network(const TrainingOptions *options, Error *error) {
+    const Network *start = options->start;
+    bool fits = start->layers == options->layers;
+    for (int l = 0; fits && l <= options->layers; l++) fits = start->widths[l] == options->widths[l];
+    if (fits) return network_copy(start, error);
+    error_input(error, "layers", "the network to go on from has other widths");
+    return NULL;
+}
+
+/* 0, 10, 50, 100, 1000, 2000 as the paper's Table 1, then 5000, 10000, 20000, ... */
+static bool is_scored(int iteration) {
+    static const int early[] = {0, 10, 50, 100};
+    for (size_t i = 0; i < sizeof early / sizeof early[0]; i++)
+        if (iteration == early[i]) return true;
+    if (iteration < 1000) return false;
+    while (iteration % 10 == 0) iteration /= 10;
+    return iteration == 1 || iteration == 2 || iteration == 5;
+}
+
+static void report_score(Trainer *trainer) {
+    if (trainer->scored == trainer->iteration || trainer->options->on_score == NULL) return;
+    trainer->scored = trainer->iteration;
+    TrainingScore score = {.iteration = trainer->iteration,
+                           .test = loss_value(trainer->loss, trainer->test, trainer->now),
+                           .train = trainer->loss_now,
+                           .constant_test = trainer->constant_test,
+                           .constant_train = trainer->constant_train};
+    trainer->options->on_score(trainer->options->context, &score);
+}
+
+/* Finite also as the float32 of the network. */
+static bool is_finite(const double *parameters, int count, double loss) {
+    if (!isfinite(loss)) return false;
+    for (int p = 0; p < count; p++)
+        if (!(fabs(parameters[p]) <= FLT_MAX)) return false;
+    return true;
+}
+
+bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss, Error *error) {
+    size_t size = (size_t)trainer->parameters * sizeof *parameters;
+    trainer->iteration++;
+    if (!is_finite(parameters, trainer->parameters, train_loss))
+        return error_input(error, "training", "left the finite numbers in iteration %d", trainer->iteration);
+    memcpy(trainer->now, parameters, size);
+    trainer->loss_now = train_loss;
+    if (trainer->iteration == 0 || train_loss < trainer->best_loss) {
+        memcpy(trainer->best, parameters, size);
+        trainer->best_loss = train_loss;
+    }
+    if (is_scored(trainer->iteration)) report_score(trainer);
+    trainer->finished =
+        !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
+        trainer->iteration == trainer->options->iterations;
+    return true;
+}
+
+static bool score_constant(Trainer *trainer, Error *error) {
+    double *mean = malloc((size_t)trainer->train->outputs * sizeof *mean);
+    if (mean == NULL) return error_memory(error, "training");
+    samples_mean(trainer->train, mean);
+    trainer->constant_test = samples_constant_error(trainer->test, mean);
+    trainer->constant_train = samples_constant_error(trainer->train, mean);
+    free(mean);
+    return true;
+}
+
+/* Minimises and puts the best weights into the network, whose numbers are one block from weights[0] on. */
+static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *network, Error *error) {
+    size_t count = (size_t)trainer->parameters;
+    double *numbers = calloc(3 * count, sizeof *numbers);
+    if (numbers == NULL) return error_memory(error, "training");
+    double *parameters = numbers;
+    trainer->now = numbers + count;
+    trainer->best = numbers + 2 * count;
+    for (size_t p = 0; p < count; p++) parameters[p] = (double)network->weights[0][p];
+    bool ok = optimizer->minimize(trainer, parameters, error);
+    if (ok) {
+        report_score(trainer);
+        for (size_t p = 0; p < count; p++) network->weights[0][p] = (float)trainer->best[p];
+    }
+    free(numbers);
+    return ok;
+}
+
+static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer,
+                  const TrainingOptions *options, const Progress *progress, Error *error) {
+    Loss *loss = loss_create(network, error);
+    Samples *train_samples = samples_create(dataset, network, false, error);
+    Samples *test_samples = samples_create(dataset, network, true, error);
+    Trainer trainer = {.options = options,
+                       .progress = progress,
+                       .network = network,
+                       .train = train_samples,
+                       .test = test_samples,
+                       .loss = loss,
+                       .parameters = network_parameter_count(network),
+                       .iteration = -1,
+                       .scored = -1};
+    bool ok = loss != NULL && train_samples != NULL && test_samples != NULL &&
+              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
+    samples_destroy(test_samples);
+    samples_destroy(train_samples);
+    loss_destroy(loss);
+    return ok;
+}
+
+Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
+                      Error *error) {
+    /* GSL's default handler ends the process. */
+    gsl_set_error_handler_off();
+    const Optimizer *optimizer = find_optimizer(options->optimizer, error);
+    if (optimizer == NULL || !check_options(dataset, options, error)) return NULL;
+    Network *network =
+        options->start != NULL ? continued_network(options, error) : new_network(dataset, options, error);
+    if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
+        network_destroy(network);
+        network = NULL;
+    }
+    return network;
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "common/npz.h"
+#include "dataset/dataset.h"
+
+#include <math.h>
+
+enum { ROWS = 4, LAUNCHES = 3 };
+
+/* Two scenes, three launches of which the second is held out, four rows. */
+static struct {
+    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], launch_x[LAUNCHES];
+    int32_t launch[ROWS], frame[ROWS], bodies[ROWS * 2], launch_scene[LAUNCHES];
+    uint8_t launch_test[LAUNCHES];
+} numbers;
+
+static Dataset example(void) {
+    for (int i = 0; i < ROWS * PAIR_INPUTS; i++) numbers.inputs[i] = 0.1f * (float)i - 1;
+    for (int i = 0; i < ROWS * PAIR_CHANGES; i++) numbers.changes[i] = -0.3f * (float)i;
+    memcpy(numbers.launch, (int32_t[]){0, 0, 1, 2}, sizeof numbers.launch);
+    memcpy(numbers.frame, (int32_t[]){1, 2, 5, 9}, sizeof numbers.frame);
+    memcpy(numbers.bodies, (int32_t[]){0, 1, 0, 2, 1, 2, 0, 1}, sizeof numbers.bodies);
+    memcpy(numbers.launch_scene, (int32_t[]){0, 0, 1}, sizeof numbers.launch_scene);
+    memcpy(numbers.launch_x, (float[]){-0.1f, 0, 0.1f}, sizeof numbers.launch_x);
+    memcpy(numbers.launch_test, (uint8_t[]){0, 1, 0}, sizeof numbers.launch_test);
+    return (Dataset){.rows = ROWS,
+                     .capacity = ROWS,
+                     .inputs = numbers.inputs,
+                     .changes = numbers.changes,
+                     .launch = numbers.launch,
+                     .frame = numbers.frame,
+                     .bodies = numbers.bodies,
+                     .launches = LAUNCHES,
+                     .launch_scene = numbers.launch_scene,
+                     .launch_x = numbers.launch_x,
+                     .launch_test = numbers.launch_test,
+                     .scene_count = 2,
+                     .scenes = {"single", "stack of ten"}};
+}
+
+static void files_keep_every_bit(void **state) {
+    (void)state;
+    Error error = {0};
+    const Dataset dataset = example();
+    const char *path = temporary_path("data.npz");
+    assert_ok(dataset_write(&dataset, path, &error), error);
+    Dataset *read = dataset_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_true(read->rows == ROWS && read->capacity == ROWS && read->launches == LAUNCHES);
+    assert_memory_equal(read->inputs, numbers.inputs, sizeof numbers.inputs);
+    assert_memory_equal(read->changes, numbers.changes, sizeof numbers.changes);
+    assert_memory_equal(read->launch, numbers.launch, sizeof numbers.launch);
+    assert_memory_equal(read->frame, numbers.frame, sizeof numbers.frame);
+    assert_memory_equal(read->bodies, numbers.bodies, sizeof numbers.bodies);
+    assert_memory_equal(read->launch_scene, numbers.launch_scene, sizeof numbers.launch_scene);
+    assert_memory_equal(read->launch_x, numbers.launch_x, sizeof numbers.launch_x);
+    assert_memory_equal(read->launch_test, numbers.launch_test, sizeof numbers.launch_test);
+    assert_int_equal(read->scene_count, 2);
+    assert_string_equal(read->scenes[0], "single");
+    assert_string_equal(read->scenes[1], "stack of ten");
+    dataset_destroy(read);
+}
+
+static void the_most_and_longest_scene_names_are_kept(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset dataset = example();
+    const char *path = temporary_path("names.npz");
+    dataset.scene_count = DATASET_MAX_SCENES;
+    for (int s = 0; s < DATASET_MAX_SCENES; s++) {
+        memset(dataset.scenes[s], 'a' + s, DATASET_NAME_SIZE - 1);
+        dataset.scenes[s][DATASET_NAME_SIZE - 1] = '\0';
+    }
+    assert_ok(dataset_write(&dataset, path, &error), error);
+    Dataset *read = dataset_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_int_equal(read->scene_count, DATASET_MAX_SCENES);
+    assert_string_equal(read->scenes[DATASET_MAX_SCENES - 1], dataset.scenes[DATASET_MAX_SCENES - 1]);
+    dataset_destroy(read);
+}
+
+static void assert_refused(const char *path, const char *text) {
+    Error error = {0};
+    assert_null(dataset_read(path, &error));
+    assert_error(error, ERROR_INPUT, text);
+    assert_error(error, ERROR_INPUT, path);
+}
+
+static void assert_written_is_refused(const Dataset *dataset, const char *text) {
+    Error error = {0};
+    const char *path = temporary_path("bad.npz");
+    assert_ok(dataset_write(dataset, path, &error), error);
+    assert_refused(path, text);
+}
+
+static void numbers_that_are_not_finite_are_refused(void **state) {
+    (void)state;
+    Dataset dataset = example();
+    numbers.inputs[13] = NAN;
+    assert_written_is_refused(&dataset, "inputs: number 13 is nan");
+    dataset = example();
+    numbers.changes[23] = INFINITY;
+    assert_written_is_refused(&dataset, "changes: number 23 is inf");
+    dataset = example();
+    numbers.launch_x[2] = -INFINITY;
+    assert_written_is_refused(&dataset, "launch_x: number 2");
+}
+
+static void indices_out_of_range_are_refused(void **state) {
+    (void)state;
+    Dataset dataset = example();
+    numbers.launch[3] = LAUNCHES;
+    assert_written_is_refused(&dataset, "launch: number 3 is 3; 0 to 2");
+    numbers.launch[3] = -1;
+    assert_written_is_refused(&dataset, "launch: number 3 is -1");
+    dataset = example();
+    numbers.launch_scene[1] = 2;
+    assert_written_is_refused(&dataset, "launch_scene: number 1 is 2; 0 to 1");
+    dataset = example();
+    numbers.frame[0] = -1;
+    assert_written_is_refused(&dataset, "frame: number 0");
+    dataset = example();
+    numbers.bodies[7] = -1;
+    assert_written_is_refused(&dataset, "bodies: number 7");
+    dataset = example();
+    numbers.launch_test[0] = 2;
+    assert_written_is_refused(&dataset, "launch_test: number 0 is 2");
+}
+
+static void both_sides_of_the_split_need_rows(void **state) {
+    (void)state;
+    Dataset dataset = example();
+    numbers.launch_test[1] = 0;
+    assert_written_is_refused(&dataset, "4 rows to train on and 0 to test on");
+    memset(numbers.launch_test, 1, sizeof numbers.launch_test);
+    assert_written_is_refused(&dataset, "0 rows to train on and 4 to test on");
+    dataset = example();
+    dataset.rows = 0;
+    assert_written_is_refused(&dataset, "0 rows");
+    dataset = example();
+    dataset.launches = 0;
+    assert_written_is_refused(&dataset, "0 launches");
+}
+
+static void scene_names_out_of_range_are_refused(void **state) {
+    (void)state;
+    Dataset dataset = example();
+    dataset.scenes[1][0] = '\0';
+    assert_written_is_refused(&dataset, "scenes: a name of 0 bytes");
+    dataset = example();
+    memset(dataset.scenes[0], '\n', DATASET_MAX_SCENES);
+    memset(dataset.scenes[0], 'x', 1);
+    assert_written_is_refused(&dataset, "scenes: a name of 0 bytes");
+}
+
+/* Replaces one array of the example's file, or leaves it out where its data is NULL. */
+static const char *write_with(NpzArray changed) {
+    const Dataset dataset = example();
+    const int32_t version = DATASET_VERSION;
+    const NpzArray valid[] = {{"version", NPZ_INT32, 0, {0}, &version},
+                              {"kind", NPZ_TEXT, 0, {0}, "dataset"},
+                              {"scenes", NPZ_TEXT, 0, {0}, "single\nstack"},
+                              {"launch_scene", NPZ_INT32, 1, {LAUNCHES}, dataset.launch_scene},
+                              {"launch_x", NPZ_FLOAT32, 1, {LAUNCHES}, dataset.launch_x},
+                              {"launch_test", NPZ_UINT8, 1, {LAUNCHES}, dataset.launch_test},
+                              {"inputs", NPZ_FLOAT32, 2, {ROWS, PAIR_INPUTS}, dataset.inputs},
+                              {"changes", NPZ_FLOAT32, 2, {ROWS, PAIR_CHANGES}, dataset.changes},
+                              {"launch", NPZ_INT32, 1, {ROWS}, dataset.launch},
+                              {"frame", NPZ_INT32, 1, {ROWS}, dataset.frame},
+                              {"bodies", NPZ_INT32, 2, {ROWS, 2}, dataset.bodies}};
+    enum { COUNT = sizeof valid / sizeof valid[0] };
+    NpzArray arrays[COUNT];
+    size_t count = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        bool same = strcmp(valid[i].name, changed.name) == 0;
+        if (!same || changed.data != NULL) arrays[count++] = same ? changed : valid[i];
+    }
+    Error error = {0};
+    const char *path = temporary_path("changed.npz");
+    assert_ok(npz_write(path, arrays, count, &error), error);
+    return path;
+}
+
+static void shapes_that_do_not_fit_are_refused(void **state) {
+    (void)state;
+    static const float floats[64];
+    static const int32_t integers[16];
+    static const uint8_t bytes[4];
+    assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS, 9}, floats}), "inputs");
+    assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS - 1, 10}, floats}), "changes");
+    assert_refused(write_with((NpzArray){"changes", NPZ_FLOAT32, 2, {ROWS, 5}, floats}), "changes");
+    assert_refused(write_with((NpzArray){"launch", NPZ_INT32, 1, {ROWS + 1}, integers}), "launch");
+    assert_refused(write_with((NpzArray){"frame", NPZ_INT32, 2, {ROWS, 1}, integers}), "frame");
+    assert_refused(write_with((NpzArray){"bodies", NPZ_INT32, 2, {ROWS, 3}, integers}), "bodies");
+    assert_refused(write_with((NpzArray){"launch_test", NPZ_UINT8, 1, {LAUNCHES - 1}, bytes}), "launch_test");
+    assert_refused(write_with((NpzArray){"launch_scene", NPZ_INT32, 1, {LAUNCHES + 1}, integers}),
+                   "launch_scene");
+    assert_refused(write_with((NpzArray){"launch_x", NPZ_INT32, 1, {LAUNCHES}, integers}), "launch_x");
+}
+
+static void other_files_are_refused(void **state) {
+    (void)state;
+    const int32_t future = DATASET_VERSION + 1;
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 2");
+    assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "no dataset");
+    assert_refused(write_with((NpzArray){.name = "kind"}), "no dataset");
+    assert_refused(write_with((NpzArray){.name = "changes"}), "changes");
+    assert_refused(temporary_path("missing.npz"), "error:");
+    const char *path = write_with((NpzArray){.name = "none"});
+    assert_int_equal(truncate(path, 900), 0);
+    assert_refused(path, "error:");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_keep_every_bit),
+        cmocka_unit_test(the_most_and_longest_scene_names_are_kept),
+        cmocka_unit_test(numbers_that_are_not_finite_are_refused),
+        cmocka_unit_test(indices_out_of_range_are_refused),
+        cmocka_unit_test(both_sides_of_the_split_need_rows),
+        cmocka_unit_test(scene_names_out_of_range_are_refused),
+        cmocka_unit_test(shapes_that_do_not_fit_are_refused),
+        cmocka_unit_test(other_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "networks.h"
+
+#include "network/network_gradient.h"
+
+#include <math.h>
+
+enum { USED_ROWS = 5 }; /* of the block */
+
+/* A network, its parameters in double, a block of inputs, and a loss: sum over rows and outputs of c y + y^2.
+ */
+typedef struct Case {
+    Network *network;
+    NetworkBlock *block;
+    int count, outputs;
+    double *parameters, *factors; /* c [outputs, BLOCK_ROWS] */
+} Case;
+
+static Case make_case(int layers, const int *widths, const Activation *activations) {
+    Error error = {0};
+    Case made = {.network = make_network(layers, widths, activations), .outputs = widths[layers]};
+    made.block = network_block_create(made.network, &error);
+    assert_ok(made.block != NULL, error);
+    made.count = network_parameter_count(made.network);
+    made.parameters = malloc((size_t)made.count * sizeof(double));
+    made.factors = malloc((size_t)made.outputs * BLOCK_ROWS * sizeof(double));
+    assert_true(made.parameters != NULL && made.factors != NULL);
+    uint32_t sequence = 7;
+    for (int p = 0; p < made.count; p++) made.parameters[p] = next_number(&sequence);
+    for (int i = 0; i < widths[0] * BLOCK_ROWS; i++) made.block->values[0][i] = next_number(&sequence);
+    for (int i = 0; i < made.outputs * BLOCK_ROWS; i++) made.factors[i] = next_number(&sequence);
+    return made;
+}
+
+static void free_case(Case *made) {
+    network_block_destroy(made->block);
+    network_destroy(made->network);
+    free(made->parameters);
+    free(made->factors);
+}
+
+static double loss(Case *made) {
+    network_forward(made->block, made->parameters);
+    const double *y = made->block->values[made->network->layers];
+    double sum = 0;
+    for (int k = 0; k < made->outputs; k++)
+        for (int r = 0; r < USED_ROWS; r++) {
+            int i = k * BLOCK_ROWS + r;
+            sum += made->factors[i] * y[i] + y[i] * y[i];
+        }
+    return sum;
+}
+
+static void add_gradient(Case *made, double *gradient) {
+    loss(made);
+    int layers = made->network->layers;
+    const double *y = made->block->values[layers];
+    for (int i = 0; i < made->outputs * BLOCK_ROWS; i++)
+        made->block->deltas[layers - 1][i] = i % BLOCK_ROWS < USED_ROWS ? made->factors[i] + 2 * y[i] : 0;
+    network_backward(made->block, made->parameters);
+    network_add_gradient(made->block, gradient);
+}
+
+/* Central differences: their error is of the order of step^2, below 1e-8 here. */
+static void check_gradient(int layers, const int *widths, const Activation *activations) {
+    Case made = make_case(layers, widths, activations);
+    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    assert_non_null(gradient);
+    add_gradient(&made, gradient);
+    const double step = 1e-5;
+    for (int p = 0; p < made.count; p++) {
+        double kept = made.parameters[p];
+        made.parameters[p] = kept + step;
+        double above = loss(&made);
+        made.parameters[p] = kept - step;
+        double slope = (above - loss(&made)) / (2 * step);
+        made.parameters[p] = kept;
+        assert_near(gradient[p], slope, 1e-8);
+        assert_true(fabs(slope) > 1e-6); /* or a lost term would go unseen */
+    }
+    free(gradient);
+    free_case(&made);
+}
+
+static void backward_is_the_finite_difference(void **state) {
+    (void)state;
+    const Activation linear = ACTIVATION_LINEAR, sigmoid = ACTIVATION_SIGMOID, tangent = ACTIVATION_TANH;
+    check_gradient(1, (const int[]){3, 2}, (const Activation[]){linear});
+    check_gradient(1, (const int[]){3, 2}, (const Activation[]){sigmoid});
+    check_gradient(1, (const int[]){3, 2}, (const Activation[]){tangent});
+    check_gradient(2, (const int[]){10, 10, 2}, (const Activation[]){sigmoid, sigmoid});
+    check_gradient(2, (const int[]){4, 5, 3}, (const Activation[]){tangent, linear});
+    check_gradient(3, (const int[]){10, 8, 8, 6}, (const Activation[]){sigmoid, sigmoid, linear});
+    check_gradient(4, (const int[]){2, 3, 4, 1, 2}, (const Activation[]){tangent, linear, sigmoid, tangent});
+}
+
+static void gradients_add_up(void **state) {
+    (void)state;
+    Case made =
+        make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
+    double once[64] = {0}, twice[64] = {0};
+    assert_true(made.count <= 64);
+    add_gradient(&made, once);
+    add_gradient(&made, twice);
+    add_gradient(&made, twice);
+    for (int p = 0; p < made.count; p++) assert_true(twice[p] == 2 * once[p]);
+    free_case(&made);
+}
+
+/* Training and inference are the same function, one in double, the other in float32. */
+static void forward_agrees_with_predict(void **state) {
+    (void)state;
+    Case made = make_case(3, (const int[]){4, 6, 5, 2},
+                          (const Activation[]){ACTIVATION_TANH, ACTIVATION_SIGMOID, ACTIVATION_LINEAR});
+    for (int p = 0; p < made.count; p++) made.parameters[p] = (double)made.network->weights[0][p];
+    network_forward(made.block, made.parameters);
+    for (int r = 0; r < BLOCK_ROWS; r++) {
+        float input[4], scratch[12], output[2];
+        for (int i = 0; i < 4; i++) input[i] = (float)made.block->values[0][i * BLOCK_ROWS + r];
+        network_predict(made.network, input, scratch, output);
+        for (int k = 0; k < 2; k++) assert_near(made.block->values[3][k * BLOCK_ROWS + r], output[k], 1e-6);
+    }
+    free_case(&made);
+}
+
+static void dot_sums_every_row_once(void **state) {
+    (void)state;
+    double a[BLOCK_ROWS], b[BLOCK_ROWS];
+    for (int r = 0; r < BLOCK_ROWS; r++) a[r] = r + 1, b[r] = r;
+    /* sum of r^2 + r for r < n = (n - 1) n (n + 1) / 3 */
+    assert_true(network_block_dot(a, b) == (BLOCK_ROWS - 1.0) * BLOCK_ROWS * (BLOCK_ROWS + 1.0) / 3);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(backward_is_the_finite_difference),
+        cmocka_unit_test(gradients_add_up),
+        cmocka_unit_test(forward_agrees_with_predict),
+        cmocka_unit_test(dot_sums_every_row_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

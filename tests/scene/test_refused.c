@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a scene file may not say, and the message that each mistake gets. */
+#include "scene_text.h"
+
+#define BOX "size: [1, 1], mass: 1, position: [0, 0]"
+#define TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+
+typedef struct Refused {
+    const char *text, *message; /* behind "path:", up to the excerpt */
+} Refused;
+
+static const Refused keys[] = {
+    {BASE, "1:1: error: a scene needs the key 'bodies'"},
+    {GROUND, "1:1: error: a scene needs the key 'gravity'"},
+    {"hello\n", "1:1: error: a scene is a mapping of keys to values (got hello)"},
+    {"- 1\n", "1:1: error: a scene is a mapping of keys to values (got a list)"},
+    {BASE GROUND "gravty: 1\n", "7:1: error: unknown key 'gravty'; did you mean 'gravity'?"},
+    {BASE GROUND "colour: red\n", "7:1: error: unknown key 'colour'; a scene has: gravity, dt, iterations, "
+                                  "warm_starting, accumulate_impulses, "
+                                  "position_correction, frames, camera, bodies, bomb, networks"},
+    {BASE GROUND "\"a\\eb\": red\n", "7:2: error: unknown key 'a?b'; a scene has: gravity, dt, iterations, "
+                                     "warm_starting, accumulate_impulses, "
+                                     "position_correction, frames, camera, bodies, bomb, networks"},
+    {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is there twice"},
+    {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
+    {BASE GROUND ": 1\n", "7:1: error: a key must be a word"},
+    {BODY("massa: 1"), "6:6: error: unknown key 'massa'; did you mean 'mass'?"},
+    {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is there twice"},
+    {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
+    {BODY("size: [1, 1], mass: 1"), "6:5: error: a body needs the key 'position'"},
+    {BASE "bodies:\n  - box\n", "6:5: error: a body is a mapping of keys to values (got box)"},
+    {BASE "bodies:\n", "5:1: error: bodies must be a list of one body or more (got nothing)"},
+    {BASE "bodies: []\n", "5:9: error: bodies must be a list of one body or more (got none)"},
+    {BASE "bodies: {}\n", "5:9: error: bodies must be a list of one body or more (got a mapping)"},
+};
+
+static const Refused numbers[] = {
+    {"gravity: 10\n", "1:10: error: gravity must be a list of two numbers (got 10)"},
+    {"gravity: [10]\n", "1:10: error: gravity must be a list of two numbers (got 1)"},
+    {"gravity: [1, 2, 3]\n", "1:10: error: gravity must be a list of two numbers (got 3)"},
+    {"gravity: [0, [1]]\n", "1:14: error: gravity must be a number (got a list)"},
+    {"gravity: [0, -1e5]\n", "1:14: error: gravity must be from -10000 to 10000 m/s^2 (got -1e5)"},
+    {"gravity: [0, .nan]\n", "1:14: error: gravity must be a number (got .nan)"},
+    {"gravity: [.inf, 0]\n", "1:11: error: gravity must be a number (got .inf)"},
+    {"dt: NaN\n", "1:5: error: dt must be a number (got NaN)"},
+    {"dt: inf\n", "1:5: error: dt must be a number (got inf)"},
+    {"dt: 1e999\n", "1:5: error: dt must be a number (got 1e999)"},
+    {"dt: 1/0\n", "1:5: error: dt must be a number (got 1/0)"},
+    {"dt: 0x1p-6\n", "1:5: error: dt must be a number (got 0x1p-6)"},
+    {"dt: 1 60\n", "1:5: error: dt must be a number (got 1 60)"},
+    {"dt:\n", "1:1: error: dt must be a number (got nothing)"},
+    {"dt: 0\n", "1:5: error: dt must be greater than 0 (got 0)"},
+    {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -1/60)"},
+    {"dt: 2\n", "1:5: error: dt must be from 1e-05 to 1 s (got 2)"},
+    {"dt: 1e-6\n", "1:5: error: dt must be from 1e-05 to 1 s (got 1e-6)"},
+    {"iterations: 0\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 0)"},
+    {"iterations: 2.5\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 2.5)"},
+    {"iterations: 1000001\n",
+     "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
+    {"iterations: 99999999999999999999\n",
+     "1:13: error: iterations must be a whole number from 1 to 1000000 (got 99999999999999999999)"},
+    {"frames: [1]\n", "1:9: error: frames must be a whole number from 1 to 1000000 (got a list)"},
+    {"warm_starting: maybe\n", "1:16: error: warm_starting must be on or off (got maybe)"},
+    {"warm_starting: [on]\n", "1:16: error: warm_starting must be on or off (got a list)"},
+    {"camera: {center: [0, 0]}\n", "1:9: error: a camera needs the key 'size'"},
+    {"camera: {size: [0, 1]}\n", "1:17: error: size must be greater than 0 (got 0)"},
+    {"camera: {zoom: 1}\n", "1:10: error: unknown key 'zoom'; a camera has: center, size"},
+    {"dt: " TEXT_64 "\n",
+     "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+};
+
+static const Refused bodies[] = {
+    {BODY("size: [1, 1], mass: -10, position: [0, 0]"), "6:26: error: mass must be greater than 0 (got -10)"},
+    {BODY("size: [1, 1], mass: 1e10, position: [0, 0]"),
+     "6:26: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"},
+    {BODY("size: [1, 1], mass: {a: 1}, position: [0, 0]"),
+     "6:26: error: mass must be a number (got a mapping)"},
+    {BODY("size: [1, 0]"), "6:16: error: size must be greater than 0 (got 0)"},
+    {BODY("size: [-1, 1]"), "6:13: error: size must be greater than 0 (got -1)"},
+    {BODY("size: [1, 1e5]"), "6:16: error: size must be from 0.001 to 10000 m (got 1e5)"},
+    {BODY("position: [0, 2e6]"), "6:20: error: position must be from -1e+06 to 1e+06 m (got 2e6)"},
+    {BODY("angle: 1e5"), "6:13: error: angle must be from -10000 to 10000 rad (got 1e5)"},
+    {BODY("velocity: [1e5, 0]"), "6:17: error: velocity must be from -10000 to 10000 m/s (got 1e5)"},
+    {BODY("spin: 1e5"), "6:12: error: spin must be from -10000 to 10000 rad/s (got 1e5)"},
+    {BODY("friction: -0.1"), "6:16: error: friction must be from 0 to 10 (got -0.1)"},
+    {BODY("friction: 11"), "6:16: error: friction must be from 0 to 10 (got 11)"},
+    {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
+    {BODY("size: [1, 1], position: [0, 0], static: off"),
+     "6:5: error: a body needs the key 'mass', or 'static: true'"},
+    {BODY(BOX ", static: true"), "6:26: error: a static body has no mass"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
+     "6:60: error: a static body has no velocity"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], spin: 1"), "6:56: error: a static body has no spin"},
+    {BODY(BOX ", pattern: heap"), "6:56: error: pattern must be row, stack or pyramid (got heap)"},
+    {BODY(BOX ", pattern: [row]"), "6:56: error: pattern must be row, stack or pyramid (got a list)"},
+    {BODY(BOX ", pattern: row, count: 3"), "6:5: error: a pattern needs the key 'spacing'"},
+    {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
+    {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
+    {BODY(BOX ", spacing: [1, 1]"), "6:56: error: spacing needs the key 'pattern' beside it"},
+    {BODY(BOX ", pattern: row, count: 0"),
+     "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
+    {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
+    {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
+     "6:68: error: body 3 of the pattern would lie at (0, 1.5e+06), beyond 1e+06 m"},
+};
+
+#define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
+
+static const Refused bombs[] = {
+    {BASE GROUND "bomb: 5\n", "7:7: error: a bomb is a mapping of keys to values (got 5)"},
+    {BASE GROUND "bomb: {y: 1}\n", "7:7: error: a bomb needs the key 'x'"},
+    {BASE GROUND "bomb: {" BOMB ", angle: 1}\n", "7:45: error: unknown key 'angle'; a bomb has: x, y, size, "
+                                                 "mass, friction, rotation, spin, frame, velocity"},
+    {BASE GROUND "bomb: {" BOMB ", frame: -1}\n",
+     "7:52: error: frame must be a whole number from 0 to 1000000 (got -1)"},
+    {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
+    {BASE GROUND "bomb: {" BOMB ", frame: 301}\n",
+     "7:7: error: the bomb would come in frame 301, after the last (frames: 300)"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n",
+     "7:55: error: velocity must be a list of two numbers (got 3)"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n",
+     "7:55: error: a velocity law needs the key 'times_position'"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {times: 3}}\n",
+     "7:56: error: unknown key 'times'; a velocity law has: times_position"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
+     "7:55: error: the bomb would start with (1000, 15000) m/s, above 10000"},
+};
+
+static const Refused networks[] = {
+    {BASE GROUND "networks: x.npz\n", "7:11: error: networks is a mapping of methods to files (got x.npz)"},
+    {BASE GROUND "networks: {Pair: x.npz}\n",
+     "7:12: error: a method's name is made of a-z, 0-9 and - (got Pair)"},
+    {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network is the path of a file (got a list)"},
+    {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network is the path of a file (got nothing)"},
+    {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network is the path of a file (got b?c)"},
+    {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is there twice"},
+    {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, i: b}\n",
+     "7:60: error: a scene may name at most 8 networks"},
+    {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
+     "7:15: error: the path of a network may have at most 511 bytes"},
+    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",
+     "7:12: error: a method's name is made of a-z, 0-9 and - (got "
+     "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+};
+
+static const Refused yaml[] = {
+    {"a: &x 1\n", "1:7: error: anchors (&) are not allowed in a scene"},
+    {"a: *x\n", "1:5: error: aliases (*) are not allowed in a scene"},
+    {"a: !x 1\n", "1:7: error: tags (!) are not allowed in a scene"},
+    {"a: !!float 1\n", "1:12: error: tags (!) are not allowed in a scene"},
+    {BASE GROUND "<<: {dt: 1}\n", "7:1: error: unknown key '<<'; a scene has: gravity, dt, iterations, "
+                                  "warm_starting, accumulate_impulses, "
+                                  "position_correction, frames, camera, bodies, bomb, networks"},
+    {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed in a scene"},
+    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a scene file holds one document only"},
+    {"a: \"\\0\"\n", "1:5: error: a text may not contain the character \\0"},
+    {"a: \x01\n", "1:4: error: control character 0x01 in a text file"},
+    {"a: b\n\xc3\xa4\xff\n", "2:2: error: this is not UTF-8 text"},
+    {"a: \xc0\x80\n", "1:4: error: this is not UTF-8 text"},
+    {"a: \xed\xa0\x80\n", "1:4: error: this is not UTF-8 text"},
+    {"a: \xf4\x90\x80\x80\n", "1:4: error: this is not UTF-8 text"},
+    {"a: \xe2\x82", "1:4: error: this is not UTF-8 text"},
+    {"\xff\xfe"
+     "a",
+     "1:1: error: this is not UTF-8 text"},
+    {"", "1:1: error: there is no scene in this file"},
+    {"# nothing\n", "1:1: error: there is no scene in this file"},
+};
+
+static void check_table(const Refused *table, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (table[i].message != NULL)
+            expect_refused(table[i].text, table[i].message);
+        else
+            scene_destroy(good_scene(table[i].text));
+    }
+}
+
+#define CHECK_TABLE(table) check_table((table), sizeof(table) / sizeof *(table))
+
+static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
+static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers); }
+static void bodies_are_checked(void **state) { (void)state, CHECK_TABLE(bodies); }
+static void bombs_are_checked(void **state) { (void)state, CHECK_TABLE(bombs); }
+static void networks_are_checked(void **state) { (void)state, CHECK_TABLE(networks); }
+static void yaml_is_checked(void **state) { (void)state, CHECK_TABLE(yaml); }
+
+static void nul_bytes_are_refused(void **state) {
+    (void)state;
+    static const char text[] = "dt: 1\0\niterations: 10\n";
+    expect_refused_bytes(text, sizeof text - 1,
+                         "1:6: error: control character 0x00 in a text file\n"
+                         "    1 | dt: 1?\n"
+                         "      |      ^");
+}
+
+/* The words are libfyaml's and change with its version; the place and the excerpt are ours. */
+static void syntax_errors_have_place_and_excerpt(void **state) {
+    (void)state;
+    Error error;
+    assert_null(read_text("dt: 1\nframes: \"3\n", &error));
+    assert_int_equal(error.kind, ERROR_INPUT);
+    assert_int_equal(strncmp(behind_path(&error), "2:", 2), 0);
+    assert_non_null(strstr(error.message, "\n    2 | frames: \"3\n      | "));
+    assert_int_equal(error.message[strlen(error.message) - 1], '^');
+}
+
+static void excerpt_points_at_the_value(void **state) {
+    (void)state;
+    expect_refused("dt: 1/60\nframes: few\n",
+                   "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
+                   "    2 | frames: few\n"
+                   "      |         ^");
+    expect_refused("dt: 1/60\r\nframes: few\r\n",
+                   "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
+                   "    2 | frames: few\n"
+                   "      |         ^");
+}
+
+static void excerpt_keeps_tabs_and_counts_characters(void **state) {
+    (void)state;
+    expect_refused(
+        "{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+        "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
+        "iterations, "
+        "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks\n"
+        "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+        "      |   ^");
+    expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
+                                              "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
+                                              "      |     \t ^");
+    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07 in a text file\n"
+                                              "    1 | {\"\xc3\xa4\": 1?}\n"
+                                              "      |        ^");
+}
+
+/* Marks that turn the direction of text could make a line look like another one. */
+static void excerpt_hides_what_does_not_print(void **state) {
+    (void)state;
+    expect_refused("dt: \"\xe2\x80\xae\xc2\x85x\"\n", "1:6: error: dt must be a number (got ??x)\n"
+                                                      "    1 | dt: \"??x\"\n"
+                                                      "      |      ^");
+}
+
+static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
+    (void)state;
+    expect_refused(
+        "{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
+        "1:10: error: unknown key 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'; a scene has: gravity, dt, "
+        "iterations, warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, "
+        "networks\n"
+        "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
+        "      |          ^");
+    expect_refused("[" TEXT_64 TEXT_64 ", &a b, " TEXT_64 "]\n",
+                   "1:135: error: anchors (&) are not allowed in a scene\n"
+                   "    1 | ...aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa, &a b, "
+                   "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
+                   "      |    "
+                   "                                                                      ^");
+}
+
+static void files_that_are_no_files_are_refused(void **state) {
+    (void)state;
+    static const char *const paths[] = {"/dev/zero", "/tmp", "/nonexistent/scene.yaml"};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        Error error = {.kind = ERROR_NONE};
+        assert_null(scene_read(paths[i], &error));
+        assert_error(error, ERROR_INPUT, paths[i]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keys_are_checked),
+        cmocka_unit_test(numbers_are_checked),
+        cmocka_unit_test(bodies_are_checked),
+        cmocka_unit_test(bombs_are_checked),
+        cmocka_unit_test(networks_are_checked),
+        cmocka_unit_test(yaml_is_checked),
+        cmocka_unit_test(nul_bytes_are_refused),
+        cmocka_unit_test(syntax_errors_have_place_and_excerpt),
+        cmocka_unit_test(excerpt_points_at_the_value),
+        cmocka_unit_test(excerpt_keeps_tabs_and_counts_characters),
+        cmocka_unit_test(excerpt_hides_what_does_not_print),
+        cmocka_unit_test(excerpt_of_a_long_line_is_cut_around_the_caret),
+        cmocka_unit_test(files_that_are_no_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

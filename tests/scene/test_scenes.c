@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The scenes in scenes/, body by body in closed form; every key of the format; hash and world of a scene. */
+#include "scene_text.h"
+
+static Scene *shipped(const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Error error = {.kind = ERROR_NONE};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    assert_string_equal(scene->name, name);
+    return scene;
+}
+
+/* Bit for bit: == on floats would let -0 pass for 0. */
+static void assert_same_float(float found, float expected) {
+    if (memcmp(&found, &expected, sizeof found) != 0)
+        fail_msg("found %.9g, expected %.9g", (double)found, (double)expected);
+}
+
+static void assert_same_vector(Vec2 found, Vec2 expected) {
+    assert_same_float(found.x, expected.x);
+    assert_same_float(found.y, expected.y);
+}
+
+static void assert_same_body(const BodyDef *found, const BodyDef *expected) {
+    assert_same_vector(found->size, expected->size);
+    assert_int_equal(found->fixed, expected->fixed);
+    assert_same_float(found->mass, expected->mass);
+    assert_same_float(found->friction, expected->friction);
+    assert_same_vector(found->position, expected->position);
+    assert_same_float(found->angle, expected->angle);
+    assert_same_vector(found->velocity, expected->velocity);
+    assert_same_float(found->angular_velocity, expected->angular_velocity);
+}
+
+static BodyDef unit_box(float mass, float x, float y) {
+    return (BodyDef){.size = {1, 1}, .mass = mass, .friction = 0.2f, .position = {x, y}};
+}
+
+/* Parameters that the paper's scenes share (Box2D-Lite's defaults), and the ground. */
+static void assert_common(const Scene *scene, int body_count, int frames, int bomb_frame) {
+    assert_same_vector(scene->gravity, vec2(0, -10));
+    assert_same_float(scene->dt, 1.0f / 60.0f);
+    assert_int_equal(scene->iterations, 10);
+    assert_true(scene->warm_starting && scene->accumulate_impulses && scene->position_correction);
+    assert_int_equal(scene->frames, frames);
+    assert_true(scene->camera_size.x > 0 && scene->camera_size.y > 0);
+    assert_int_equal(scene->body_count, body_count);
+    const BodyDef ground = {.size = {100, 20}, .fixed = true, .friction = 0.2f, .position = {0, -10}};
+    assert_same_body(&scene->bodies[0], &ground);
+    assert_true(scene->bomb.present);
+    assert_int_equal(scene->bomb.frame, bomb_frame);
+    BodyDef found = scene_bomb_body(scene), bomb = unit_box(50, found.position.x, 15);
+    bomb.velocity = vec2(-1.5f * bomb.position.x, -1.5f * 15);
+    assert_same_body(&found, &bomb);
+}
+
+static void single_is_a_box_of_200_kg(void **state) {
+    (void)state;
+    Scene *scene = shipped("single");
+    assert_common(scene, 2, 300, 0);
+    const BodyDef box = unit_box(200, 0, 4);
+    assert_same_body(&scene->bodies[1], &box);
+    scene_destroy(scene);
+}
+
+static void stack_is_ten_boxes_5_cm_apart(void **state) {
+    (void)state;
+    Scene *scene = shipped("stack");
+    assert_common(scene, 11, 300, 0);
+    for (int i = 0; i < 10; i++) {
+        const BodyDef box = unit_box(1, 0, 0.51f + 1.05f * (float)i);
+        assert_same_body(&scene->bodies[1 + i], &box);
+    }
+    scene_destroy(scene);
+}
+
+/* As Box2D-Lite builds it, adding up one by one; every sum is exact in float32. */
+static void assert_pyramid(const Scene *scene) {
+    int body = 1;
+    float left = -6, y = 0.75f;
+    for (int row = 0; row < 11; row++) {
+        float x = left;
+        for (int column = 0; column < 11 - row; column++) {
+            const BodyDef box = unit_box(10, x, y);
+            assert_same_body(&scene->bodies[body++], &box);
+            x += 1.125f;
+        }
+        left += 0.5625f;
+        y += 2;
+    }
+    assert_int_equal(body, 67);
+}
+
+static void pyramid_has_66_boxes_in_11_rows(void **state) {
+    (void)state;
+    Scene *falling = shipped("pyramid"), *settled = shipped("pyramid_settled");
+    assert_common(falling, 67, 300, 0);
+    assert_common(settled, 67, 480, 180);
+    assert_pyramid(falling);
+    assert_pyramid(settled);
+    scene_destroy(falling);
+    scene_destroy(settled);
+}
+
+static void scenes_name_the_network_beside_them(void **state) {
+    (void)state;
+    Scene *scene = shipped("single");
+    assert_string_equal(scene_network(scene, "pair-net"), SOURCE_DIR "/scenes/networks/pair-net.npz");
+    assert_null(scene_network(scene, "pair"));
+    scene_destroy(scene);
+}
+
+static void every_key_reaches_its_member(void **state) {
+    (void)state;
+    Scene *scene =
+        good_scene("networks: {b-2: /absolute.npz}\n"
+                   "bomb: {rotation: 0.5, spin: -2, velocity: [3, 4], friction: 0, mass: 7, size: [2, 3],\n"
+                   "  y: 6, x: 5, frame: 9}\n"
+                   "bodies:\n"
+                   "- {friction: 1.5, spin: 0.25, velocity: [1, 2], angle: 1e-1, position: [3, 4], mass: 5,\n"
+                   "   size: [6, 7], static: no}\n"
+                   "camera: {size: [8, 9], center: [-1, -2]}\n"
+                   "frames: 9\nposition_correction: no\naccumulate_impulses: false\nwarm_starting: off\n"
+                   "iterations: 3\ndt: 1/120\ngravity: [1, 2]\n");
+    const BodyDef body = {.size = {6, 7},
+                          .mass = 5,
+                          .friction = 1.5f,
+                          .position = {3, 4},
+                          .angle = 0.1f,
+                          .velocity = {1, 2},
+                          .angular_velocity = 0.25f};
+    const BodyDef bomb = {.size = {2, 3},
+                          .mass = 7,
+                          .position = {5, 6},
+                          .angle = 0.5f,
+                          .velocity = {3, 4},
+                          .angular_velocity = -2};
+    assert_same_body(&scene->bodies[0], &body);
+    BodyDef found = scene_bomb_body(scene);
+    assert_same_body(&found, &bomb);
+    assert_int_equal(scene->bomb.frame, 9);
+    assert_same_vector(scene->camera_center, vec2(-1, -2));
+    assert_same_vector(scene->camera_size, vec2(8, 9));
+    assert_int_equal(scene->frames, 9);
+    assert_false(scene->warm_starting || scene->accumulate_impulses || scene->position_correction);
+    assert_int_equal(scene->iterations, 3);
+    assert_same_float(scene->dt, 1.0f / 120.0f);
+    assert_same_vector(scene->gravity, vec2(1, 2));
+    assert_string_equal(scene_network(scene, "b-2"), "/absolute.npz");
+    scene_destroy(scene);
+}
+
+static void keys_left_out_have_defaults(void **state) {
+    (void)state;
+    Scene *scene = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
+    const BodyDef body = {.size = {6, 7}, .mass = 5, .friction = 0.2f, .position = {3, 4}};
+    assert_same_body(&scene->bodies[0], &body);
+    assert_false(scene->bomb.present);
+    assert_true(scene->warm_starting && scene->accumulate_impulses && scene->position_correction);
+    assert_same_vector(scene->camera_size, vec2(0, 0));
+    assert_int_equal(scene->network_count, 0);
+    scene_destroy(scene);
+}
+
+static void rows_go_by_their_spacing(void **state) {
+    (void)state;
+    Scene *scene =
+        good_scene(BASE GROUND "  - {pattern: row, count: 100, spacing: [0.3, -0.1], mass: 1, size: [1, 1],\n"
+                               "     position: [0.7, 2], angle: 0.5, velocity: [1, 2], spin: 3}\n");
+    assert_int_equal(scene->body_count, 101);
+    for (int i = 0; i < 100; i++) {
+        BodyDef box = unit_box(1, 0.7f + 0.3f * (float)i, 2 + -0.1f * (float)i);
+        box.angle = 0.5f;
+        box.velocity = vec2(1, 2);
+        box.angular_velocity = 3;
+        assert_same_body(&scene->bodies[1 + i], &box);
+    }
+    scene_destroy(scene);
+}
+
+static void line_ends_and_byte_order_mark_do_not_matter(void **state) {
+    (void)state;
+    Scene *unix_ends = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
+    Scene *dos_ends =
+        good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
+                   "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
+    assert_int_equal(scene_hash(unix_ends), scene_hash(dos_ends));
+    scene_destroy(unix_ends);
+    scene_destroy(dos_ends);
+}
+
+/* The first of each list, and that with one value changed at a time. */
+static const char *const variants[] = {
+    "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 300\n",
+    "gravity: [1, -10]\ndt: 1/60\niterations: 10\nframes: 300\n",
+    "gravity: [0, -9]\ndt: 1/60\niterations: 10\nframes: 300\n",
+    "gravity: [0, -10]\ndt: 1/61\niterations: 10\nframes: 300\n",
+    "gravity: [0, -10]\ndt: 1/60\niterations: 11\nframes: 300\n",
+    BASE "warm_starting: off\n",
+    BASE "accumulate_impulses: off\n",
+    BASE "position_correction: off\n",
+};
+
+static const char *const bodies[] = {
+    "{mass: 1, size: [1, 1], position: [0, 0]}",
+    "{mass: 2, size: [1, 1], position: [0, 0]}",
+    "{static: on, size: [1, 1], position: [0, 0]}",
+    "{mass: 1, size: [2, 1], position: [0, 0]}",
+    "{mass: 1, size: [1, 2], position: [0, 0]}",
+    "{mass: 1, size: [1, 1], position: [1, 0]}",
+    "{mass: 1, size: [1, 1], position: [0, 1]}",
+    "{mass: 1, size: [1, 1], position: [0, 0], angle: 1}",
+    "{mass: 1, size: [1, 1], position: [0, 0], velocity: [1, 0]}",
+    "{mass: 1, size: [1, 1], position: [0, 0], velocity: [0, 1]}",
+    "{mass: 1, size: [1, 1], position: [0, 0], spin: 1}",
+    "{mass: 1, size: [1, 1], position: [0, 0], friction: 0.3}",
+    "{mass: 1, size: [1, 1], position: [0, 0], pattern: row, count: 2, spacing: [0, 0]}",
+};
+
+static const char *const bombs[] = {
+    "{x: 1, y: 1, size: [1, 1], mass: 1}",
+    "{x: 2, y: 1, size: [1, 1], mass: 1}",
+    "{x: 1, y: 2, size: [1, 1], mass: 1}",
+    "{x: 1, y: 1, size: [2, 1], mass: 1}",
+    "{x: 1, y: 1, size: [1, 1], mass: 2}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, friction: 0.3}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, rotation: 1}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, spin: 1}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, frame: 1}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, velocity: [1, 0]}",
+    "{x: 1, y: 1, size: [1, 1], mass: 1, velocity: {times_position: -1.5}}",
+};
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static uint64_t hash_text(const char *text) {
+    Scene *scene = good_scene(text);
+    uint64_t hash = scene_hash(scene);
+    scene_destroy(scene);
+    return hash;
+}
+
+static uint64_t hash_of(const char *base, const char *body, const char *bomb) {
+    char text[1024];
+    snprintf(text, sizeof text, "%sbodies:\n  - %s\n%s%s\n", base, body,
+             bomb == NULL ? "" : "bomb: ", bomb == NULL ? "" : bomb);
+    return hash_text(text);
+}
+
+static void hash_changes_with_every_physical_value(void **state) {
+    (void)state;
+    uint64_t hashes[COUNT(variants) + COUNT(bodies) + COUNT(bombs)];
+    size_t count = 0;
+    for (size_t i = 0; i < COUNT(variants); i++) hashes[count++] = hash_of(variants[i], bodies[0], NULL);
+    for (size_t i = 1; i < COUNT(bodies); i++) hashes[count++] = hash_of(BASE, bodies[i], NULL);
+    for (size_t i = 0; i < COUNT(bombs); i++) hashes[count++] = hash_of(BASE, bodies[0], bombs[i]);
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = 0; j < i; j++)
+            if (hashes[i] == hashes[j]) fail_msg("scenes %zu and %zu have the same hash", j, i);
+}
+
+static void hash_keeps_with_all_else(void **state) {
+    (void)state;
+    uint64_t hash = hash_of(BASE, bodies[0], bombs[0]);
+    assert_int_equal(
+        hash, hash_text("# comment\nframes: 200 # not physics\niterations: +10\ndt: 1/60\n"
+                        "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
+                        "networks: {pair-net: x.npz}\nbomb:\n  mass: 1\n  size: [1, 1]\n  y: 1\n  x: 1\n"
+                        "bodies: [{position: [0, 0], friction: 0.2, size: [1, 1], mass: 1.0}]\n"));
+    /* The velocity counts and not the law that gave it. */
+    assert_int_equal(
+        hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: [-3, -6]}"),
+        hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: {times_position: -1.5}}"));
+}
+
+static void world_has_the_bodies_in_order_and_the_bomb_last(void **state) {
+    (void)state;
+    Error error = {.kind = ERROR_NONE};
+    Scene *scene = shipped("pyramid");
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    assert_int_equal(world_body_count(world), 68);
+    for (int i = 0; i < 67; i++)
+        assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
+    assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
+    assert_same_vector(world_bodies(world)[67].velocity, vec2(-1.5f * scene->bomb.body.position.x, -22.5f));
+    world_destroy(world);
+    scene_destroy(scene);
+}
+
+static void world_has_no_bomb_before_its_frame(void **state) {
+    (void)state;
+    Error error = {.kind = ERROR_NONE};
+    Scene *scene = shipped("pyramid_settled");
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    assert_int_equal(world_body_count(world), 67);
+    scene->bomb.body.position.x = -4;
+    assert_ok(scene_add_bomb(scene, world, &error), error);
+    assert_int_equal(world_body_count(world), 68);
+    assert_same_vector(world_bodies(world)[67].velocity, vec2(6, -22.5f));
+    world_destroy(world);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(single_is_a_box_of_200_kg),
+        cmocka_unit_test(stack_is_ten_boxes_5_cm_apart),
+        cmocka_unit_test(pyramid_has_66_boxes_in_11_rows),
+        cmocka_unit_test(scenes_name_the_network_beside_them),
+        cmocka_unit_test(every_key_reaches_its_member),
+        cmocka_unit_test(keys_left_out_have_defaults),
+        cmocka_unit_test(rows_go_by_their_spacing),
+        cmocka_unit_test(line_ends_and_byte_order_mark_do_not_matter),
+        cmocka_unit_test(hash_changes_with_every_physical_value),
+        cmocka_unit_test(hash_keeps_with_all_else),
+        cmocka_unit_test(world_has_the_bodies_in_order_and_the_bomb_last),
+        cmocka_unit_test(world_has_no_bomb_before_its_frame),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

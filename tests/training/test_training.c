@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "datasets.h"
+
+#include "training/training.h"
+
+#include <float.h>
+#include <math.h>
+#include <omp.h>
+
+enum { MAX_SCORES = 32 };
+
+typedef struct Scores {
+    int count;
+    TrainingScore items[MAX_SCORES];
+} Scores;
+
+static void keep_score(void *context, const TrainingScore *score) {
+    Scores *scores = context;
+    assert_true(scores->count < MAX_SCORES);
+    scores->items[scores->count++] = *score;
+}
+
+static const TrainingScore *last_score(const Scores *scores) { return &scores->items[scores->count - 1]; }
+
+static Network *train(const Dataset *dataset, TrainingOptions options, Scores *scores) {
+    Error error = {0};
+    *scores = (Scores){0};
+    options.on_score = keep_score;
+    options.context = scores;
+    Network *network = training_run(dataset, &options, NULL, &error);
+    assert_ok(network != NULL, error);
+    return network;
+}
+
+static TrainingOptions small(const char *optimizer, int iterations) {
+    return (TrainingOptions){.layers = 2,
+                             .widths = {PAIR_INPUTS, 4, 2},
+                             .optimizer = optimizer,
+                             .iterations = iterations,
+                             .seed = 1};
+}
+
+/* Mean squared error of the normalised outputs, from the network as a file would hold it. */
+static double error_of(const Network *network, const Dataset *dataset, bool test) {
+    double sum = 0;
+    int count = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        if ((dataset->launch_test[dataset->launch[r]] != 0) != test) continue;
+        float scratch[2 * PAIR_INPUTS], output[2];
+        const float *changes = dataset->changes + r * PAIR_CHANGES;
+        network_predict(network, dataset->inputs + r * PAIR_INPUTS, scratch, output);
+        for (int k = 0; k < 2; k++) {
+            double e = (double)(output[k] - (changes[k + 3] - changes[k])) * (double)network->output.scale[k];
+            sum += e * e;
+            count++;
+        }
+    }
+    return sum / count;
+}
+
+static void check_learns(const char *optimizer, int iterations, double factor) {
+    Dataset *dataset = make_taught_dataset(2000);
+    Scores scores;
+    Network *network = train(dataset, small(optimizer, iterations), &scores);
+    const TrainingScore *first = &scores.items[0], *last = last_score(&scores);
+    if (!(last->train < first->train / factor && last->test < first->test / factor &&
+          last->test < last->constant_test / factor))
+        fail_msg("%s: test %g -> %g, train %g -> %g, constant %g", optimizer, first->test, last->test,
+                 first->train, last->train, last->constant_test);
+    assert_near(error_of(network, dataset, false), last->train, 0.01 * last->train);
+    assert_near(error_of(network, dataset, true), last->test, 0.01 * last->test);
+    network_destroy(network);
+    dataset_destroy(dataset);
+}
+
+static void every_optimizer_learns_what_a_network_taught(void **state) {
+    (void)state;
+    check_learns("adam", 1000, 100);
+    check_learns("bfgs", 200, 100);
+    check_learns("lm", 20, 100);
+}
+
+/* Without a hidden layer and with linear outputs the loss is a parabola. Its minimum is 0 here, but for the
+   rounding of targets to float32; Levenberg-Marquardt gets there in a few steps and then stops without an
+   error. */
+static void linear_problems_are_solved(void **state) {
+    (void)state;
+    Dataset *dataset = make_dataset(1000);
+    for (int i = 0; i < 1000 * PAIR_CHANGES; i++) {
+        const float *x = dataset->inputs + i / PAIR_CHANGES * PAIR_INPUTS;
+        dataset->changes[i] = 2 * x[i % PAIR_CHANGES] - 3 * x[i % PAIR_CHANGES + 4] + 7;
+    }
+    Scores scores;
+    const char *const names[] = {"lm", "bfgs"};
+    for (int i = 0; i < 2; i++) {
+        Network *network = train(dataset,
+                                 (TrainingOptions){.layers = 1,
+                                                   .widths = {PAIR_INPUTS, PAIR_CHANGES},
+                                                   .optimizer = names[i],
+                                                   .iterations = 1000},
+                                 &scores);
+        assert_true(last_score(&scores)->train < 1e-12 && last_score(&scores)->test < 1e-12);
+        assert_true(last_score(&scores)->iteration < 200);
+        /* The weight from x_0 to output 0, in the units of the data. */
+        double slope = (double)network->weights[0][0] * (double)network->input.scale[0] /
+                       (double)network->output.scale[0];
+        assert_near(slope, 2, 1e-4);
+        assert_int_equal(network->activations[0], ACTIVATION_LINEAR);
+        network_destroy(network);
+    }
+    dataset_destroy(dataset);
+}
+
+static void networks_say_what_they_take_and_give(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    Scores scores;
+    Network *two = train(dataset, small("adam", 0), &scores);
+    assert_string_equal(two->inputs, pair_input_names);
+    assert_string_equal(two->outputs, "dvx dvy");
+    assert_true(two->activations[0] == ACTIVATION_SIGMOID && two->activations[1] == ACTIVATION_SIGMOID);
+    TrainingOptions options = small("adam", 0);
+    options.widths[2] = PAIR_CHANGES;
+    Network *six = train(dataset, options, &scores);
+    assert_string_equal(six->outputs, pair_change_names);
+    assert_true(six->activations[0] == ACTIVATION_SIGMOID && six->activations[1] == ACTIVATION_LINEAR);
+    network_destroy(six);
+    network_destroy(two);
+    dataset_destroy(dataset);
+}
+
+/* Glorot: weights within sqrt(6 / (10 + 4)) of 0, of variance 1/3 of its square; biases 0. */
+static void first_weights_are_glorots(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    Scores scores;
+    TrainingOptions options = small("adam", 0);
+    options.widths[1] = 200;
+    Network *network = train(dataset, options, &scores);
+    double limit = sqrt(6.0 / 210), sum = 0, squares = 0;
+    for (int i = 0; i < 2000; i++) {
+        double weight = (double)network->weights[0][i];
+        assert_true(fabs(weight) <= limit);
+        sum += weight;
+        squares += weight * weight;
+    }
+    /* Four standard errors: of the mean limit / sqrt(3 * 2000), of the mean square limit^2 * sqrt(4 / 45 /
+     * 2000). */
+    assert_near(sum / 2000, 0, 4 * limit / sqrt(6000));
+    assert_near(squares / 2000, limit * limit / 3, 4 * limit * limit * sqrt(4.0 / 45 / 2000));
+    for (int j = 0; j < 200; j++) assert_true(network->biases[0][j] == 0);
+    network_destroy(network);
+    dataset_destroy(dataset);
+}
+
+static bool same_numbers(const Network *a, const Network *b) {
+    return memcmp(a->weights[0], b->weights[0], (size_t)network_parameter_count(a) * sizeof(float)) == 0;
+}
+
+/* Rows enough that the work is shared out to threads. */
+static void seeds_decide_every_bit(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(6000);
+    Scores scores;
+    const char *const names[] = {"adam", "bfgs", "lm"};
+    int threads = omp_get_max_threads();
+    for (int i = 0; i < 3; i++) {
+        TrainingOptions options = small(names[i], 8);
+        omp_set_num_threads(1);
+        Network *first = train(dataset, options, &scores);
+        omp_set_num_threads(2);
+        Network *same = train(dataset, options, &scores);
+        options.seed = 2;
+        Network *other = train(dataset, options, &scores);
+        options.seed = UINT64_C(1) << 32;
+        Network *high = train(dataset, options, &scores);
+        options.seed = 0;
+        Network *zero = train(dataset, options, &scores);
+        assert_true(same_numbers(first, same));
+        assert_false(same_numbers(first, other));
+        assert_false(same_numbers(high, zero));
+        network_destroy(zero);
+        network_destroy(high);
+        network_destroy(other);
+        network_destroy(same);
+        network_destroy(first);
+    }
+    omp_set_num_threads(threads);
+    dataset_destroy(dataset);
+}
+
+static void scores_come_as_in_the_papers_table(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    Scores scores;
+    const int expected[] = {0, 10, 50, 100, 1000, 2000, 5000, 5001};
+    network_destroy(train(dataset, small("adam", 5001), &scores));
+    assert_int_equal(scores.count, 8);
+    for (int i = 0; i < 8; i++) assert_int_equal(scores.items[i].iteration, expected[i]);
+    network_destroy(train(dataset, small("adam", 0), &scores));
+    assert_int_equal(scores.count, 1);
+    network_destroy(train(dataset, small("lm", 10), &scores));
+    assert_int_equal(scores.count, 2);
+    dataset_destroy(dataset);
+}
+
+/* Asks to stop when iteration `context` is done. */
+static bool stop_at(void *context, double done, double total) {
+    (void)total;
+    return done < *(const int *)context;
+}
+
+static void asked_to_stop_the_best_so_far_comes_back(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(500);
+    const char *const names[] = {"adam", "bfgs", "lm"};
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        Scores scores = {0};
+        int stop = 7;
+        const Progress progress = {stop_at, &stop};
+        TrainingOptions options = small(names[i], 5000);
+        options.on_score = keep_score;
+        options.context = &scores;
+        Network *network = training_run(dataset, &options, &progress, &error);
+        assert_ok(network != NULL, error);
+        assert_int_equal(last_score(&scores)->iteration, 7);
+        assert_true(error_of(network, dataset, false) <= 1.0001 * last_score(&scores)->train);
+        assert_true(last_score(&scores)->train < scores.items[0].train);
+        network_destroy(network);
+    }
+    dataset_destroy(dataset);
+}
+
+static void training_goes_on_from_a_network(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
+    for (int i = 0; i < 500 * PAIR_INPUTS; i++) wider->inputs[i] *= 2;
+    Scores scores;
+    Network *start = train(dataset, small("lm", 5), &scores);
+    double reached = last_score(&scores)->train;
+    TrainingOptions options = small("lm", 5);
+    options.start = start;
+    Network *more = train(dataset, options, &scores);
+    assert_near(scores.items[0].train, reached, 1e-3 * reached);
+    assert_true(last_score(&scores)->train < reached);
+    Network *elsewhere = train(wider, options, &scores);
+    assert_memory_equal(elsewhere->input.scale, start->input.scale, PAIR_INPUTS * sizeof(float));
+    assert_memory_equal(elsewhere->output.offset, start->output.offset, 2 * sizeof(float));
+    network_destroy(elsewhere);
+    network_destroy(more);
+    network_destroy(start);
+    dataset_destroy(wider);
+    dataset_destroy(dataset);
+}
+
+static void assert_refused(const Dataset *dataset, TrainingOptions options, const char *text) {
+    Error error = {0};
+    assert_null(training_run(dataset, &options, NULL, &error));
+    assert_error(error, ERROR_INPUT, text);
+}
+
+static void what_cannot_be_trained_is_refused(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    Scores scores;
+    TrainingOptions options = small("magic", 1);
+    assert_refused(dataset, options, "\"magic\"; known are adam, bfgs, lm");
+    options = small("adam", -1);
+    assert_refused(dataset, options, "iterations: error: -1");
+    options = small("adam", 1);
+    options.widths[0] = 9;
+    assert_refused(dataset, options, "the first width is 9");
+    options = small("adam", 1);
+    options.widths[2] = 3;
+    assert_refused(dataset, options, "the last width is 3");
+    options = small("adam", 1);
+    options.widths[1] = 0;
+    assert_refused(dataset, options, "width 0");
+    options = small("adam", 1);
+    options.layers = 0;
+    assert_refused(dataset, options, "0 layers");
+    options = small("lm", 1);
+    options.widths[1] = 20; /* 262 parameters, 80 rows of 2 */
+    assert_refused(dataset, options, "160 numbers to fit with 262 weights");
+    options.widths[1] = 200;
+    assert_refused(dataset, options, "2602 weights; at most 2000");
+    options = small("adam", 0);
+    options.widths[1] = 5;
+    Network *start = train(dataset, options, &scores);
+    options.start = start;
+    options.widths[1] = 4;
+    assert_refused(dataset, options, "other widths");
+    network_destroy(start);
+    dataset->launch_test[4] = 0;
+    assert_refused(dataset, small("adam", 1), "100 rows to train on and 0 to test on");
+    dataset_destroy(dataset);
+}
+
+/* The change of b relative to a overflows float32. */
+static void leaving_the_finite_numbers_is_an_error(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
+    assert_refused(dataset, small("adam", 3), "iteration 0");
+    assert_refused(dataset, small("bfgs", 3), "iteration 0");
+    assert_refused(dataset, small("lm", 3), "iteration 0");
+    dataset_destroy(dataset);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_optimizer_learns_what_a_network_taught),
+        cmocka_unit_test(linear_problems_are_solved),
+        cmocka_unit_test(networks_say_what_they_take_and_give),
+        cmocka_unit_test(first_weights_are_glorots),
+        cmocka_unit_test(seeds_decide_every_bit),
+        cmocka_unit_test(scores_come_as_in_the_papers_table),
+        cmocka_unit_test(asked_to_stop_the_best_so_far_comes_back),
+        cmocka_unit_test(training_goes_on_from_a_network),
+        cmocka_unit_test(what_cannot_be_trained_is_refused),
+        cmocka_unit_test(leaving_the_finite_numbers_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
