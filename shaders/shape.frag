@@ -6,13 +6,12 @@
 flat in ivec2 corner;      // the pixel from which the positions below count
 flat in ivec4 shape_axis;  // direction of the local x axis (x, y; y down); local position of the corner's centre
 flat in ivec4 shape_form;  // half width, half height, corner radius, width of the outline
-flat in ivec4 shape_paint; // fill, outline, mark as 0xRRGGBB (mark: its kind in the top byte); size of the mark
+flat in ivec4 shape_paint; // fill, outline, band along the local top, as 0xRRGGBB; thickness of the band
 
 out vec4 color;
 
 const int PIXEL = 65536;
 const int LEVELS = 51; // of coverage; 255 / 51 is whole, so that alpha is exact in eight bits
-const int MARK_EDGE = 1, MARK_TARGET = 2;
 
 // Length of v, of which no component is above `limit`.
 int length_of(ivec2 v, int limit) {
@@ -46,32 +45,12 @@ ivec3 blend(ivec3 below, ivec3 above, int level) {
     return (below * (LEVELS - level) + above * level + LEVELS / 2) / LEVELS;
 }
 
-// A lighter band along the local top tells how far the box has turned.
-int edge_mark(ivec2 at, ivec2 half_size, int size) { return coverage(half_size.y - size - at.y); }
-
-// A dot in a ring, and a bar from it to the local top.
-int target_mark(ivec2 at, int size) {
-    ivec2 q = abs(at);
-    int bar = max(q.x - size / 7, abs(at.y - size * 6 / 5) - size * 3 / 10);
-    if (max(q.x, q.y) > size + 2 * PIXEL) return coverage(bar);
-    int distance = length_of(q, size + 2 * PIXEL);
-    int ring = abs(distance - size * 5 / 6) - size / 6;
-    return coverage(min(bar, min(ring, distance - size / 3)));
-}
-
-int mark_coverage(ivec2 at) {
-    int kind = shape_paint.z >> 24;
-    if (kind == MARK_EDGE) return edge_mark(at, shape_form.xy, shape_paint.w);
-    if (kind == MARK_TARGET) return target_mark(at, shape_paint.w);
-    return 0;
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner;
     ivec2 axis = shape_axis.xy;
     ivec2 at = shape_axis.zw + ivec2(axis.x * pixel.x + axis.y * pixel.y, axis.y * pixel.x - axis.x * pixel.y);
     int distance = box_distance(at, shape_form.xy, shape_form.z);
-    ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), mark_coverage(at));
+    ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_form.y - shape_paint.w - at.y));
     ivec3 painted = blend(unpack(shape_paint.y), inner, coverage(distance + shape_form.w));
     color = vec4(vec3(painted), float(coverage(distance) * (255 / LEVELS))) / 255.0;
 }

@@ -33,7 +33,7 @@ static void format_seconds(char *text, size_t size, double seconds) {
 static void show(ProgressBar *bar, double part, double elapsed) {
     enum { WIDTH = 30 };
     char left[32];
-    format_seconds(left, sizeof left, part > 0 ? elapsed / part * (1 - part) : 0);
+    format_seconds(left, sizeof left, elapsed / part * (1 - part));
     if (!bar->terminal) {
         fprintf(stderr, "%s: %.0f%%, %s left\n", bar->what, 100 * part, left);
         return;
@@ -49,7 +49,7 @@ static void show(ProgressBar *bar, double part, double elapsed) {
 static bool report(void *context, double done, double total) {
     ProgressBar *bar = context;
     double time = now(), pause = bar->terminal ? 0.1 : 5.0;
-    if (time - bar->begun >= 1.0 && time - bar->shown >= pause && total > 0) {
+    if (time - bar->begun >= 1.0 && time - bar->shown >= pause && done > 0) {
         bar->shown = time;
         bar->visible = true;
         show(bar, done < total ? done / total : 1.0, time - bar->begun);

@@ -6,10 +6,10 @@
 
 /* Metres; a body farther off is not followed, or nothing else could be made out. */
 static const double FARTHEST = 1e5;
-static const double MARGIN = 0.07;      /* of the larger side, around what is fitted */
-static const double LEAST_SIDE = 2.0;   /* m */
-static const double GROUND_SHARE = 0.06; /* of the panel's height, at most, that spare room adds below */
-static const double WHOLE_SCALE = 12.0; /* from here on a whole number of pixels a metre costs little room */
+static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
+static const double LEAST_SIDE = 2.0;    /* m */
+static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
+static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 
 typedef struct Bounds {
     double left, right, bottom, top;
@@ -55,13 +55,13 @@ static Bounds fixed_bounds(const Trajectory *trajectory) {
     return all;
 }
 
-/* The dynamic bodies and a margin, in which their ground shows its top. */
+/* The dynamic bodies and a margin; a narrow one below, where a strip of their ground is enough. */
 static Bounds fitted_bounds(const Trajectory *trajectory) {
     Bounds all = dynamic_bounds(trajectory);
     if (is_empty(&all)) all = fixed_bounds(trajectory);
     if (is_empty(&all)) all = (Bounds){0, 0, 0, 0};
     double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), LEAST_SIDE);
-    return (Bounds){all.left - margin, all.right + margin, all.bottom - margin, all.top + margin};
+    return (Bounds){all.left - margin, all.right + margin, all.bottom - margin / 3, all.top + margin};
 }
 
 static double nice_scale(double scale) {

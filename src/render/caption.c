@@ -128,19 +128,30 @@ static void describe(const char *method, const char **title, char *note, size_t 
     }
 }
 
+/* What the bodies do not show. */
+static void describe_state(const Picture *picture, int panel, int frame, char *text, size_t size) {
+    bool ended = frame >= picture->panels[panel]->frames;
+    int unseen = panel_count_unseen(picture, panel, frame);
+    text[0] = '\0';
+    if (unseen > 0)
+        snprintf(text, size, "%d out of view%s", unseen, ended ? ", ended" : "");
+    else if (ended)
+        snprintf(text, size, "ended");
+}
+
 void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     if (layout->title.glyphs == NULL) return;
     const Trajectory *trajectory = picture->panels[panel];
     const Rect *rect = &layout->panels[panel];
-    int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2, right = rect->right;
-    if (frame >= trajectory->frames) {
-        right -= font_width(&layout->method, "ended");
-        font_add(drawing, &layout->method, "ended", right, baseline, INK_SOFT);
-        right -= gap;
-    }
+    int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2;
     const char *title;
     char note[TEXT_SIZE];
+    describe_state(picture, panel, frame, note, sizeof note);
+    int right = rect->right - font_width(&layout->method, note);
+    font_add(drawing, &layout->method, note, right, baseline, INK_SOFT);
+    if (note[0] != '\0') right -= gap;
+
     describe(trajectory->method, &title, note, sizeof note);
     int x = panel_draw_swatch(picture, panel, rect->left, baseline, drawing) + gap;
     if (title == NULL) {

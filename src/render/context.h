@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 typedef struct ContextKind {
-    const char *name, *packages; /* the Debian packages that bring it */
+    const char *name;
     /* The libraries, loaded, and a context; NULL with error set. */
     void *(*create)(Error *error);
     bool (*make_current)(void *state);
@@ -37,6 +37,7 @@ typedef struct ContextFunction {
     size_t offset;
 } ContextFunction;
 
-/* Opens a library, for good (Mesa does not survive being closed), and fills the struct. */
-bool context_load(const char *library, const ContextFunction *functions, int count, void *table,
-                  Error *error);
+/* Opens a library, for good (Mesa does not survive being closed), and fills the struct. `package` is
+   Debian's for it. */
+bool context_load(const char *library, const char *package, const ContextFunction *functions, int count,
+                  void *table, Error *error);

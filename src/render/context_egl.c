@@ -76,13 +76,15 @@ static bool open_context(Egl *egl) {
 static void *egl_create(Error *error) {
     Egl *egl = calloc(1, sizeof *egl);
     if (egl == NULL) return error_memory(error, "render"), NULL;
-    if (context_load("libEGL.so.1", functions, sizeof functions / sizeof functions[0], egl, error)) {
+    if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl,
+                     error)) {
         if (open_display(egl) && open_context(egl)) return egl;
-        error_system(error, "render", "EGL makes no surfaceless context of OpenGL 3.3");
+        error_system(
+            error, "render",
+            "EGL makes no surfaceless context of OpenGL 3.3; is the Debian package libgl1-mesa-dri there?");
     }
     egl_destroy(egl);
     return NULL;
 }
 
-const ContextKind context_egl = {
-    "egl", "libegl1 libgl1-mesa-dri", egl_create, egl_make_current, egl_find, egl_destroy};
+const ContextKind context_egl = {"egl", egl_create, egl_make_current, egl_find, egl_destroy};

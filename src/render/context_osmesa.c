@@ -51,7 +51,7 @@ static bool open_context(Osmesa *osmesa, Error *error) {
                                      3,
                                      0};
     const int count = sizeof functions / sizeof functions[0];
-    if (!context_load("libOSMesa.so.8", functions, count, osmesa, error)) return false;
+    if (!context_load("libOSMesa.so.8", "libosmesa6", functions, count, osmesa, error)) return false;
     osmesa->context = osmesa->create(attributes, NULL);
     if (osmesa->context != NULL && osmesa_make_current(osmesa)) return true;
     return error_system(error, "render", "OSMesa makes no context of OpenGL 3.3");
@@ -65,5 +65,5 @@ static void *osmesa_create(Error *error) {
     return NULL;
 }
 
-const ContextKind context_osmesa = {"osmesa",    "libosmesa6",  osmesa_create, osmesa_make_current,
-                                    osmesa_find, osmesa_destroy};
+const ContextKind context_osmesa = {"osmesa", osmesa_create, osmesa_make_current, osmesa_find,
+                                    osmesa_destroy};

@@ -18,7 +18,7 @@ typedef struct RectInstance {
     uint32_t color;
 } RectInstance;
 
-typedef enum Mark { MARK_NONE, MARK_EDGE, MARK_TARGET } Mark;
+
 
 /* A rounded box. */
 typedef struct Shape {
@@ -26,7 +26,7 @@ typedef struct Shape {
     double half_width, half_height;
     double cosine, sine;            /* of its angle, counter-clockwise as seen */
     double radius, outline;         /* of the corners; width of the outline, inside the box */
-    Mark mark;                      /* what shows how it has turned */
+    
     double mark_size;               /* thickness of the lighter edge, or radius of the target */
     uint32_t fill, line, highlight; /* inside, outline, mark */
 } Shape;

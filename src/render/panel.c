@@ -94,6 +94,22 @@ void panel_draw(const Picture *picture, int panel, int frame, Drawing *drawing) 
     grid_draw_axes(picture, panel, drawing);
 }
 
+int panel_count_unseen(const Picture *picture, int panel, int frame) {
+    const Trajectory *trajectory = picture->panels[panel];
+    const Rect *rect = &picture->layout.panels[panel];
+    int shown = picture_panel_frame(picture, panel, frame), count = 0;
+    for (int body = 0; body < trajectory->bodies; body++) {
+        if (trajectory->fixed[body] || !trajectory_has(trajectory, shown, body)) continue;
+        Shape shape = {0};
+        place(&shape, picture, rect,
+              trajectory->position[(size_t)shown * (size_t)trajectory->bodies + (size_t)body], 0);
+        bool inside =
+            shape.x >= rect->left && shape.x < rect->right && shape.y >= rect->top && shape.y < rect->bottom;
+        count += !inside;
+    }
+    return count;
+}
+
 int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline, Drawing *drawing) {
     int side = picture->layout.title.pixels * 3 / 4;
     Shape shape = styled_box(picture, side, side, &body_colors[panel]);

@@ -5,5 +5,8 @@
 
 void panel_draw(const Picture *picture, int panel, int frame, Drawing *drawing);
 
+/* How many dynamic bodies that are there lie with their centre outside the panel. */
+int panel_count_unseen(const Picture *picture, int panel, int frame);
+
 /* A small box in the colours of the panel's bodies, standing on a line of text. Returns its right edge. */
 int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline, Drawing *drawing);

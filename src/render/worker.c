@@ -6,7 +6,6 @@
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -63,10 +62,9 @@ static bool draw_frames(const WorkerJob *job, Renderer *renderer, Image *image, 
     return true;
 }
 
-/* Several workers would compete if each brought Mesa's threads. An interrupt reaches the parent, which then
-   stops listening; the worker ends between two frames and leaves no half-written file. */
+/* An interrupt reaches the parent, which then stops listening; the worker ends between two frames and leaves
+   no half-written file. */
 static void prepare_process(void) {
-    setenv("LP_NUM_THREADS", "0", 1);
     signal(SIGINT, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scene file's tables of keys: from YAML to Scene. */
-#include "common/file.h"
 #include "scene/scene.h"
+
+#include "common/file.h"
 #include "scene/scene_bodies.h"
 
 #include <limits.h>

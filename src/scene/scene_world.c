@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Worlds made from a scene, and the scene's hash. */
-#include "common/hash.h"
 #include "scene/scene.h"
+
+#include "common/hash.h"
 
 #include <string.h>
 
@@ -79,8 +80,7 @@ static Record begin_record(uint64_t hash) {
 static uint64_t hash_body(uint64_t hash, const BodyDef *body) {
     Record record = begin_record(hash);
     put_vector(&record, body->size);
-    put_word(&record, body->fixed);
-    put_float(&record, body->fixed ? 0 : body->mass);
+    put_float(&record, body->fixed ? 0 : body->mass); /* no moving body has mass 0 */
     put_float(&record, body->friction);
     put_vector(&record, body->position);
     put_float(&record, body->angle);

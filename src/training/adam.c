@@ -5,8 +5,7 @@
 
    with c = 1 - b^t, which undoes the start from 0. Source: Kingma and Ba, "Adam: A Method for Stochastic
    Optimization" (2015); the rate falls to 0 by half a cosine (Loshchilov and Hutter, "SGDR", 2017). Full
-   batch, so the gradient has no noise. It crawls where the loss is a narrow valley: there lm is thousands of
-   steps ahead. */
+   batch, so the gradient has no noise. It crawls where the loss is a narrow valley; lm does not. */
 #include "training/optimizer.h"
 
 #include <math.h>

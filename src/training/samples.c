@@ -47,28 +47,23 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
     return spread;
 }
 
+/* A column that never changes has width 0, without rounding: sums of equal float32 are exact in double. */
 static void set_scale(Normalisation *normalisation, int column, double offset, double width) {
     float scale = (float)(1 / width);
     normalisation->offset[column] = (float)offset;
     normalisation->scale[column] = isfinite(scale) && scale > 0 ? scale : 1;
 }
 
-static void standardise(Normalisation *normalisation, int column, const Spread *spread) {
-    bool constant = spread->minimum == spread->maximum;
-    set_scale(normalisation, column, constant ? spread->minimum : spread->mean,
-              constant ? 1 : spread->deviation);
-}
-
 void samples_fit_normalisation(const Dataset *dataset, Network *network) {
     int outputs = network->widths[network->layers];
     for (int i = 0; i < network->widths[0]; i++) {
         Spread spread = column_spread(dataset, 0, i);
-        standardise(&network->input, i, &spread);
+        set_scale(&network->input, i, spread.mean, spread.deviation);
     }
     for (int k = 0; k < outputs; k++) {
         Spread spread = column_spread(dataset, outputs, k);
         if (network->activations[network->layers - 1] == ACTIVATION_LINEAR)
-            standardise(&network->output, k, &spread);
+            set_scale(&network->output, k, spread.mean, spread.deviation);
         else
             set_scale(&network->output, k, spread.minimum, spread.maximum - spread.minimum);
     }

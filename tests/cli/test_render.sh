@@ -13,8 +13,18 @@ equal "frames of the video" \
 for frame in pictures/frame_*.png; do
     pngcheck -q "$frame" || fail "$frame"
 done
-pngcheck -7 pictures/frame_000003.png >out
-for text in single engine pair-net 3; do says "$text"; done
+/usr/bin/python3 - pictures/frame_000003.png >out <<'PYTHON'
+# Keyword and text of every iTXt chunk (PNG specification, 11.3.4.5).
+import struct, sys
+data, at = open(sys.argv[1], "rb").read(), 8
+while at < len(data):
+    length, kind = struct.unpack(">I4s", data[at:at + 8])
+    if kind == b"iTXt":
+        key, rest = data[at + 8:at + 8 + length].split(b"\0", 1)
+        print(key.decode() + ":", rest[2:].split(b"\0", 2)[2].decode())
+    at += 12 + length
+PYTHON
+for text in "Scene: single" "Method: engine | pair-net" "Frame: 3" "State: " "Software: twinbox"; do says "$text"; done
 
 # The same frames from the stored runs, from any number of jobs, in either context.
 run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o one --size 192x108 --jobs 1 --context osmesa

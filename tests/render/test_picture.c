@@ -2,6 +2,7 @@
 /* Whole frames: the same in both contexts, whatever the trajectories hold, and steady from frame to frame. */
 #include "testing.h"
 
+#include "mesa.h"
 #include "render/picture.h"
 #include "runs.h"
 

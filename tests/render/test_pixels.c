@@ -2,6 +2,7 @@
 /* Shapes and glyphs pixel by pixel, in both kinds of context. */
 #include "testing.h"
 
+#include "mesa.h"
 #include "render/font.h"
 #include "screens.h"
 

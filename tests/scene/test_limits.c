@@ -127,6 +127,16 @@ static void floods_are_refused(void **state) {
     expect_flood("bodies: [", "a,\n ", 300000, "219998:2: error: more than 220000 values in one file");
 }
 
+static void large_line_numbers_keep_the_excerpt_aligned(void **state) {
+    (void)state;
+    Text text = text_new("");
+    text_add(&text, "- a\n", 100000);
+    text_add(&text, "- &b c\n", 1);
+    text_expect(&text, "100001:6: error: anchors (&) are not allowed in a scene\n"
+                       "100001 | - &b c\n"
+                       "       |      ^");
+}
+
 static void large_files_are_refused(void **state) {
     (void)state;
     Text text = text_new("#");
@@ -209,6 +219,7 @@ int main(void) {
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(aliases_of_aliases_are_refused),
         cmocka_unit_test(floods_are_refused),
+        cmocka_unit_test(large_line_numbers_keep_the_excerpt_aligned),
         cmocka_unit_test(large_files_are_refused),
         cmocka_unit_test(damaged_files_are_read_or_refused_with_their_place),
     };

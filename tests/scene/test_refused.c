@@ -2,6 +2,8 @@
 /* What a scene file may not say, and the message that each mistake gets. */
 #include "scene_text.h"
 
+#include "scene/source.h"
+
 #define BOX "size: [1, 1], mass: 1, position: [0, 0]"
 #define TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
@@ -25,6 +27,7 @@ static const Refused keys[] = {
     {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: a key must be a word"},
     {BODY("massa: 1"), "6:6: error: unknown key 'massa'; did you mean 'mass'?"},
+    {BODY("frictoin: 1"), "6:6: error: unknown key 'frictoin'; did you mean 'friction'?"},
     {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is there twice"},
     {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
     {BODY("size: [1, 1], mass: 1"), "6:5: error: a body needs the key 'position'"},
@@ -200,7 +203,7 @@ static void syntax_errors_have_place_and_excerpt(void **state) {
     Error error;
     assert_null(read_text("dt: 1\nframes: \"3\n", &error));
     assert_int_equal(error.kind, ERROR_INPUT);
-    assert_int_equal(strncmp(behind_path(&error), "2:", 2), 0);
+    assert_int_equal(strncmp(behind_path(&error), "2:10: ", 6), 0);
     assert_non_null(strstr(error.message, "\n    2 | frames: \"3\n      | "));
     assert_int_equal(error.message[strlen(error.message) - 1], '^');
 }
@@ -232,6 +235,33 @@ static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07 in a text file\n"
                                               "    1 | {\"\xc3\xa4\": 1?}\n"
                                               "      |        ^");
+}
+
+static void byte_order_mark_is_no_character(void **state) {
+    (void)state;
+    expect_refused("\xef\xbb\xbfhello\n", "1:1: error: a scene is a mapping of keys to values (got hello)\n"
+                                          "    1 | hello\n"
+                                          "      | ^");
+}
+
+static void places_beyond_the_text_are_shown_at_its_end(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        Place place;
+        const char *message;
+    } cases[] = {{"a\nbc\r\n", {2, 0}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
+                 {"a\nbc", {9, 9}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
+                 {"a\nbc", {0, 9}, "x:1:2: error: e\n    1 | a\n      |  ^"},
+                 {"", {0, 1}, "x:1:1: error: e\n    1 | \n      | ^"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[8];
+        strcpy(text, cases[i].text);
+        const Source source = {"x", text, strlen(text)};
+        Error error = {.kind = ERROR_NONE};
+        assert_false(source_error(&source, cases[i].place, &error, "e"));
+        assert_string_equal(error.message, cases[i].message);
+    }
 }
 
 /* Marks that turn the direction of text could make a line look like another one. */
@@ -281,6 +311,8 @@ int main(void) {
         cmocka_unit_test(syntax_errors_have_place_and_excerpt),
         cmocka_unit_test(excerpt_points_at_the_value),
         cmocka_unit_test(excerpt_keeps_tabs_and_counts_characters),
+        cmocka_unit_test(byte_order_mark_is_no_character),
+        cmocka_unit_test(places_beyond_the_text_are_shown_at_its_end),
         cmocka_unit_test(excerpt_hides_what_does_not_print),
         cmocka_unit_test(excerpt_of_a_long_line_is_cut_around_the_caret),
         cmocka_unit_test(files_that_are_no_files_are_refused),

@@ -269,6 +269,11 @@ static void hash_keeps_with_all_else(void **state) {
                         "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
                         "networks: {pair-net: x.npz}\nbomb:\n  mass: 1\n  size: [1, 1]\n  y: 1\n  x: 1\n"
                         "bodies: [{position: [0, 0], friction: 0.2, size: [1, 1], mass: 1.0}]\n"));
+    Scene *scene = shipped("single");
+    uint64_t without_mass = scene_hash(scene);
+    scene->bodies[0].mass = 7; /* the ground is static */
+    assert_int_equal(scene_hash(scene), without_mass);
+    scene_destroy(scene);
     /* The velocity counts and not the law that gave it. */
     assert_int_equal(
         hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: [-3, -6]}"),

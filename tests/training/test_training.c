@@ -46,7 +46,7 @@ static double error_of(const Network *network, const Dataset *dataset, bool test
     int count = 0;
     for (int64_t r = 0; r < dataset->rows; r++) {
         if ((dataset->launch_test[dataset->launch[r]] != 0) != test) continue;
-        float scratch[2 * PAIR_INPUTS], output[2];
+        float scratch[2 * 64], output[2];
         const float *changes = dataset->changes + r * PAIR_CHANGES;
         network_predict(network, dataset->inputs + r * PAIR_INPUTS, scratch, output);
         for (int k = 0; k < 2; k++) {
@@ -232,6 +232,32 @@ static void asked_to_stop_the_best_so_far_comes_back(void **state) {
     dataset_destroy(dataset);
 }
 
+/* Adam overshoots in a wide network; what comes back never gets worse with more iterations. */
+static void the_best_comes_back_and_not_the_last(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(500);
+    double best = INFINITY;
+    int overshot = 0;
+    for (int stop = 0; stop < 12; stop++) {
+        Error error = {0};
+        Scores scores = {0};
+        const Progress progress = {stop_at, &stop};
+        TrainingOptions options = small("adam", 1000);
+        options.widths[1] = 40;
+        options.on_score = keep_score;
+        options.context = &scores;
+        Network *network = training_run(dataset, &options, &progress, &error);
+        assert_ok(network != NULL, error);
+        double found = error_of(network, dataset, false);
+        assert_true(found <= 1.0001 * best);
+        best = fmin(best, found);
+        overshot += last_score(&scores)->train > 1.01 * found;
+        network_destroy(network);
+    }
+    assert_true(overshot > 0);
+    dataset_destroy(dataset);
+}
+
 static void training_goes_on_from_a_network(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
@@ -317,6 +343,7 @@ int main(void) {
         cmocka_unit_test(seeds_decide_every_bit),
         cmocka_unit_test(scores_come_as_in_the_papers_table),
         cmocka_unit_test(asked_to_stop_the_best_so_far_comes_back),
+        cmocka_unit_test(the_best_comes_back_and_not_the_last),
         cmocka_unit_test(training_goes_on_from_a_network),
         cmocka_unit_test(what_cannot_be_trained_is_refused),
         cmocka_unit_test(leaving_the_finite_numbers_is_an_error),

@@ -1,0 +1,18 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The runs of golden/trajectories, of engine and network, again: equal bit by bit.
+. "$(dirname "$0")/checks.sh"
+
+runs=0
+for golden in "$sources"/golden/trajectories/*.npz; do
+    name=$(basename "$golden" .npz)
+    scene=${name%%-*}
+    method=${name#*-}
+    steps=$(/usr/bin/python3 -c "import numpy; print(len(numpy.load('$golden')['angle']) - 1)")
+    run 0 simulate "$scenes/$scene.yaml" --frames "$steps" --method "$method" -o "$name.npz"
+    run 0 compare "$golden" "$name.npz"
+    cat out
+    runs=$((runs + 1))
+done
+equal "runs compared" $runs 8
+finish
