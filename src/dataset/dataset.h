@@ -14,7 +14,6 @@ enum { DATASET_VERSION = 1, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128 };
 
 typedef struct Dataset {
     int64_t rows;
-    size_t capacity;      /* rows there is room for */
     float *inputs;        /* [rows, PAIR_INPUTS]: pair_inputs() */
     float *changes;       /* [rows, PAIR_CHANGES]: pair_changes() */
     int32_t *launch;      /* [rows] which launch the row comes from */

@@ -98,7 +98,6 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
-    dataset->capacity = (size_t)rows;
     const int64_t inputs[] = {rows, PAIR_INPUTS}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
     return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
            (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&

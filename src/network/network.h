@@ -18,8 +18,8 @@ typedef struct Normalisation {
     float *offset, *scale; /* [width]; scale > 0 */
 } Normalisation;
 
-/* All numbers are one block that begins at weights[0]: weights_0, biases_0, weights_1, ..., normalisations.
- */
+/* All numbers are one block that begins at weights[0]: weights_0, biases_0, weights_1, ...,
+   normalisations. */
 typedef struct Network {
     int layers;                         /* of weights: 2 for 10-10-2 */
     int widths[NETWORK_MAX_LAYERS + 1]; /* inputs, hidden ..., outputs */

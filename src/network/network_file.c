@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Network files: .npz with version, kind ("network"), widths[layers + 1], activations (words), weights_L and
-   biases_L for every layer, input_offset, input_scale, output_offset, output_scale, inputs, outputs, command.
- */
+   biases_L for every layer, input_offset, input_scale, output_offset, output_scale, inputs, outputs,
+   command. */
 #include "network/network.h"
 
 #include "common/npz.h"

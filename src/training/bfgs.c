@@ -26,8 +26,8 @@ static void gradient_only(const gsl_vector *x, void *context, gsl_vector *gradie
     value_and_gradient(x, context, &loss, gradient);
 }
 
-/* One step; after a failed line search one more try along the plain gradient. False where there is no way on.
- */
+/* One step; after a failed line search one more try along the plain gradient. False where there is no way
+   on. */
 static bool iterate(gsl_multimin_fdfminimizer *minimizer) {
     if (gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS) return true;
     return gsl_multimin_fdfminimizer_restart(minimizer) == GSL_SUCCESS &&

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sums over all rows, in parallel. Loops by hand and no BLAS: for layers of ten units they are as fast (0.033
-   s against 0.043 s by OpenBLAS for the products of 10^6 rows of 10-10-2), with the same bits on any machine.
- */
+   s against 0.043 s by OpenBLAS for the products of 10^6 rows of 10-10-2), with the same bits on any
+   machine. */
 #include "training/loss.h"
 
 #include <stdlib.h>
@@ -56,8 +56,8 @@ void loss_forward(NetworkBlock *block, const Samples *samples, int64_t b, const 
     network_forward(block, parameters);
 }
 
-/* errors[outputs, BLOCK_ROWS] = prediction - target, 0 in the rows that fill up; returns the sum of squares.
- */
+/* errors[outputs, BLOCK_ROWS] = prediction - target, 0 in the rows that fill up; returns the sum of
+   squares. */
 static double block_errors(const NetworkBlock *block, const Samples *samples, int64_t b, double *errors) {
     const double *prediction = block->values[block->shape->layers];
     const float *target = samples->y + b * samples->outputs * BLOCK_ROWS;

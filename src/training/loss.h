@@ -17,8 +17,8 @@ double loss_value(Loss *loss, const Samples *samples, const double *parameters);
 /* Also fills gradient[parameters]. */
 double loss_gradient(Loss *loss, const Samples *samples, const double *parameters, double *gradient);
 
-/* Prediction minus target: residuals[blocks, outputs, BLOCK_ROWS], 0 in the rows that fill up the last block.
- */
+/* Prediction minus target: residuals[blocks, outputs, BLOCK_ROWS], 0 in the rows that fill up the last
+   block. */
 void loss_residuals(Loss *loss, const Samples *samples, const double *parameters, double *residuals);
 
 /* Puts samples of block b into the block's inputs and runs it forward. */

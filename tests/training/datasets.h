@@ -5,6 +5,7 @@
 
 #include "dataset/dataset.h"
 #include "network/network.h"
+#include "training/training.h"
 
 /* Numbers in [-1, 1) from a linear congruential sequence. */
 static inline float next_number(uint32_t *sequence) {
@@ -17,7 +18,6 @@ static inline Dataset *make_dataset(int rows) {
     Dataset *dataset = calloc(1, sizeof *dataset);
     assert_non_null(dataset);
     dataset->rows = rows;
-    dataset->capacity = (size_t)rows;
     dataset->inputs = calloc((size_t)rows * PAIR_INPUTS, sizeof(float));
     dataset->changes = calloc((size_t)rows * PAIR_CHANGES, sizeof(float));
     dataset->launch = calloc((size_t)rows, sizeof(int32_t));
@@ -49,4 +49,13 @@ static inline Dataset *make_taught_dataset(int rows) {
     }
     network_destroy(teacher);
     return dataset;
+}
+
+/* To train a 10-4-2 network. */
+static inline TrainingOptions small(const char *optimizer, int iterations) {
+    return (TrainingOptions){.layers = 2,
+                             .widths = {PAIR_INPUTS, 4, 2},
+                             .optimizer = optimizer,
+                             .iterations = iterations,
+                             .seed = 1};
 }

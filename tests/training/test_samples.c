@@ -14,8 +14,8 @@ static Network *make_network(int outputs, Activation last) {
     return network;
 }
 
-/* Five rows: 0 to 3 are trained on, row 4 is the test. Changes of a's x velocity -0, -1, -2, -3, -6; b's 0.
- */
+/* Five rows: 0 to 3 are trained on, row 4 is the test. Changes of a's x velocity -0, -1, -2, -3, -6; b's
+   0. */
 static Dataset *small_dataset(void) {
     Dataset *dataset = make_dataset(5);
     for (int r = 0; r < 5; r++) {
