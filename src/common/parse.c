@@ -44,41 +44,34 @@ static locale_t enter_c_locale(void) {
 
 static void leave_c_locale(locale_t previous) { freelocale(uselocale(previous)); }
 
-/* The decimal number up to `terminator`; *rest is what follows it. Not through double: that would round
- * twice. */
-static bool take_float(const char *text, char terminator, float *value, const char **rest) {
-    const char *end = decimal_end(text);
-    if (end == NULL || *end != terminator) return false;
-    locale_t previous = enter_c_locale();
-    if (previous == (locale_t)0) return false;
-    *value = strtof(text, NULL);
-    leave_c_locale(previous);
-    *rest = end + 1;
-    return isfinite(*value);
-}
+/* One text, rounded once to each width: through double, a float would be rounded twice. */
+typedef struct Number {
+    float single;
+    double full;
+} Number;
 
-static bool take_double(const char *text, char terminator, double *value, const char **rest) {
+/* The decimal number up to `terminator`; *rest is what follows it. */
+static bool take_number(const char *text, char terminator, Number *number, const char **rest) {
     const char *end = decimal_end(text);
     if (end == NULL || *end != terminator) return false;
     locale_t previous = enter_c_locale();
     if (previous == (locale_t)0) return false;
-    *value = strtod(text, NULL);
+    *number = (Number){strtof(text, NULL), strtod(text, NULL)};
     leave_c_locale(previous);
     *rest = end + 1;
-    return isfinite(*value);
+    return isfinite(number->single);
 }
 
 bool parse_float(const char *text, float *value) {
-    float number, divisor;
+    Number number, divisor;
     const char *rest;
-    if (take_float(text, '\0', &number, &rest)) {
-        *value = number;
+    if (take_number(text, '\0', &number, &rest)) {
+        *value = number.single;
         return true;
     }
-    if (!take_float(text, '/', &number, &rest) || !take_float(rest, '\0', &divisor, &rest)) return false;
-    /* A divisor of 0 gives what is not finite either. */
-    if (!isfinite(number / divisor)) return false;
-    *value = number / divisor;
+    if (!take_number(text, '/', &number, &rest) || !take_number(rest, '\0', &divisor, &rest)) return false;
+    if (divisor.single == 0 || !isfinite(number.single / divisor.single)) return false;
+    *value = number.single / divisor.single;
     return true;
 }
 
@@ -97,15 +90,15 @@ bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *valu
 static const double STEP_TOLERANCE = 1e-6;
 
 bool parse_range(const char *text, int max_count, FloatRange *range) {
-    double first, last, step;
+    Number first, last, step;
     const char *rest;
-    if (!take_double(text, ':', &first, &rest) || !take_double(rest, ':', &last, &rest) ||
-        !take_double(rest, '\0', &step, &rest))
+    if (!take_number(text, ':', &first, &rest) || !take_number(rest, ':', &last, &rest) ||
+        !take_number(rest, '\0', &step, &rest))
         return false;
-    if (!isfinite((float)first) || !isfinite((float)last) || !(step > 0) || first > last) return false;
-    double count = floor((last - first) / step + STEP_TOLERANCE) + 1;
+    if (!(step.full > 0) || first.full > last.full) return false;
+    double count = floor((last.full - first.full) / step.full + STEP_TOLERANCE) + 1;
     if (!(count <= max_count)) return false;
-    *range = (FloatRange){first, step, (int)count};
+    *range = (FloatRange){first.full, step.full, (int)count};
     return true;
 }
 

@@ -4,10 +4,11 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Metres; a body farther off is not followed, or nothing else could be made out. */
+/* Metres; a body that reaches farther off is not followed, or nothing else could be made out. */
 static const double FARTHEST = 1e5;
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
 static const double LEAST_SIDE = 2.0;    /* m */
+static const double LEAST_ASKED = 1e-3;  /* m; what a scene may ask to see */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 
@@ -30,7 +31,7 @@ static Bounds body_bounds(const Trajectory *trajectory, int frame, int body) {
     double c = fabs(cos(angle)), s = fabs(sin(angle));
     double half_x = trajectory->size[body].x / 2.0, half_y = trajectory->size[body].y / 2.0;
     double reach_x = c * half_x + s * half_y, reach_y = s * half_x + c * half_y;
-    if (!(fabs(x) < FARTHEST && fabs(y) < FARTHEST && isfinite(angle))) return NOTHING;
+    if (!(fabs(x) + reach_x < FARTHEST && fabs(y) + reach_y < FARTHEST)) return NOTHING; /* nor for NaN */
     return (Bounds){x - reach_x, x + reach_x, y - reach_y, y + reach_y};
 }
 
@@ -73,9 +74,15 @@ static Camera look_at(double x, double y, double scale, int width, int height) {
     return (Camera){scale, rint(width / 2.0 - scale * x), rint(height / 2.0 + scale * y)};
 }
 
+static bool asks_to_see(const Trajectory *trajectory) {
+    Vec2 size = trajectory->camera_size, center = trajectory->camera_center;
+    return size.x >= LEAST_ASKED && size.y >= LEAST_ASKED && size.x < FARTHEST && size.y < FARTHEST &&
+           fabs(center.x) < FARTHEST && fabs(center.y) < FARTHEST;
+}
+
 Camera camera_fit(const Trajectory *trajectory, int width, int height) {
-    Vec2 asked = trajectory->camera_size;
-    if (asked.x > 0 && asked.y > 0) {
+    if (asks_to_see(trajectory)) {
+        Vec2 asked = trajectory->camera_size;
         double scale = nice_scale(fmin(width / (double)asked.x, height / (double)asked.y));
         return look_at(trajectory->camera_center.x, trajectory->camera_center.y, scale, width, height);
     }

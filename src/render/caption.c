@@ -4,7 +4,6 @@
 #include "render/panel.h"
 #include "render/style.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -100,23 +99,23 @@ static bool is_method(const char *text, const char *name) {
     return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
 }
 
-/* Copies a method without the folders of the files it names: they belong to a machine and not to a picture.
- */
+/* Copies a method without the folders of its files: they belong to a machine and not to a picture. */
 static void shorten_method(char *text, size_t size, const char *method) {
-    size_t length = 0, value = 0;
-    for (const char *c = method; *c != '\0' && length + 1 < size; c++) {
-        if (*c == '/') {
-            length = value;
-            continue;
-        }
-        text[length++] = *c;
-        if (*c == ':' || *c == '=' || *c == ',') value = length;
+    size_t used = 0;
+    while (*method != '\0') {
+        size_t length = strcspn(method, ":=,");
+        const char *end = method + length, *start = method;
+        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
+            for (const char *c = method; c < end; c++)
+                if (*c == '/') start = c + 1;
+        if (*end != '\0') end++;
+        used += (size_t)snprintf(text + used, size - used, "%.*s", (int)(end - start), start);
+        method = end;
     }
-    text[length] = '\0';
 }
 
 static void describe(const char *method, const char **title, char *note, size_t size) {
-    char text[TRAJECTORY_NAME_SIZE];
+    char text[TRAJECTORY_NAME_SIZE] = "";
     shorten_method(text, sizeof text, method);
     *title = NULL;
     if (is_method(method, "engine")) {
@@ -151,7 +150,6 @@ void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawin
     int right = rect->right - font_width(&layout->method, note);
     font_add(drawing, &layout->method, note, right, baseline, INK_SOFT);
     if (note[0] != '\0') right -= gap;
-
     describe(trajectory->method, &title, note, sizeof note);
     int x = panel_draw_swatch(picture, panel, rect->left, baseline, drawing) + gap;
     if (title == NULL) {

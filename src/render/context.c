@@ -29,6 +29,7 @@ bool context_load(const char *library, const char *package, const ContextFunctio
 static void prepare_mesa(void) {
     setenv("LP_NUM_THREADS", "0", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "true", 1);
+    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
 }
 

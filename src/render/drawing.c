@@ -30,30 +30,28 @@ static double snap(double pixels) { return rint(pixels * SNAP) / SNAP; }
 
 static int32_t fixed(double pixels) { return (int32_t)rint(pixels * FIXED); }
 
-/* Cuts the interval [-*half, *half] around *center to what reaches at most LARGEST_HALF / 2 beyond [low,
- * high]. */
-static void cut(double low, double high, double *center, double *half) {
-    double first = fmax(*center - *half, low - LARGEST_HALF / 2),
-           last = fmin(*center + *half, high + LARGEST_HALF / 2);
-    *center = (first + last) / 2;
+/* Cuts the interval [-*half, *half] to what reaches at most LARGEST_HALF / 2 beyond [low, high], and returns
+   its new centre. */
+static double cut(double low, double high, double *half) {
+    double first = fmax(-*half, low - LARGEST_HALF / 2), last = fmin(*half, high + LARGEST_HALF / 2);
     *half = (last - first) / 2;
+    return (first + last) / 2;
 }
 
-/* A box of which only a part can be seen loses what lies far outside, and its mark with it. */
+/* A box of which only a part can be seen loses what lies far outside, and its band with it. */
 static void cut_down(Shape *shape, const Rect *clip) {
     if (shape->half_width <= LARGEST_HALF && shape->half_height <= LARGEST_HALF) return;
     double c = shape->cosine, s = shape->sine;
     double x = (clip->left + clip->right) / 2.0, y = (clip->top + clip->bottom) / 2.0;
     double w = (clip->right - clip->left) / 2.0, h = (clip->bottom - clip->top) / 2.0;
-    double local_x = (x - shape->x) * c - (y - shape->y) * s,
-           local_y = -(x - shape->x) * s - (y - shape->y) * c;
+    double local_x = (x - shape->x) * c - (y - shape->y) * s;
+    double local_y = -(x - shape->x) * s - (y - shape->y) * c;
     double reach_x = fabs(c) * w + fabs(s) * h, reach_y = fabs(s) * w + fabs(c) * h;
-    double center_x = 0, center_y = 0;
-    cut(local_x - reach_x, local_x + reach_x, &center_x, &shape->half_width);
-    cut(local_y - reach_y, local_y + reach_y, &center_y, &shape->half_height);
+    double center_x = cut(local_x - reach_x, local_x + reach_x, &shape->half_width);
+    double center_y = cut(local_y - reach_y, local_y + reach_y, &shape->half_height);
     shape->x += center_x * c - center_y * s;
     shape->y -= center_x * s + center_y * c;
-    shape->mark = MARK_NONE;
+    shape->band = 0;
 }
 
 static bool is_drawable(const Shape *shape) {
@@ -66,14 +64,11 @@ static bool is_drawable(const Shape *shape) {
 static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
     double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
     double reach_y = fabs(shape->sine) * shape->half_width + fabs(shape->cosine) * shape->half_height + 1;
-    double left = fmax(floor(shape->x - reach_x), clip->left),
-           right = fmin(ceil(shape->x + reach_x), clip->right);
-    double top = fmax(floor(shape->y - reach_y), clip->top),
-           bottom = fmin(ceil(shape->y + reach_y), clip->bottom);
-    if (!(left < right && top < bottom)) return false;
-    bounds[0] = (int32_t)left, bounds[1] = (int32_t)top, bounds[2] = (int32_t)right,
-    bounds[3] = (int32_t)bottom;
-    return true;
+    bounds[0] = (int32_t)fmax(floor(shape->x - reach_x), clip->left);
+    bounds[1] = (int32_t)fmax(floor(shape->y - reach_y), clip->top);
+    bounds[2] = (int32_t)fmin(ceil(shape->x + reach_x), clip->right);
+    bounds[3] = (int32_t)fmin(ceil(shape->y + reach_y), clip->bottom);
+    return bounds[0] < bounds[2] && bounds[1] < bounds[3];
 }
 
 static ShapeInstance *next_shape(Drawing *drawing) {
@@ -103,10 +98,10 @@ void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip
     instance->axis[2] = (int32_t)rint(c * x + s * y), instance->axis[3] = (int32_t)rint(s * x - c * y);
     instance->form[0] = fixed(shape.half_width), instance->form[1] = fixed(shape.half_height);
     instance->form[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
-    instance->form[3] = fixed(shape.outline);
+    instance->form[3] = fixed(fmin(shape.outline, LARGEST_HALF));
     instance->paint[0] = shape.fill, instance->paint[1] = shape.outline > 0 ? shape.line : shape.fill;
-    instance->paint[2] = (uint32_t)shape.mark << 24 | shape.highlight;
-    instance->paint[3] = shape.mark == MARK_NONE ? 0 : (uint32_t)fixed(shape.mark_size);
+    instance->paint[2] = shape.band > 0 ? shape.band_color : shape.fill;
+    instance->paint[3] = (uint32_t)fixed(shape.band);
     drawing->shape_count++;
 }
 

@@ -6,8 +6,7 @@
 
 typedef enum FontFace { FONT_REGULAR, FONT_SEMIBOLD } FontFace;
 
-/* A face at a size. Without glyphs (text would be too small to read) everything has width 0 and adds nothing.
- */
+/* A face at a size. Without glyphs (too small to read) all text has width 0 and adds nothing. */
 typedef struct Font {
     const FontGlyph *glyphs;
     int pixels; /* an em */

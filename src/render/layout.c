@@ -54,10 +54,7 @@ Layout layout_make(int width, int height, int panels) {
     layout.axis_drop = pixels(0.0275 * unit);
     layout.tick = text ? pixels(0.006 * unit) : 0;
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
-    int gutter = text ? font_width(&layout.axis, "\xE2\x88\x92"
-                                                 "50") +
-                            2 * layout.tick
-                      : 0;
+    int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     int title = text ? pixels(0.058 * unit) : 0, axis = text ? pixels(0.038 * unit) : 0;
     int header = text ? layout.header_baseline + pixels(0.006 * unit) : margin;
     Rect area = {margin + gutter, header + title, width - margin, height - pixels(0.016 * unit) - axis};

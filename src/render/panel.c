@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-/* Shares of a box's shorter side, in words: a corner, an outline and a mark that look right at every size. */
-static const double CORNER = 0.11, OUTLINE = 0.045, EDGE_MARK = 0.13, TARGET_MARK = 0.30;
+/* Shares of a box's shorter side, in words: what looks right at every size. */
+static const double CORNER = 0.11, OUTLINE = 0.045, BAND = 0.13, TARGET = 0.30;
 static const double LEAST_OUTLINE = 1.0;    /* pixels */
 static const double LEAST_OUTLINED = 5.0;   /* pixels; a smaller box would be all outline */
 static const double LARGEST_CORNER = 0.009; /* of the panel's shorter side */
@@ -34,7 +34,8 @@ static Shape styled_box(const Picture *picture, double width, double height, con
                    .outline = side < LEAST_OUTLINED ? 0 : outline,
                    .fill = colors->fill,
                    .line = colors->line,
-                   .highlight = colors->highlight};
+                   .band = (side < LEAST_OUTLINED ? 0 : outline) + BAND * side,
+                   .band_color = colors->band};
 }
 
 static void place(Shape *shape, const Picture *picture, const Rect *panel, Vec2 position, double angle) {
@@ -45,25 +46,39 @@ static void place(Shape *shape, const Picture *picture, const Rect *panel, Vec2 
     shape->sine = sin(angle);
 }
 
+static void draw_part(Shape part, const Shape *whole, double up, const Rect *clip, Drawing *drawing) {
+    part.cosine = whole->cosine, part.sine = whole->sine;
+    part.x = whole->x - up * whole->sine, part.y = whole->y - up * whole->cosine;
+    drawing_add_shape(drawing, &part, clip);
+}
+
+/* A dot in a ring, and a bar from it towards the local top. */
+static void draw_target(const Shape *bomb, double radius, const Rect *clip, Drawing *drawing) {
+    uint32_t light = BOMB.band;
+    Shape bar = {.half_width = radius / 7, .half_height = 0.3 * radius, .fill = light};
+    Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = radius / 3};
+    Shape dot = {.half_width = radius / 3, .half_height = radius / 3, .radius = radius / 3, .fill = light};
+    ring.fill = BOMB.fill, ring.line = light;
+    draw_part(bar, bomb, 1.2 * radius, clip, drawing);
+    draw_part(ring, bomb, 0, clip, drawing);
+    draw_part(dot, bomb, 0, clip, drawing);
+}
+
 static void draw_body(const Picture *picture, int panel, int frame, int body, Drawing *drawing) {
+    static const BodyColors ground = {GROUND, GROUND_LINE, GROUND};
     const Trajectory *trajectory = picture->panels[panel];
+    const Rect *clip = &picture->layout.panels[panel];
     size_t i = (size_t)frame * (size_t)trajectory->bodies + (size_t)body;
     double width = picture->camera.scale * (double)trajectory->size[body].x;
     double height = picture->camera.scale * (double)trajectory->size[body].y;
-    static const BodyColors ground = {GROUND, GROUND_LINE, GROUND};
     bool fixed = trajectory->fixed[body], bomb = body == trajectory->bomb;
     const BodyColors *colors = fixed ? &ground : bomb ? &BOMB : &body_colors[panel];
     Shape shape = styled_box(picture, width, height, colors);
-    place(&shape, picture, &picture->layout.panels[panel], trajectory->position[i],
-          (double)trajectory->angle[i]);
-    if (fixed)
-        shape.radius = 0;
-    else {
-        shape.mark = bomb ? MARK_TARGET : MARK_EDGE;
-        shape.mark_size =
-            bomb ? TARGET_MARK * fmin(width, height) : shape.outline + EDGE_MARK * fmin(width, height);
-    }
-    drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
+    place(&shape, picture, clip, trajectory->position[i], (double)trajectory->angle[i]);
+    if (fixed) shape.radius = 0;
+    if (fixed || bomb) shape.band = 0;
+    drawing_add_shape(drawing, &shape, clip);
+    if (bomb) draw_target(&shape, TARGET * fmin(width, height), clip, drawing);
 }
 
 /* Static bodies lie behind all others, the bomb before them. */
@@ -115,8 +130,6 @@ int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline,
     Shape shape = styled_box(picture, side, side, &body_colors[panel]);
     shape.x = left + side / 2.0;
     shape.y = baseline - side / 2.0;
-    shape.mark = MARK_EDGE;
-    shape.mark_size = shape.outline + EDGE_MARK * side;
     drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
     return left + side;
 }

@@ -11,7 +11,7 @@ static const uint32_t INK = 0x1B2330, INK_SOFT = 0x667080;
 static const uint32_t GROUND = 0xD3D8DF, GROUND_LINE = 0x5A6472;
 
 typedef struct BodyColors {
-    uint32_t fill, line, highlight;
+    uint32_t fill, line, band; /* the band along the local top tells how a box has turned */
 } BodyColors;
 
 static const BodyColors BOMB = {0xB5371B, 0x5E1606, 0xFFE9DF};

@@ -53,6 +53,17 @@ first=$(awk '$1 == 0 { print $3 }' out)
 run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
 /usr/bin/python3 -c "import sys; sys.exit(not float('$first') <= 1.02 * float('$(awk '$1 == 100 { print $3 }' out)'))" ||
     fail "--from does not start from the network's weights"
+# Ctrl-C keeps the best network so far. (Started from a script, it would ignore the signal but for the trap.)
+(trap - INT; exec "$twinbox" train pairs.npz -o cut.npz --iterations 1000000 >cut.out 2>cut.err) &
+training=$!
+until grep -q '^ *10 ' cut.out; do kill -0 $training || break; sleep 0.1; done
+kill -INT $training
+wait $training
+equal "status after Ctrl-C" $? 0
+grep -q "stopped early; 132 parameters -> cut.npz" cut.out || fail "Ctrl-C: $(tail -n 2 cut.out cut.err)"
+run 0 train pairs.npz -o more.npz --iterations 1 --from cut.npz
+rm cut.npz
+
 for optimizer in bfgs lm; do
     run 0 train pairs.npz -o $optimizer.npz --optimizer $optimizer --iterations 5
 done

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "uniform.h"
 
 #include "collision/broad_phase.h"
 
 enum { BOXES = 120 };
-
-static float uniform(uint32_t *seed, float low, float high) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return low + (high - low) * (float)(*seed >> 8) / 16777216.0f;
-}
 
 static bool has_pair(const PairList *list, int a, int b) {
     for (size_t i = 0; i < list->count; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "uniform.h"
 
 #include "collision/manifold.h"
 
@@ -77,11 +77,6 @@ static void ties_go_to_the_negative_normal(void **state) {
     assert_near(m.normal.x, -1, 0);
     assert_near(m.normal.y, 0, 0);
     assert_near(m.points[0].separation, -1, tolerance);
-}
-
-static float uniform(uint32_t *seed, float low, float high) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return low + (high - low) * (float)(*seed >> 8) / 16777216.0f;
 }
 
 static bool contains(const Box *box, Vec2 point, float margin) {

@@ -18,10 +18,12 @@ static inline int channels(int color) {
                                                 : 1;
 }
 
-/* Sample of a channel at a pixel, in 0 .. 2^depth - 1; at 16 bits one that 8 bits hold exactly. */
+/* Sample of a channel at a pixel, in 0 .. 2^depth - 1; at 16 bits one that lies nearer to some 8-bit value
+   than its upper byte does. */
 static inline unsigned sample(int x, int y, int channel, int depth) {
     unsigned value = (unsigned)(x * 3 + y * 5 + channel * 7 + x * y);
-    return depth == 16 ? value % 256 * 257 : value % (1u << depth);
+    if (depth < 16) return value % (1u << depth);
+    return value % 256 == 0 ? 0 : value % 256 * 257 - 100;
 }
 
 static inline png_color palette_color(unsigned i) {

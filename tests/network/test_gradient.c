@@ -7,8 +7,8 @@
 
 enum { USED_ROWS = 5 }; /* of the block */
 
-/* A network, its parameters in double, a block of inputs, and a loss: sum over rows and outputs of c y + y^2.
- */
+/* A network, its parameters in double, a block of inputs, and a loss: sum over rows and outputs of c y +
+   y^2. */
 typedef struct Case {
     Network *network;
     NetworkBlock *block;

@@ -49,8 +49,7 @@ static inline int close_screens(void **state) {
     return 0;
 }
 
-/* Paints the drawing over black on every screen and clears it. Returns the picture, which must be the same.
- */
+/* Paints the drawing over black on every screen, and clears it. All must show the same picture. */
 static inline const Image *painted(void) {
     for (int i = 0; i < SCREENS; i++) {
         Error error = {0};

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "mesa.h"
-#include "render/picture.h"
+#include "render/panel.h"
 #include "runs.h"
 
 static const Trajectory *panels[RENDER_PANELS_MAX];
@@ -98,8 +98,8 @@ static void the_largest_distance_of_any_panel_counts(void **state) {
     (void)state;
     Picture picture;
     Error error = {0};
-    runs[1]->position[4 * RUN_BODIES + FIRST_BOX].x += 0.5F;
-    runs[2]->position[4 * RUN_BODIES + SECOND_BOX].y += 2;
+    run_position(runs[1], 4, SECOND_BOX)->y += 2;
+    run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
     assert_true(fabs(picture_apart(&picture, 4) - 2) < 1e-6);
     assert_true(picture_apart(&picture, 3) == 0);
@@ -142,6 +142,18 @@ static void hostile_poses_do_no_harm(void **state) {
     }
 }
 
+static void bodies_out_of_view_are_counted(void **state) {
+    (void)state;
+    Picture picture;
+    Error error = {0};
+    *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
+    *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
+    *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* not there at all */
+    assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
+    assert_int_equal(panel_count_unseen(&picture, 1, 5), 2);
+    assert_int_equal(panel_count_unseen(&picture, 0, 5), 0);
+}
+
 static void an_absent_body_is_not_drawn(void **state) {
     (void)state;
     run_position(runs[0], 0, BOMB_BODY)->x = 1;
@@ -171,6 +183,20 @@ static void captions_do_not_jump(void **state) {
         assert_int_equal(drawing.glyphs[0].box[0], left); /* the "t" of "t = 0.000 s" */
     }
     drawing_free(&drawing);
+}
+
+static uint64_t hash_with_method(const char *method) {
+    strcpy(runs[1]->method, method);
+    return hash_of(2, 640, 360, 4);
+}
+
+/* The same network elsewhere on a disk is the same picture; another setting is another. */
+static void folders_of_networks_are_left_out(void **state) {
+    (void)state;
+    uint64_t hash = hash_with_method("pair-net:network=b.npz,dt=1/60");
+    assert_true(hash_with_method("pair-net:network=/home/a/b.npz,dt=1/60") == hash);
+    assert_true(hash_with_method("pair-net:network=b.npz,dt=2/60") != hash);
+    assert_true(hash_with_method("pair-net:network=a.npz,dt=1/60") != hash);
 }
 
 static void hostile_names_do_no_harm(void **state) {
@@ -228,8 +254,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_largest_distance_of_any_panel_counts, make, destroy),
         cmocka_unit_test_setup_teardown(the_distance_is_written_down, make, destroy),
         cmocka_unit_test_setup_teardown(hostile_poses_do_no_harm, make, destroy),
+        cmocka_unit_test_setup_teardown(bodies_out_of_view_are_counted, make, destroy),
         cmocka_unit_test_setup_teardown(an_absent_body_is_not_drawn, make, destroy),
         cmocka_unit_test_setup_teardown(captions_do_not_jump, make, destroy),
+        cmocka_unit_test_setup_teardown(folders_of_networks_are_left_out, make, destroy),
         cmocka_unit_test_setup_teardown(hostile_names_do_no_harm, make, destroy),
         cmocka_unit_test_setup_teardown(what_cannot_be_shown_is_refused, make, destroy),
     };
