@@ -17,24 +17,24 @@
 #include <unistd.h>
 
 /* Fails with the error's own words where `condition` is false. */
-#define assert_ok(condition, error) \
-    do { \
+#define assert_ok(condition, error)                        \
+    do {                                                   \
         if (!(condition)) fail_msg("%s", (error).message); \
     } while (0)
 
 /* Fails unless the error is of this kind and its message contains the text. */
-#define assert_error(error, expected_kind, text) \
-    do { \
+#define assert_error(error, expected_kind, text)                                                               \
+    do {                                                                                                       \
         if (strstr((error).message, (text)) == NULL) fail_msg("\"%s\" lacks \"%s\"", (error).message, (text)); \
-        assert_int_equal((error).kind, (expected_kind)); \
+        assert_int_equal((error).kind, (expected_kind));                                                       \
     } while (0)
 
 /* cmocka's assert_float_equal compares floats; this one says what it found. */
-#define assert_near(actual, expected, tolerance) \
-    do { \
-        double actual_ = (double)(actual), expected_ = (double)(expected); \
+#define assert_near(actual, expected, tolerance)                                                         \
+    do {                                                                                                 \
+        double actual_ = (double)(actual), expected_ = (double)(expected);                               \
         if (!(actual_ - expected_ <= (double)(tolerance) && expected_ - actual_ <= (double)(tolerance))) \
-            fail_msg("%s is %.9g, not %.9g", #actual, actual_, expected_); \
+            fail_msg("%s is %.9g, not %.9g", #actual, actual_, expected_);                               \
     } while (0)
 
 static char temporary_folder[64];

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 
-const Command commands[] = {
-    {"simulate", "run a scene by one method and store the trajectory", command_simulate},
-    {"render", "draw runs side by side into a PNG sequence and a video", command_render},
-    {"compare", "tell where two trajectories or PNG sequences part", command_compare},
-    {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
-    {"train", "train the paper's network on a dataset", command_train},
-    {"methods", "list the methods and their settings", command_methods},
-    {0}};
+const Command commands[] = {{"simulate", "run a scene by one method and store the trajectory", command_simulate},
+                            {"render", "draw runs side by side into a PNG sequence and a video", command_render},
+                            {"compare", "tell where two trajectories or PNG sequences part", command_compare},
+                            {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
+                            {"train", "train the paper's network on a dataset", command_train},
+                            {"methods", "list the methods and their settings", command_methods},
+                            {0}};

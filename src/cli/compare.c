@@ -26,12 +26,16 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    NULL, parse, "A B",
+    NULL,
+    parse,
+    "A B",
     "Tell where two trajectories (.npz) or two PNG sequences (folders, or single files) part. Trajectories are equal "
     "when every bit of every pose and velocity is; pictures when every decoded pixel is, frame number by frame "
     "number. Exit status 0: equal, 1: different.\v"
     "Example: twinbox compare golden/trajectories/stack-engine.npz out/stack/stack-engine.npz",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 static bool is_trajectory(const char *path) {
     size_t length = strlen(path);
@@ -78,8 +82,7 @@ static bool print_sequence_difference(const Options *options, const SequenceDiff
     else if (difference->first >= 0)
         printf("first difference: frame %" PRId64 ": %" PRId64 " pixels, the largest by %d, the first at (%d, %d)\n",
                difference->first, first->pixels, first->largest, first->first_x, first->first_y);
-    if (difference->different > 0)
-        printf("%d of %d frames differ\n", difference->different, difference->compared);
+    if (difference->different > 0) printf("%d of %d frames differ\n", difference->different, difference->compared);
     bool equal = difference->different + difference->only_a + difference->only_b == 0;
     if (equal) printf("equal: %d frames\n", difference->compared);
     return equal;

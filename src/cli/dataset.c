@@ -41,11 +41,15 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    option_table, parse, "SCENE...",
+    option_table,
+    parse,
+    "SCENE...",
     "Record, for every touching pair in every step of every launch, relative position, velocities, angular "
     "velocities and rotations before the solve, and the change that the pair's impulses made.\v"
     "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 int command_dataset(int argc, char **argv, Error *error) {
     Options options = {.bomb_x = "-5:5:0.05", .seed = "1"};
@@ -59,8 +63,7 @@ int command_dataset(int argc, char **argv, Error *error) {
     Dataset *dataset = dataset_record(&options.dataset, &bar.progress, error);
     progress_bar_end(&bar);
     bool ok = dataset != NULL && dataset_write(dataset, options.output, error);
-    if (ok)
-        printf("%lld pairs of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);
+    if (ok) printf("%lld pairs of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);
     dataset_destroy(dataset);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;
 }

@@ -11,10 +11,14 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    NULL, parse, "",
+    NULL,
+    parse,
+    "",
     "List the methods and their settings.\v"
     "Example: twinbox simulate scenes/stack.yaml --method engine:iterations=50 -o stack50.npz",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 int command_methods(int argc, char **argv, Error *error) {
     (void)error;

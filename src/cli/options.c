@@ -21,8 +21,7 @@ bool option_int(const char *option, const char *text, int64_t minimum, int64_t m
 bool option_seed(const char *option, const char *text, uint64_t *value, Error *error) {
     int64_t parsed;
     if (!parse_int(text, 0, UINT32_MAX, &parsed))
-        return error_input(error, option, "'%s' is not a whole number from 0 to %lu", text,
-                           (unsigned long)UINT32_MAX);
+        return error_input(error, option, "'%s' is not a whole number from 0 to %lu", text, (unsigned long)UINT32_MAX);
     *value = (uint64_t)parsed;
     return true;
 }
@@ -30,8 +29,7 @@ bool option_seed(const char *option, const char *text, uint64_t *value, Error *e
 bool option_float(const char *option, const char *text, float minimum, float maximum, float *value, Error *error) {
     float parsed;
     if (!parse_float(text, &parsed) || parsed < minimum || parsed > maximum)
-        return error_input(error, option, "'%s' is not a number from %g to %g", text, (double)minimum,
-                           (double)maximum);
+        return error_input(error, option, "'%s' is not a number from %g to %g", text, (double)minimum, (double)maximum);
     *value = parsed;
     return true;
 }

@@ -20,8 +20,7 @@ bool option_float(const char *option, const char *text, float minimum, float max
 bool option_range(const char *option, const char *text, FloatRange *range, Error *error);
 
 /* "1920x1080" */
-bool option_size(const char *option, const char *text, int minimum, int maximum, int *width, int *height,
-                 Error *error);
+bool option_size(const char *option, const char *text, int minimum, int maximum, int *width, int *height, Error *error);
 
 /* "A:B", ":B", "A:" or "A": whole numbers, A <= B; *last is -1 where it is left open. */
 bool option_frames(const char *option, const char *text, int *first, int *last, Error *error);

@@ -51,11 +51,15 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    option_table, parse, "RUN_OR_SCENE...",
+    option_table,
+    parse,
+    "RUN_OR_SCENE...",
     "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
     "run by the engine and by each network that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 static bool choose_context(const char *name, RenderContext *context, Error *error) {
     if (name == NULL) return true;
@@ -74,15 +78,16 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
                               .height = 1080,
                               .first = 0,
                               .last = -1,
-                              .jobs = cores < 1 ? 1 : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX : (int)cores,
+                              .jobs = cores < 1                 ? 1
+                                      : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
+                                                                : (int)cores,
                               .directory = options->output};
     return choose_context(options->context, &render->context, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||
             option_frames("--frames", options->frames, &render->first, &render->last, error)) &&
-           (options->jobs == NULL ||
-            option_int("--jobs", options->jobs, 1, RENDER_JOBS_MAX, &render->jobs, error)) &&
+           (options->jobs == NULL || option_int("--jobs", options->jobs, 1, RENDER_JOBS_MAX, &render->jobs, error)) &&
            (options->video == NULL || video_check(options->video, render->width, render->height, error));
 }
 

@@ -60,11 +60,15 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    option_table, parse, "SCENE",
+    option_table,
+    parse,
+    "SCENE",
     "Run a scene by one method and store the trajectory.\v"
     "Example: twinbox simulate scenes/stack.yaml --bomb-x 2.5 -o stack.npz --hash stack.csv\n"
     "In Python: run = numpy.load('stack.npz'); run['position'] has shape (frames, bodies, 2).",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 static bool override_bomb(SceneBomb *bomb, const SimulateOptions *options, const char *scene, Error *error) {
     if (options->no_bomb) {

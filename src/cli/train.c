@@ -48,11 +48,15 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 }
 
 static const struct argp argp = {
-    option_table, parse, "DATA.npz",
+    option_table,
+    parse,
+    "DATA.npz",
     "Train a network on a dataset; print its mean squared error as the paper's Table 1 does, beside that of always "
     "predicting the mean. Ctrl-C stops and keeps the best network so far.\v"
     "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 /* "10-10-2" -> widths; their number less one is the number of weight layers. */
 static bool parse_layers(const char *text, TrainingOptions *training, Error *error) {

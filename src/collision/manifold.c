@@ -131,7 +131,6 @@ void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
         if (separation > 0.0f) continue;
         /* Slid onto the reference face, where both boxes agree on the lever arms' plane. */
         Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
-        manifold->points[manifold->count++] =
-            (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
+        manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
     }
 }

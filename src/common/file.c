@@ -92,8 +92,8 @@ static int create_beside(const char *path, char *name, size_t name_size) {
     for (unsigned attempt = 0;; attempt++) {
         struct timespec now;
         clock_gettime(CLOCK_REALTIME, &now);
-        int length = snprintf(name, name_size, "%.*s.twinbox-%ld-%lx-%u.tmp", (int)file_folder_length(path),
-                              path, (long)getpid(), (unsigned long)now.tv_nsec, attempt);
+        int length = snprintf(name, name_size, "%.*s.twinbox-%ld-%lx-%u.tmp", (int)file_folder_length(path), path,
+                              (long)getpid(), (unsigned long)now.tv_nsec, attempt);
         if (length < 0 || (size_t)length >= name_size) {
             errno = ENAMETOOLONG;
             return -1;
@@ -139,8 +139,7 @@ static bool replace(const char *path, const void *data, size_t size) {
 
 static bool is_standard_output(const struct stat *status) {
     struct stat output;
-    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev &&
-           output.st_ino == status->st_ino;
+    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
 }
 
 /* A device, a pipe, or whatever /dev/stdout leads to. */

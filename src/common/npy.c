@@ -15,9 +15,8 @@ static const struct {
     const char *code, *name;
     unsigned size;
 } types[] = {
-    [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8},
-    [NPZ_INT32] = {"<i4", "int32", 4},     [NPZ_UINT32] = {"<u4", "uint32", 4},
-    [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
+    [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8}, [NPZ_INT32] = {"<i4", "int32", 4},
+    [NPZ_UINT32] = {"<u4", "uint32", 4},   [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
     [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_TEXT] = {"<U", "text", 4},
 };
 
@@ -57,8 +56,7 @@ void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]) {
     size_t used = append(text, VERSION_1_SIZE, "{'descr': '%s", types[head->type].code);
     if (head->type == NPZ_TEXT) used = append(text, used, "%" PRId64, head->characters);
     used = append(text, used, "', 'fortran_order': False, 'shape': (");
-    for (int i = 0; i < head->rank; i++)
-        used = append(text, used, i == 0 ? "%" PRId64 : ", %" PRId64, head->shape[i]);
+    for (int i = 0; i < head->rank; i++) used = append(text, used, i == 0 ? "%" PRId64 : ", %" PRId64, head->shape[i]);
     used = append(text, used, head->rank == 1 ? ",), }" : "), }");
     head->head_size = (used + 1 + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     memset(text + used, ' ', head->head_size - used);
@@ -92,8 +90,7 @@ static bool take(const char **text, const char *word) {
 static bool take_number(const char **text, int64_t *number) {
     const char *digit = *text;
     *number = 0;
-    while (*digit >= '0' && *digit <= '9' && *number < (INT64_MAX - 9) / 10)
-        *number = *number * 10 + (*digit++ - '0');
+    while (*digit >= '0' && *digit <= '9' && *number < (INT64_MAX - 9) / 10) *number = *number * 10 + (*digit++ - '0');
     if (digit == *text || (*digit >= '0' && *digit <= '9')) return false;
     *text = digit;
     return true;
@@ -120,10 +117,8 @@ static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_RE
     if (!take(&text, "{'descr': '")) return refuse(reason, "no plain array (or no .npy)");
     const char *type = text;
     if (!take_type(&text, head) || *text != '\'') {
-        int length =
-            (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
-        return refuse(reason, "of type '%.*s', which this program does not read", length < 32 ? length : 32,
-                      type);
+        int length = (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
+        return refuse(reason, "of type '%.*s', which this program does not read", length < 32 ? length : 32, type);
     }
     if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged head");
     if (take(&text, "True")) return refuse(reason, "in Fortran order; C order is needed");
@@ -131,8 +126,7 @@ static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_RE
         return refuse(reason, "with a damaged head, or of more than %d dimensions", NPZ_MAX_RANK);
     text += strspn(text, " ");
     if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged head");
-    if (head->type == NPZ_TEXT && head->rank > 0)
-        return refuse(reason, "an array of texts; a single one is needed");
+    if (head->type == NPZ_TEXT && head->rank > 0) return refuse(reason, "an array of texts; a single one is needed");
     return npy_measure(head) || refuse(reason, "larger than 2 GiB");
 }
 
@@ -142,12 +136,10 @@ bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NP
     if (size < VERSION_2_SIZE || memcmp(text, MAGIC, MAGIC_SIZE) != 0) return refuse(reason, "no .npy array");
     int version = bytes[MAGIC_SIZE];
     if (version < 1 || version > 2 || bytes[MAGIC_SIZE + 1] != 0)
-        return refuse(reason, "in version %d.%d of .npy; 1.0 or 2.0 is needed", version,
-                      bytes[MAGIC_SIZE + 1]);
+        return refuse(reason, "in version %d.%d of .npy; 1.0 or 2.0 is needed", version, bytes[MAGIC_SIZE + 1]);
     size_t start = version == 1 ? VERSION_1_SIZE : VERSION_2_SIZE;
     uint64_t length = bytes[MAGIC_SIZE + 2] + 256U * bytes[MAGIC_SIZE + 3];
-    if (version == 2)
-        length += ((uint64_t)bytes[MAGIC_SIZE + 4] << 16) + ((uint64_t)bytes[MAGIC_SIZE + 5] << 24);
+    if (version == 2) length += ((uint64_t)bytes[MAGIC_SIZE + 4] << 16) + ((uint64_t)bytes[MAGIC_SIZE + 5] << 24);
     if (length > size - start)
         return refuse(reason, "with a head that is cut off or longer than %d bytes", NPY_HEAD_MAX);
     char dictionary[NPY_HEAD_MAX + 1];

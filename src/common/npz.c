@@ -38,8 +38,7 @@ struct NpzFile {
 static bool zip_failed(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
     int code = zip_error_code_zip(cause);
     if (code == ZIP_ER_MEMORY) return error_memory(error, file->path);
-    if (code == ZIP_ER_READ)
-        return error_system(error, file->path, "cannot read: %s", zip_error_strerror(cause));
+    if (code == ZIP_ER_READ) return error_system(error, file->path, "cannot read: %s", zip_error_strerror(cause));
     return error_input(error, file->path, "array '%s' is damaged: %s", name, zip_error_strerror(cause));
 }
 
@@ -53,8 +52,7 @@ static const StoredArray *find(const NpzFile *file, const char *name) {
 static bool take_name(NpzFile *file, const char *member, char name[NAME_SIZE], Error *error) {
     size_t length = strlen(member);
     bool plain = length > 4 && length - 4 < NAME_SIZE;
-    for (size_t i = 0; plain && i < length; i++)
-        plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
+    for (size_t i = 0; plain && i < length; i++) plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
     if (!plain || strcmp(member + length - 4, ".npy") != 0)
         return error_input(error, file->path, "holds something else than named .npy arrays");
     memcpy(name, member, length - 4);
@@ -63,20 +61,18 @@ static bool take_name(NpzFile *file, const char *member, char name[NAME_SIZE], E
 }
 
 /* Everything that the directory tells of a member must fit its head before any data is inflated. */
-static bool check_member(const NpzFile *file, const StoredArray *array, const zip_stat_t *status,
-                         Error *error) {
+static bool check_member(const NpzFile *file, const StoredArray *array, const zip_stat_t *status, Error *error) {
     if (status->encryption_method != ZIP_EM_NONE)
         return error_input(error, file->path, "array '%s' is encrypted", array->name);
     if (status->comp_method != ZIP_CM_STORE && status->comp_method != ZIP_CM_DEFLATE)
         return error_input(error, file->path, "array '%s' is neither stored nor deflated", array->name);
     if (status->size / DEFLATE_BEST_RATIO > status->comp_size)
-        return error_input(error, file->path, "array '%s' is damaged: it cannot hold %" PRIu64 " bytes",
-                           array->name, (uint64_t)status->size);
+        return error_input(error, file->path, "array '%s' is damaged: it cannot hold %" PRIu64 " bytes", array->name,
+                           (uint64_t)status->size);
     return true;
 }
 
-static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uint64_t declared,
-                      Error *error) {
+static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uint64_t declared, Error *error) {
     zip_file_t *member = zip_fopen_index(file->archive, index, 0);
     if (member == NULL) return zip_failed(file, array->name, zip_get_error(file->archive), error);
     char text[NPY_HEAD_MAX], reason[NPY_REASON_SIZE];
@@ -98,8 +94,8 @@ static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uin
 static bool read_directory(NpzFile *file, Error *error) {
     zip_int64_t count = zip_get_num_entries(file->archive, 0);
     if (count < 1 || count > MAX_ARRAYS)
-        return error_input(error, file->path, "holds %" PRId64 " arrays; 1 to %d are possible",
-                           (int64_t)count, MAX_ARRAYS);
+        return error_input(error, file->path, "holds %" PRId64 " arrays; 1 to %d are possible", (int64_t)count,
+                           MAX_ARRAYS);
     for (; file->count < (zip_uint64_t)count; file->count++) {
         StoredArray *array = &file->arrays[file->count];
         zip_stat_t status;
@@ -171,8 +167,7 @@ void npz_close(NpzFile *file) {
 
 bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
 
-static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank,
-                                  Error *error) {
+static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
     const StoredArray *array = find(file, name);
     if (array == NULL) {
         error_input(error, file->path, "has no array '%s'", name);
@@ -200,16 +195,14 @@ static const char *shape_text(char text[96], int rank, const int64_t *shape) {
 }
 
 /* The data, and that nothing follows it: only at the end does libzip compare the checksum. */
-static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *member, char *data,
-                         Error *error) {
+static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *member, char *data, Error *error) {
     char skipped[NPY_HEAD_MAX], more;
     zip_int64_t head = zip_fread(member, skipped, array->head.head_size);
     zip_int64_t size = head < 0 ? -1 : zip_fread(member, data, array->head.data_size);
     zip_int64_t after = size < 0 ? -1 : zip_fread(member, &more, 1);
     if (after < 0) return zip_failed(file, array->name, zip_file_get_error(member), error);
     if ((uint64_t)size == array->head.data_size && after == 0) return true;
-    return error_input(error, file->path, "array '%s' is damaged: %s", array->name,
-                       after > 0 ? "too long" : "cut off");
+    return error_input(error, file->path, "array '%s' is damaged: %s", array->name, after > 0 ? "too long" : "cut off");
 }
 
 static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
@@ -272,6 +265,5 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
     for (int64_t i = 0; done && i < count; i++) done = encode_utf8(characters[i], text, &used, size);
     text[used] = '\0';
     free(characters);
-    return done ||
-           error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);
+    return done || error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);
 }

@@ -8,7 +8,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum NpzType { NPZ_FLOAT32, NPZ_FLOAT64, NPZ_INT32, NPZ_UINT32, NPZ_INT64, NPZ_UINT64, NPZ_UINT8, NPZ_TEXT } NpzType;
+typedef enum NpzType {
+    NPZ_FLOAT32,
+    NPZ_FLOAT64,
+    NPZ_INT32,
+    NPZ_UINT32,
+    NPZ_INT64,
+    NPZ_UINT64,
+    NPZ_UINT8,
+    NPZ_TEXT
+} NpzType;
 
 enum { NPZ_MAX_RANK = 4 };
 

@@ -42,16 +42,14 @@ static const unsigned char *decode_utf8(const unsigned char *bytes, uint32_t *ch
 }
 
 /* NumPy has no text of length 0, so an empty one is one zero. */
-static bool decode_text(Member *member, NpyHead *head, const NpzArray *array, const char *path,
-                        Error *error) {
+static bool decode_text(Member *member, NpyHead *head, const NpzArray *array, const char *path, Error *error) {
     const unsigned char *bytes = array->data;
     member->characters = calloc(strlen(array->data) + 1, sizeof *member->characters);
     if (member->characters == NULL) return error_memory(error, path);
     int64_t count = 0;
     while (*bytes != '\0') {
         bytes = decode_utf8(bytes, &member->characters[count++]);
-        if (bytes == NULL)
-            return error_input(error, path, "cannot store '%s': its text is no UTF-8", array->name);
+        if (bytes == NULL) return error_input(error, path, "cannot store '%s': its text is no UTF-8", array->name);
     }
     head->characters = count > 0 ? count : 1;
     return true;
@@ -62,8 +60,7 @@ static bool prepare(Member *member, const NpzArray *array, const char *path, Err
     assert(array->rank <= NPZ_MAX_RANK && (array->type != NPZ_TEXT || array->rank == 0));
     memcpy(head.shape, array->shape, sizeof head.shape);
     if (array->type == NPZ_TEXT && !decode_text(member, &head, array, path, error)) return false;
-    if (!npy_measure(&head))
-        return error_input(error, path, "cannot store '%s': larger than 2 GiB", array->name);
+    if (!npy_measure(&head)) return error_input(error, path, "cannot store '%s': larger than 2 GiB", array->name);
     npy_write_head(&head, member->head);
     const void *data = array->type == NPZ_TEXT ? member->characters : array->data;
     member->fragments[0] = (zip_buffer_fragment_t){(zip_uint8_t *)member->head, head.head_size};
@@ -95,8 +92,8 @@ static bool add(zip_t *archive, const char *name, const Member *member, const ch
 }
 
 /* Fills `source` with the finished archive. */
-static bool build(zip_source_t *source, Member *members, const NpzArray *arrays, size_t count,
-                  const char *path, Error *error) {
+static bool build(zip_source_t *source, Member *members, const NpzArray *arrays, size_t count, const char *path,
+                  Error *error) {
     zip_error_t cause;
     zip_error_init(&cause);
     zip_t *archive = zip_open_from_source(source, ZIP_CREATE | ZIP_TRUNCATE, &cause);
@@ -109,8 +106,7 @@ static bool build(zip_source_t *source, Member *members, const NpzArray *arrays,
     zip_source_keep(source);
     bool done = true;
     for (size_t i = 0; done && i < count; i++)
-        done = prepare(&members[i], &arrays[i], path, error) &&
-               add(archive, arrays[i].name, &members[i], path, error);
+        done = prepare(&members[i], &arrays[i], path, error) && add(archive, arrays[i].name, &members[i], path, error);
     if (done && zip_close(archive) == 0) return true;
     if (done) zip_failed(path, archive, error);
     zip_discard(archive);

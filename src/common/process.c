@@ -57,7 +57,8 @@ bool process_write(Process *process, const void *data, size_t size) {
 
 static int wait_for(Process *process) {
     int status = -1;
-    while (waitpid(process->pid, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(process->pid, &status, 0) < 0 && errno == EINTR) {
+    }
     return status;
 }
 

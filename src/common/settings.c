@@ -29,8 +29,8 @@ static bool unknown_key(const SettingSpec *known, const char *key, const char *w
 }
 
 /* One "key=value" of `length` bytes. A value may hold further '='. */
-static bool parse_item(Settings *settings, const char *item, size_t length, const SettingSpec *known,
-                       const char *where, Error *error) {
+static bool parse_item(Settings *settings, const char *item, size_t length, const SettingSpec *known, const char *where,
+                       Error *error) {
     Setting setting = {0};
     int shown = length < 64 ? (int)length : 64;
     const char *equals = memchr(item, '=', length);
@@ -38,21 +38,19 @@ static bool parse_item(Settings *settings, const char *item, size_t length, cons
         return error_input(error, where, "'%.*s' is no key=value", shown, item);
     size_t key_length = (size_t)(equals - item), value_length = length - key_length - 1;
     if (key_length >= sizeof setting.key || value_length >= sizeof setting.value)
-        return error_input(error, where, "'%.*s' is too long; a key has at most %d and a value %d bytes",
-                           shown, item, SETTING_KEY_SIZE - 1, SETTING_VALUE_SIZE - 1);
+        return error_input(error, where, "'%.*s' is too long; a key has at most %d and a value %d bytes", shown, item,
+                           SETTING_KEY_SIZE - 1, SETTING_VALUE_SIZE - 1);
     memcpy(setting.key, item, key_length);
     memcpy(setting.value, equals + 1, value_length);
     if (!is_known(known, setting.key)) return unknown_key(known, setting.key, where, error);
     if (find(settings, setting.key) != NULL)
         return error_input(error, where, "setting '%s' is given twice", setting.key);
-    if (settings->count == SETTINGS_MAX)
-        return error_input(error, where, "more than %d settings", SETTINGS_MAX);
+    if (settings->count == SETTINGS_MAX) return error_input(error, where, "more than %d settings", SETTINGS_MAX);
     settings->items[settings->count++] = setting;
     return true;
 }
 
-bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where,
-                    Error *error) {
+bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error) {
     *settings = (Settings){0};
     if (*text == '\0') return true;
     for (;;) {
@@ -70,8 +68,7 @@ const char *settings_get(const Settings *settings, const char *key) {
 
 bool settings_default(Settings *settings, const char *key, const char *value) {
     if (find(settings, key) != NULL) return true;
-    if (settings->count == SETTINGS_MAX || strlen(key) >= SETTING_KEY_SIZE ||
-        strlen(value) >= SETTING_VALUE_SIZE)
+    if (settings->count == SETTINGS_MAX || strlen(key) >= SETTING_KEY_SIZE || strlen(value) >= SETTING_VALUE_SIZE)
         return false;
     Setting *setting = &settings->items[settings->count++];
     strcpy(setting->key, key);
@@ -79,14 +76,12 @@ bool settings_default(Settings *settings, const char *key, const char *value) {
     return true;
 }
 
-bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value,
-                  Error *error) {
+bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error) {
     const char *text = settings_get(settings, key);
     if (text == NULL) return true;
     int64_t number;
     if (!parse_int(text, minimum, maximum, &number))
-        return error_input(error, key, "a whole number of %d to %d is needed (got '%.64s')", minimum, maximum,
-                           text);
+        return error_input(error, key, "a whole number of %d to %d is needed (got '%.64s')", minimum, maximum, text);
     *value = (int)number;
     return true;
 }
@@ -95,8 +90,7 @@ bool settings_bool(const Settings *settings, const char *key, bool *value, Error
     const char *text = settings_get(settings, key);
     if (text == NULL) return true;
     bool on = strcmp(text, "on") == 0;
-    if (!on && strcmp(text, "off") != 0)
-        return error_input(error, key, "'on' or 'off' is needed (got '%.64s')", text);
+    if (!on && strcmp(text, "off") != 0) return error_input(error, key, "'on' or 'off' is needed (got '%.64s')", text);
     *value = on;
     return true;
 }

@@ -10,12 +10,7 @@
 
 /* The end record (its size, and how long a comment may follow it), and the locator that is before it in a
  * zip64. */
-enum {
-    END_SIZE = 22,
-    COMMENT_MAX = 65535,
-    LOCATOR_SIZE = 20,
-    TAIL_MAX = LOCATOR_SIZE + END_SIZE + COMMENT_MAX
-};
+enum { END_SIZE = 22, COMMENT_MAX = 65535, LOCATOR_SIZE = 20, TAIL_MAX = LOCATOR_SIZE + END_SIZE + COMMENT_MAX };
 
 /* 256 arrays with names of 64 bytes take half of it. */
 enum { DIRECTORY_MAX = 65536 };
@@ -27,8 +22,7 @@ static uint32_t little_endian(const unsigned char *bytes) {
     return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
-static bool check_tail(const unsigned char *tail, size_t length, uint64_t size, const char *path,
-                       Error *error) {
+static bool check_tail(const unsigned char *tail, size_t length, uint64_t size, const char *path, Error *error) {
     int ends = 0;
     for (size_t i = 0; i + END_SIZE <= length; i++) {
         if (memcmp(tail + i, "PK\5\6", 4) != 0) continue;

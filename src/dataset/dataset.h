@@ -14,11 +14,11 @@ enum { DATASET_VERSION = 1, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128 };
 
 typedef struct Dataset {
     int64_t rows;
-    float *inputs;        /* [rows, PAIR_INPUTS]: pair_inputs() */
-    float *changes;       /* [rows, PAIR_CHANGES]: pair_changes() */
-    int32_t *launch;      /* [rows] which launch the row comes from */
-    int32_t *frame;       /* [rows] number of the step */
-    int32_t *bodies;      /* [rows, 2] */
+    float *inputs;   /* [rows, PAIR_INPUTS]: pair_inputs() */
+    float *changes;  /* [rows, PAIR_CHANGES]: pair_changes() */
+    int32_t *launch; /* [rows] which launch the row comes from */
+    int32_t *frame;  /* [rows] number of the step */
+    int32_t *bodies; /* [rows, 2] */
     int launches;
     int32_t *launch_scene; /* [launches] index into scenes */
     float *launch_x;       /* [launches] bomb x, m */

@@ -58,16 +58,14 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
 
 static bool check_version(NpzFile *file, const char *path, Error *error) {
     char kind[32] = "";
-    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) ||
-        strcmp(kind, KIND) != 0)
+    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) || strcmp(kind, KIND) != 0)
         return error_input(error, path, "holds no dataset");
     int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
     if (version == NULL) return false;
     int32_t found = *version;
     free(version);
     if (found == DATASET_VERSION) return true;
-    return error_input(error, path, "dataset of version %d; this program reads version %d", found,
-                       DATASET_VERSION);
+    return error_input(error, path, "dataset of version %d; this program reads version %d", found, DATASET_VERSION);
 }
 
 static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
@@ -109,8 +107,7 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
            (dataset->bodies = npz_read(file, "bodies", NPZ_INT32, 2, bodies, error)) != NULL;
 }
 
-static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path,
-                         Error *error) {
+static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path, Error *error) {
     for (int64_t i = 0; i < count; i++)
         if (!isfinite(numbers[i]))
             return error_input(error, path, "%s: number %lld is %g; all must be finite", name, (long long)i,
@@ -119,8 +116,8 @@ static bool check_finite(const float *numbers, int64_t count, const char *name, 
 }
 
 /* Every number in [0, limit). */
-static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, const char *name,
-                          const char *path, Error *error) {
+static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, const char *name, const char *path,
+                          Error *error) {
     for (int64_t i = 0; i < count; i++)
         if (numbers[i] < 0 || numbers[i] >= limit)
             return error_input(error, path, "%s: number %lld is %d; 0 to %d are possible", name, (long long)i,
@@ -136,15 +133,13 @@ static bool check_split(const Dataset *dataset, const char *path, Error *error) 
     int64_t test_rows = 0;
     for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset->launch_test[dataset->launch[r]];
     if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, path,
-                       "%lld rows to train on and %lld to test on; at least one of each is needed",
+    return error_input(error, path, "%lld rows to train on and %lld to test on; at least one of each is needed",
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 
 static bool check_contents(const Dataset *dataset, const char *path, Error *error) {
     const int64_t rows = dataset->rows, launches = dataset->launches;
-    return check_indices(dataset->launch_scene, launches, dataset->scene_count, "launch_scene", path,
-                         error) &&
+    return check_indices(dataset->launch_scene, launches, dataset->scene_count, "launch_scene", path, error) &&
            check_finite(dataset->launch_x, launches, "launch_x", path, error) &&
            check_finite(dataset->inputs, rows * PAIR_INPUTS, "inputs", path, error) &&
            check_finite(dataset->changes, rows * PAIR_CHANGES, "changes", path, error) &&
@@ -159,9 +154,8 @@ Dataset *dataset_read(const char *path, Error *error) {
     if (file == NULL) return NULL;
     Dataset *dataset = calloc(1, sizeof *dataset);
     if (dataset == NULL) error_memory(error, path);
-    if (dataset != NULL &&
-        !(check_version(file, path, error) && read_scenes(file, path, dataset, error) &&
-          read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
+    if (dataset != NULL && !(check_version(file, path, error) && read_scenes(file, path, dataset, error) &&
+                             read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
         dataset_destroy(dataset);
         dataset = NULL;
     }

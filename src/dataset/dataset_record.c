@@ -188,8 +188,8 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
     bool ok = true;
     for (int i = 0; ok && i < options->scene_count; i++) {
         scenes[i] = scene_read(options->scenes[i], error);
-        ok = scenes[i] != NULL && (scenes[i]->bomb.present ||
-                                   error_input(error, options->scenes[i], "the scene has no bomb to launch"));
+        ok = scenes[i] != NULL &&
+             (scenes[i]->bomb.present || error_input(error, options->scenes[i], "the scene has no bomb to launch"));
     }
     Dataset *dataset = ok ? record_scenes(options, scenes, progress, error) : NULL;
     for (int i = 0; i < options->scene_count; i++) scene_destroy(scenes[i]);

@@ -7,13 +7,13 @@
 
 /* What a body is made from. Zero-initialised, it is a static box of no size: set at least size and mass. */
 typedef struct BodyDef {
-    Vec2 size;      /* full width and height, m, > 0 */
-    bool fixed;     /* static: infinite mass */
-    float mass;     /* kg, > 0; ignored where fixed */
-    float friction; /* coefficient, >= 0; a pair has sqrt(f1 f2) */
-    Vec2 position;  /* m */
-    float angle;    /* rad */
-    Vec2 velocity;  /* m/s */
+    Vec2 size;              /* full width and height, m, > 0 */
+    bool fixed;             /* static: infinite mass */
+    float mass;             /* kg, > 0; ignored where fixed */
+    float friction;         /* coefficient, >= 0; a pair has sqrt(f1 f2) */
+    Vec2 position;          /* m */
+    float angle;            /* rad */
+    Vec2 velocity;          /* m/s */
     float angular_velocity; /* rad/s */
 } BodyDef;
 

@@ -8,22 +8,22 @@
 #include <stdint.h>
 
 typedef struct ProblemBody {
-    Vec2 position;  /* m */
-    float angle;    /* rad */
-    Vec2 size;      /* full width and height, m */
+    Vec2 position;               /* m */
+    float angle;                 /* rad */
+    Vec2 size;                   /* full width and height, m */
     float inv_mass, inv_inertia; /* 1/kg, 1/(kg m^2); 0 for a static body */
-    Vec2 velocity;  /* m/s, after gravity, before the warm start */
+    Vec2 velocity;               /* m/s, after gravity, before the warm start */
     float angular_velocity;      /* rad/s */
 } ProblemBody;
 
 typedef struct ContactPoint {
-    int a, b;         /* bodies, a < b; the points of one pair are adjacent, pairs rise by (a, b) */
-    Vec2 position;    /* m, world */
-    Vec2 normal;      /* unit, from a to b; the tangent is normal turned a quarter clockwise */
-    Vec2 arm_a, arm_b; /* m, from the centre of each body to the point */
-    float separation; /* m, negative where they overlap */
+    int a, b;                        /* bodies, a < b; the points of one pair are adjacent, pairs rise by (a, b) */
+    Vec2 position;                   /* m, world */
+    Vec2 normal;                     /* unit, from a to b; the tangent is normal turned a quarter clockwise */
+    Vec2 arm_a, arm_b;               /* m, from the centre of each body to the point */
+    float separation;                /* m, negative where they overlap */
     float mass_normal, mass_tangent; /* kg, effective masses along normal and tangent */
-    float friction;   /* coefficient of the pair */
+    float friction;                  /* coefficient of the pair */
     float bias;       /* m/s, target normal velocity that undoes penetration; 0 without position correction */
     uint32_t feature; /* which edges made the point: the same number means the same point a step later */
     float warm_normal, warm_tangent; /* N s, impulses of the step before; 0 without warm starting or when new */

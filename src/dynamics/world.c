@@ -111,8 +111,8 @@ static void apply_gravity(World *world, float dt) {
     for (int i = 0; i < world->body_count; i++) {
         const Body *body = &world->bodies[i];
         ProblemBody *out = &world->problem_bodies[i];
-        *out = (ProblemBody){body->position,    body->angle,    body->size,            body->inv_mass,
-                             body->inv_inertia, body->velocity, body->angular_velocity};
+        *out = (ProblemBody){body->position, body->angle,           body->size, body->inv_mass, body->inv_inertia,
+                             body->velocity, body->angular_velocity};
         if (body->inv_mass == 0.0f) continue;
         out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
         /* No torque, yet not nothing: -0 becomes 0 here, as it does in Box2D-Lite. */

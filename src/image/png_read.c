@@ -65,8 +65,7 @@ static void refuse_bomb(Decoder *decoder) {
     uint64_t width = png_get_image_width(decoder->png, decoder->info);
     uint64_t height = png_get_image_height(decoder->png, decoder->info);
     if (width * height <= IMAGE_MAX_PIXELS) return;
-    error_input(decoder->error, decoder->path,
-                "the picture has %llu x %llu pixels; at most %d in all can be read",
+    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %d in all can be read",
                 (unsigned long long)width, (unsigned long long)height, IMAGE_MAX_PIXELS);
     png_longjmp(decoder->png, 1);
 }
@@ -121,8 +120,7 @@ static bool find_text(const Decoder *decoder, const char *key, char *value, size
     for (int i = 0; i < count; i++) {
         if (strcmp(texts[i].key, key) != 0) continue;
         size_t length = strlen(texts[i].text);
-        if (length >= size)
-            return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
+        if (length >= size) return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
         memcpy(value, texts[i].text, length + 1);
         return true;
     }
@@ -131,8 +129,7 @@ static bool find_text(const Decoder *decoder, const char *key, char *value, size
 
 bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
     Decoder decoder;
-    bool ok = open_decoder(&decoder, path, error) && decode_texts(&decoder) &&
-              find_text(&decoder, key, value, size);
+    bool ok = open_decoder(&decoder, path, error) && decode_texts(&decoder) && find_text(&decoder, key, value, size);
     close_decoder(&decoder);
     return ok;
 }

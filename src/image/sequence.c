@@ -21,12 +21,12 @@ static int64_t frame_number(const char *name) {
     return strtoll(digits, NULL, 10);
 }
 
-static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *folder, const char *name,
-                      int64_t number, Error *error) {
+static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *folder, const char *name, int64_t number,
+                      Error *error) {
     size_t size = strlen(folder) + strlen(name) + 2;
     char *path = malloc(size);
-    if (path == NULL || !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1,
-                                       sizeof *sequence->frames)) {
+    if (path == NULL ||
+        !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1, sizeof *sequence->frames)) {
         free(path);
         return error_memory(error, folder);
     }
@@ -126,8 +126,7 @@ bool image_sequence_compare(const ImageSequence *a, const ImageSequence *b, Sequ
         } else {
             if (!compare_frame(&a->frames[i++], &b->frames[j++], difference, error)) return false;
             if (!progress_report(progress, i, a->count))
-                return error_input(error, a->frames[i - 1].path, "stopped after %d frames",
-                                   difference->compared);
+                return error_input(error, a->frames[i - 1].path, "stopped after %d frames", difference->compared);
         }
     }
     return true;

@@ -8,8 +8,7 @@
 
 static bool check_widths(int layers, const int *widths, Error *error) {
     if (layers < 1 || layers > NETWORK_MAX_LAYERS)
-        return error_input(error, "network", "%d layers of weights; 1 to %d are possible", layers,
-                           NETWORK_MAX_LAYERS);
+        return error_input(error, "network", "%d layers of weights; 1 to %d are possible", layers, NETWORK_MAX_LAYERS);
     for (int l = 0; l <= layers; l++)
         if (widths[l] < 1 || widths[l] > NETWORK_MAX_WIDTH)
             return error_input(error, "network", "width %d of layer %d; 1 to %d are possible", widths[l], l,
@@ -81,12 +80,9 @@ int network_scratch_width(const Network *network) {
 
 static float activate(Activation activation, float x) {
     switch (activation) {
-    case ACTIVATION_SIGMOID:
-        return (float)(1.0 / (1.0 + exp(-(double)x)));
-    case ACTIVATION_TANH:
-        return (float)tanh((double)x);
-    case ACTIVATION_LINEAR:
-        break;
+    case ACTIVATION_SIGMOID: return (float)(1.0 / (1.0 + exp(-(double)x)));
+    case ACTIVATION_TANH: return (float)tanh((double)x);
+    case ACTIVATION_LINEAR: break;
     }
     return x;
 }

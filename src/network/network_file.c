@@ -88,16 +88,14 @@ bool network_write(const Network *network, const char *path, Error *error) {
 
 static bool check_version(NpzFile *file, const char *path, Error *error) {
     char kind[32] = "";
-    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) ||
-        strcmp(kind, KIND) != 0)
+    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) || strcmp(kind, KIND) != 0)
         return error_input(error, path, "holds no network");
     int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
     if (version == NULL) return false;
     int32_t found = *version;
     free(version);
     if (found == NETWORK_VERSION) return true;
-    return error_input(error, path, "network of version %d; this program reads version %d", found,
-                       NETWORK_VERSION);
+    return error_input(error, path, "network of version %d; this program reads version %d", found, NETWORK_VERSION);
 }
 
 /* Returns the number of layers and fills widths, or 0 with error set. */
@@ -116,8 +114,7 @@ static int read_widths(NpzFile *file, const char *path, int widths[NETWORK_MAX_L
     }
     free(stored);
     if (bad < 0) return (int)count - 1;
-    return error_input(error, path, "widths[%d] is %d; 1 to %d are possible", bad, widths[bad],
-                       NETWORK_MAX_WIDTH);
+    return error_input(error, path, "widths[%d] is %d; 1 to %d are possible", bad, widths[bad], NETWORK_MAX_WIDTH);
 }
 
 static bool parse_activation(const char *word, Activation *activation) {
@@ -134,8 +131,7 @@ static bool read_activations(NpzFile *file, const char *path, Network *network, 
     if (!npz_read_text(file, "activations", text, sizeof text, error)) return false;
     int count = 0;
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL; count++) {
-        if (count == network->layers)
-            return error_input(error, path, "more activations than its %d layers", count);
+        if (count == network->layers) return error_input(error, path, "more activations than its %d layers", count);
         if (!parse_activation(word, &network->activations[count]))
             return error_input(error, path, "activation %d is none of linear, sigmoid and tanh", count);
     }
@@ -152,8 +148,8 @@ static bool read_member(NpzFile *file, const char *path, const Member *member, E
     if (i == size)
         memcpy(member->numbers, numbers, size * sizeof *numbers);
     else
-        error_input(error, path, "%s: number %zu is %g; it must be finite%s", member->name, i,
-                    (double)numbers[i], is_scale ? " and greater than 0" : "");
+        error_input(error, path, "%s: number %zu is %g; it must be finite%s", member->name, i, (double)numbers[i],
+                    is_scale ? " and greater than 0" : "");
     free(numbers);
     return i == size;
 }

@@ -17,8 +17,7 @@ NetworkBlock *network_block_create(const Network *shape, Error *error) {
     for (int l = 0; l < shape->layers; l++) widths += 2 * (size_t)shape->widths[l + 1];
     NetworkBlock *block = calloc(1, sizeof *block);
     double *numbers = calloc(widths * BLOCK_ROWS, sizeof *numbers);
-    if (block == NULL || numbers == NULL)
-        return error_memory(error, "network"), free(block), free(numbers), NULL;
+    if (block == NULL || numbers == NULL) return error_memory(error, "network"), free(block), free(numbers), NULL;
     block->shape = shape;
     for (int l = 0; l <= shape->layers; l++) {
         block->values[l] = numbers;
@@ -45,8 +44,7 @@ static void weighted_sum(double *restrict sums, double start, const double *rest
         for (int t = 0; t < LANES; t++) lane[t] = start;
         for (int k = 0; k < count; k++) {
             double weight = weights[(size_t)k * (size_t)weight_step];
-            for (int t = 0; t < LANES; t++)
-                lane[t] += weight * values[(size_t)k * BLOCK_ROWS + (size_t)(r + t)];
+            for (int t = 0; t < LANES; t++) lane[t] += weight * values[(size_t)k * BLOCK_ROWS + (size_t)(r + t)];
         }
         for (int t = 0; t < LANES; t++) sums[r + t] = lane[t];
     }
@@ -92,8 +90,7 @@ static void activation_backward(Activation activation, const double *restrict va
 static void layer_forward(const double *parameters, int inputs, int outputs, const double *in, double *out) {
     const double *biases = parameters + (size_t)outputs * (size_t)inputs;
     for (int j = 0; j < outputs; j++)
-        weighted_sum(out + (size_t)j * BLOCK_ROWS, biases[j], parameters + (size_t)j * (size_t)inputs, 1, in,
-                     inputs);
+        weighted_sum(out + (size_t)j * BLOCK_ROWS, biases[j], parameters + (size_t)j * (size_t)inputs, 1, in, inputs);
 }
 
 /* delta_in[inputs, B] = weights^T[inputs, outputs] delta_out[outputs, B] */
@@ -106,10 +103,8 @@ static void layer_backward(const double *parameters, int inputs, int outputs, co
 void network_forward(NetworkBlock *block, const double *parameters) {
     const Network *shape = block->shape;
     for (int l = 0; l < shape->layers; l++) {
-        layer_forward(parameters, shape->widths[l], shape->widths[l + 1], block->values[l],
-                      block->values[l + 1]);
-        activation_forward(shape->activations[l], block->values[l + 1],
-                           (size_t)shape->widths[l + 1] * BLOCK_ROWS);
+        layer_forward(parameters, shape->widths[l], shape->widths[l + 1], block->values[l], block->values[l + 1]);
+        activation_forward(shape->activations[l], block->values[l + 1], (size_t)shape->widths[l + 1] * BLOCK_ROWS);
         parameters += parameter_count(shape, l);
     }
 }
@@ -122,8 +117,7 @@ void network_backward(NetworkBlock *block, const double *parameters) {
         activation_backward(shape->activations[l], block->values[l + 1], block->deltas[l],
                             (size_t)shape->widths[l + 1] * BLOCK_ROWS);
         if (l > 0)
-            layer_backward(parameters, shape->widths[l], shape->widths[l + 1], block->deltas[l],
-                           block->deltas[l - 1]);
+            layer_backward(parameters, shape->widths[l], shape->widths[l + 1], block->deltas[l], block->deltas[l - 1]);
     }
 }
 
@@ -133,8 +127,8 @@ void network_add_gradient(const NetworkBlock *block, double *gradient) {
         const double *delta = block->deltas[l];
         for (int j = 0; j < shape->widths[l + 1]; j++)
             for (int i = 0; i < shape->widths[l]; i++)
-                *gradient++ += network_block_dot(delta + (size_t)j * BLOCK_ROWS,
-                                                 block->values[l] + (size_t)i * BLOCK_ROWS);
+                *gradient++ +=
+                    network_block_dot(delta + (size_t)j * BLOCK_ROWS, block->values[l] + (size_t)i * BLOCK_ROWS);
         for (int j = 0; j < shape->widths[l + 1]; j++) *gradient++ += row_sum(delta + (size_t)j * BLOCK_ROWS);
     }
 }

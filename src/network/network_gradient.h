@@ -14,10 +14,9 @@
 enum { BLOCK_ROWS = 128 };
 
 typedef struct NetworkBlock {
-    const Network *shape; /* widths and activations; its weights are not used */
-    double *values[NETWORK_MAX_LAYERS +
-                   1]; /* [widths[l], BLOCK_ROWS]: normalised inputs, then each layer's outputs */
-    double *deltas[NETWORK_MAX_LAYERS]; /* [widths[l + 1], BLOCK_ROWS]: d loss / d (sum before layer l's
+    const Network *shape;                   /* widths and activations; its weights are not used */
+    double *values[NETWORK_MAX_LAYERS + 1]; /* [widths[l], BLOCK_ROWS]: normalised inputs, then each layer's outputs */
+    double *deltas[NETWORK_MAX_LAYERS];     /* [widths[l + 1], BLOCK_ROWS]: d loss / d (sum before layer l's
                                            activation) */
 } NetworkBlock;
 

@@ -45,8 +45,8 @@ static void create_font(Canvas *canvas) {
 }
 
 /* Attribute i of an instance: components[i] integers; the list ends with 0. */
-static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex,
-                         const char *fragment, const int *components, GLsizei stride, Error *error) {
+static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex, const char *fragment,
+                         const int *components, GLsizei stride, Error *error) {
     const GlFunctions *gl = canvas->gl;
     if ((batch->program = program_create(gl, name, vertex, fragment, error)) == 0) return false;
     gl->UseProgram(batch->program);
@@ -117,8 +117,7 @@ void canvas_destroy(Canvas *canvas) {
     free(canvas);
 }
 
-static void draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count,
-                 size_t size) {
+static void draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
     if (count == 0) return;
     gl->UseProgram(batch->program);
     gl->BindVertexArray(batch->vertices);

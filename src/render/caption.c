@@ -90,8 +90,7 @@ void caption_header(const Picture *picture, int frame, Drawing *drawing) {
     }
     char title[TRAJECTORY_NAME_SIZE];
     scene_title(title, sizeof title, picture->panels[0]->scene);
-    font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left,
-                     INK);
+    font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left, INK);
 }
 
 static bool is_method(const char *text, const char *name) {

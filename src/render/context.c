@@ -9,12 +9,11 @@
 static const ContextKind *const kinds[] = {&context_osmesa, &context_egl};
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
-bool context_load(const char *library, const char *package, const ContextFunction *functions, int count,
-                  void *table, Error *error) {
+bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
+                  Error *error) {
     void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (handle == NULL)
-        return error_system(error, "render", "cannot load %s; the Debian package %s brings it", library,
-                            package);
+        return error_system(error, "render", "cannot load %s; the Debian package %s brings it", library, package);
     for (int i = 0; i < count; i++) {
         void *symbol = dlsym(handle, functions[i].name);
         if (symbol == NULL) return error_system(error, "render", "%s lacks %s", library, functions[i].name);

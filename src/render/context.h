@@ -39,5 +39,5 @@ typedef struct ContextFunction {
 
 /* Opens a library, for good (Mesa does not survive being closed), and fills the struct. `package` is
    Debian's for it. */
-bool context_load(const char *library, const char *package, const ContextFunction *functions, int count,
-                  void *table, Error *error);
+bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
+                  Error *error);

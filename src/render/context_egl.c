@@ -52,20 +52,14 @@ static void egl_destroy(void *state) {
 static bool open_display(Egl *egl) {
     void *native = (void *)EGL_DEFAULT_DISPLAY;
     egl->display = egl->get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, native, NULL);
-    return egl->display != EGL_NO_DISPLAY && egl->initialize(egl->display, NULL, NULL) &&
-           egl->bind_api(EGL_OPENGL_API);
+    return egl->display != EGL_NO_DISPLAY && egl->initialize(egl->display, NULL, NULL) && egl->bind_api(EGL_OPENGL_API);
 }
 
 static bool open_context(Egl *egl) {
-    static const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                                    EGL_NONE};
-    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                        3,
-                                        EGL_CONTEXT_MINOR_VERSION,
-                                        3,
-                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                        EGL_NONE};
+    static const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    static const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     EGLConfig config;
     EGLint count = 0;
     if (!egl->choose_config(egl->display, wanted, &config, 1, &count) || count == 0) return false;
@@ -76,12 +70,10 @@ static bool open_context(Egl *egl) {
 static void *egl_create(Error *error) {
     Egl *egl = calloc(1, sizeof *egl);
     if (egl == NULL) return error_memory(error, "render"), NULL;
-    if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl,
-                     error)) {
+    if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl, error)) {
         if (open_display(egl) && open_context(egl)) return egl;
-        error_system(
-            error, "render",
-            "EGL makes no surfaceless context of OpenGL 3.3; is the Debian package libgl1-mesa-dri there?");
+        error_system(error, "render",
+                     "EGL makes no surfaceless context of OpenGL 3.3; is the Debian package libgl1-mesa-dri there?");
     }
     egl_destroy(egl);
     return NULL;

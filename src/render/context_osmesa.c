@@ -13,8 +13,7 @@ typedef struct Osmesa {
     OSMESAproc(GLAPIENTRY *get_proc_address)(const char *name);
     void(GLAPIENTRY *destroy)(OSMesaContext);
     OSMesaContext context;
-    unsigned char
-        surface[SURFACE_SIDE * SURFACE_SIDE * 4]; /* OSMesa wants one, though nothing is drawn to it */
+    unsigned char surface[SURFACE_SIDE * SURFACE_SIDE * 4]; /* OSMesa wants one, though nothing is drawn to it */
 } Osmesa;
 
 static const ContextFunction functions[] = {
@@ -32,13 +31,10 @@ static void osmesa_destroy(void *state) {
 
 static bool osmesa_make_current(void *state) {
     Osmesa *osmesa = state;
-    return osmesa->make_current(osmesa->context, osmesa->surface, GL_UNSIGNED_BYTE, SURFACE_SIDE,
-                                SURFACE_SIDE);
+    return osmesa->make_current(osmesa->context, osmesa->surface, GL_UNSIGNED_BYTE, SURFACE_SIDE, SURFACE_SIDE);
 }
 
-static GlFunction osmesa_find(void *state, const char *name) {
-    return ((Osmesa *)state)->get_proc_address(name);
-}
+static GlFunction osmesa_find(void *state, const char *name) { return ((Osmesa *)state)->get_proc_address(name); }
 
 static bool open_context(Osmesa *osmesa, Error *error) {
     static const int attributes[] = {OSMESA_FORMAT,
@@ -65,5 +61,4 @@ static void *osmesa_create(Error *error) {
     return NULL;
 }
 
-const ContextKind context_osmesa = {"osmesa", osmesa_create, osmesa_make_current, osmesa_find,
-                                    osmesa_destroy};
+const ContextKind context_osmesa = {"osmesa", osmesa_create, osmesa_make_current, osmesa_find, osmesa_destroy};

@@ -8,11 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double FIXED = 65536.0; /* the shader's units in a pixel */
-static const double SNAP = 256.0;    /* positions and sizes are whole multiples of 1/256 pixel */
-static const double LARGEST_HALF =
-    8192.0;                         /* pixels; larger boxes are cut down, or the shader's integers overflow */
-static const double FARTHEST = 1e9; /* pixels; beyond it no body can be seen */
+static const double FIXED = 65536.0;       /* the shader's units in a pixel */
+static const double SNAP = 256.0;          /* positions and sizes are whole multiples of 1/256 pixel */
+static const double LARGEST_HALF = 8192.0; /* pixels; larger boxes are cut down, or the shader's integers overflow */
+static const double FARTHEST = 1e9;        /* pixels; beyond it no body can be seen */
 
 void drawing_clear(Drawing *drawing) {
     drawing->rect_count = drawing->shape_count = drawing->glyph_count = 0;
@@ -55,9 +54,9 @@ static void cut_down(Shape *shape, const Rect *clip) {
 }
 
 static bool is_drawable(const Shape *shape) {
-    return fabs(shape->x) < FARTHEST && fabs(shape->y) < FARTHEST && shape->half_width > 0 &&
-           shape->half_height > 0 && shape->half_width < FARTHEST && shape->half_height < FARTHEST &&
-           isfinite(shape->cosine) && isfinite(shape->sine);
+    return fabs(shape->x) < FARTHEST && fabs(shape->y) < FARTHEST && shape->half_width > 0 && shape->half_height > 0 &&
+           shape->half_width < FARTHEST && shape->half_height < FARTHEST && isfinite(shape->cosine) &&
+           isfinite(shape->sine);
 }
 
 /* The whole pixels that the snapped shape can touch, inside clip. False where there are none. */
@@ -73,8 +72,7 @@ static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4])
 
 static ShapeInstance *next_shape(Drawing *drawing) {
     size_t wanted = drawing->shape_count + 1;
-    if (!array_reserve((void **)&drawing->shapes, &drawing->shape_capacity, wanted,
-                       sizeof *drawing->shapes)) {
+    if (!array_reserve((void **)&drawing->shapes, &drawing->shape_capacity, wanted, sizeof *drawing->shapes)) {
         drawing->failed = true;
         return NULL;
     }

@@ -3,9 +3,7 @@
 
 #include <string.h>
 
-enum {
-    PEN_UNIT = 64
-}; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
+enum { PEN_UNIT = 64 }; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
 #define ELLIPSIS "\xE2\x80\xA6"
 
 Font font_pick(FontFace face, double pixels) {
@@ -60,8 +58,7 @@ static int add(Drawing *drawing, const Font *font, const char *text, const char 
     while (text < end) {
         const FontGlyph *glyph = find(font, next_character(&text));
         int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph->left;
-        GlyphInstance instance = {
-            {left, baseline - glyph->top, glyph->width, glyph->height}, glyph->offset, color};
+        GlyphInstance instance = {{left, baseline - glyph->top, glyph->width, glyph->height}, glyph->offset, color};
         if (glyph->width > 0) drawing_add_glyph(drawing, &instance);
         pen += glyph->advance;
     }

@@ -28,8 +28,7 @@ static bool check_version(const GlFunctions *gl, Error *error) {
 bool gl_load(GlFunctions *gl, GlFunction (*find)(void *state, const char *name), void *state, Error *error) {
     for (size_t i = 0; i < sizeof entries / sizeof entries[0]; i++) {
         GlFunction function = find(state, entries[i].name);
-        if (function == NULL)
-            return error_system(error, "render", "the OpenGL found lacks %s", entries[i].name);
+        if (function == NULL) return error_system(error, "render", "the OpenGL found lacks %s", entries[i].name);
         memcpy((char *)gl + entries[i].offset, &function, sizeof function);
     }
     return check_version(gl, error);

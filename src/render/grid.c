@@ -61,9 +61,7 @@ static int line_pixel(const Lines *lines, int i) {
     return (int)rint(lines->origin + (lines->first + i) * lines->spacing);
 }
 
-static bool is_strong(const Lines *lines, int i, Steps steps) {
-    return fmod(lines->first + i, steps.strong) == 0;
-}
+static bool is_strong(const Lines *lines, int i, Steps steps) { return fmod(lines->first + i, steps.strong) == 0; }
 
 static void draw_lines(const Picture *picture, int panel, bool strong, Drawing *drawing) {
     Steps steps = choose_steps(picture);
@@ -106,8 +104,7 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
         char text[32];
         format_metres(text, sizeof text, (lines.first + i) * steps.step);
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
-        drawing_add_rect(drawing,
-                         (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick}, FRAME);
+        drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick}, FRAME);
         if (left < behind || left + width + gap > unit) continue;
         behind = font_add(drawing, font, text, left, baseline, INK_SOFT) + gap;
     }
@@ -133,6 +130,5 @@ static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *dr
 void grid_draw_axes(const Picture *picture, int panel, Drawing *drawing) {
     if (picture->layout.axis.glyphs == NULL) return;
     draw_bottom_axis(picture, &picture->layout.panels[panel], drawing);
-    if (panel % picture->layout.columns == 0)
-        draw_left_axis(picture, &picture->layout.panels[panel], drawing);
+    if (panel % picture->layout.columns == 0) draw_left_axis(picture, &picture->layout.panels[panel], drawing);
 }

@@ -116,10 +116,9 @@ int panel_count_unseen(const Picture *picture, int panel, int frame) {
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body] || !trajectory_has(trajectory, shown, body)) continue;
         Shape shape = {0};
-        place(&shape, picture, rect,
-              trajectory->position[(size_t)shown * (size_t)trajectory->bodies + (size_t)body], 0);
-        bool inside =
-            shape.x >= rect->left && shape.x < rect->right && shape.y >= rect->top && shape.y < rect->bottom;
+        place(&shape, picture, rect, trajectory->position[(size_t)shown * (size_t)trajectory->bodies + (size_t)body],
+              0);
+        bool inside = shape.x >= rect->left && shape.x < rect->right && shape.y >= rect->top && shape.y < rect->bottom;
         count += !inside;
     }
     return count;

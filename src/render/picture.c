@@ -8,15 +8,13 @@
 
 static bool check_panels(const Trajectory *const *panels, int count, Error *error) {
     if (count < 1 || count > RENDER_PANELS_MAX)
-        return error_input(error, "render", "%d panels asked for; 1 to %d can be shown", count,
-                           RENDER_PANELS_MAX);
+        return error_input(error, "render", "%d panels asked for; 1 to %d can be shown", count, RENDER_PANELS_MAX);
     for (int i = 1; i < count; i++)
         if (panels[i]->dt != panels[0]->dt)
-            return error_input(
-                error, "render",
-                "panel %d (%s) has time steps of %g s and the first of %g s: their frames are not of "
-                "the same times",
-                i + 1, panels[i]->method, (double)panels[i]->dt, (double)panels[0]->dt);
+            return error_input(error, "render",
+                               "panel %d (%s) has time steps of %g s and the first of %g s: their frames are not of "
+                               "the same times",
+                               i + 1, panels[i]->method, (double)panels[i]->dt, (double)panels[0]->dt);
     return true;
 }
 
@@ -24,19 +22,17 @@ static bool check_size(int width, int height, Error *error) {
     if (width >= RENDER_LEAST_SIDE && height >= RENDER_LEAST_SIDE && width <= RENDER_LARGEST_SIDE &&
         height <= RENDER_LARGEST_SIDE)
         return true;
-    return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be %d to %d",
-                       width, height, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE);
+    return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be %d to %d", width,
+                       height, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE);
 }
 
 static double largest_apart(const Picture *picture) {
     double largest = 0;
-    for (int frame = 0; frame < picture->frames; frame++)
-        largest = fmax(largest, picture_apart(picture, frame));
+    for (int frame = 0; frame < picture->frames; frame++) largest = fmax(largest, picture_apart(picture, frame));
     return largest;
 }
 
-bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height,
-                  Error *error) {
+bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error) {
     if (!check_size(width, height, error) || !check_panels(panels, count, error)) return false;
     *picture = (Picture){.count = count, .layout = layout_make(width, height, count)};
     for (int i = 0; i < count; i++) {

@@ -16,8 +16,7 @@ typedef struct Picture {
 } Picture;
 
 /* Refuses (ERROR_INPUT) what cannot be shown side by side. The trajectories must outlive the picture. */
-bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height,
-                  Error *error);
+bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error);
 
 /* Puts a frame into a cleared drawing. */
 void picture_draw(const Picture *picture, int frame, Drawing *drawing);

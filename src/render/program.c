@@ -5,8 +5,7 @@
 
 enum { LOG_SIZE = 1500 };
 
-static GLuint compile(const GlFunctions *gl, GLenum type, const char *name, const char *source,
-                      Error *error) {
+static GLuint compile(const GlFunctions *gl, GLenum type, const char *name, const char *source, Error *error) {
     GLuint shader = gl->CreateShader(type);
     GLint ok = 0;
     gl->ShaderSource(shader, 1, &source, NULL);
@@ -15,8 +14,8 @@ static GLuint compile(const GlFunctions *gl, GLenum type, const char *name, cons
     if (ok) return shader;
     char log[LOG_SIZE] = "";
     gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
-    error_system(error, name, "the %s shader does not compile: %s",
-                 type == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
+    error_system(error, name, "the %s shader does not compile: %s", type == GL_VERTEX_SHADER ? "vertex" : "fragment",
+                 log);
     gl->DeleteShader(shader);
     return 0;
 }
@@ -31,8 +30,7 @@ static bool link_program(const GlFunctions *gl, GLuint program, const char *name
     return error_system(error, name, "the shaders do not link: %s", log);
 }
 
-GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment,
-                      Error *error) {
+GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment, Error *error) {
     GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, name, vertex, error), 0};
     if (shaders[0] != 0) shaders[1] = compile(gl, GL_FRAGMENT_SHADER, name, fragment, error);
     GLuint program = 0;

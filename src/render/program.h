@@ -4,5 +4,4 @@
 #include "render/gl_functions.h"
 
 /* A linked program, or 0 with error (ERROR_SYSTEM) holding the compiler's log. `name` is for the message. */
-GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment,
-                      Error *error);
+GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment, Error *error);

@@ -29,8 +29,7 @@ typedef struct Renderer Renderer;
 
 /* For single frames, drawn in this process; of the options only width, height and context count. The
    trajectories must outlive the renderer. Sets Mesa's environment variables (context.c). */
-Renderer *renderer_create(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                          Error *error);
+Renderer *renderer_create(const Trajectory *const *panels, int panel_count, const RenderOptions *options, Error *error);
 
 /* Draws a frame into an image of the renderer's size. */
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error);

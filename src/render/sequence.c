@@ -23,8 +23,7 @@ typedef struct Sequence {
     double done, total; /* frames */
 } Sequence;
 
-static bool choose_range(const RenderOptions *options, const Picture *picture, int *first, int *last,
-                         Error *error) {
+static bool choose_range(const RenderOptions *options, const Picture *picture, int *first, int *last, Error *error) {
     *first = options->first;
     *last = options->last < 0 ? picture->frames - 1 : options->last;
     if (*first >= 0 && *first <= *last && *last < picture->frames) return true;
@@ -106,13 +105,10 @@ static bool wait_for_workers(Sequence *sequence, const Progress *progress, Error
         for (int i = 0; i < sequence->jobs; i++)
             sequence->polls[i] = (struct pollfd){.fd = sequence->workers[i].pipe, .events = POLLIN};
         if (poll(sequence->polls, (nfds_t)sequence->jobs, -1) < 0 && errno != EINTR)
-            return error_system(error, "render", "cannot wait for the drawing processes: %s",
-                                strerror(errno));
+            return error_system(error, "render", "cannot wait for the drawing processes: %s", strerror(errno));
         for (int i = 0; i < sequence->jobs; i++)
-            if (sequence->polls[i].revents != 0 && !listen_to(sequence, &sequence->workers[i], error))
-                return false;
-        if (!progress_report(progress, sequence->done, sequence->total))
-            return error_input(error, "render", "stopped");
+            if (sequence->polls[i].revents != 0 && !listen_to(sequence, &sequence->workers[i], error)) return false;
+        if (!progress_report(progress, sequence->done, sequence->total)) return error_input(error, "render", "stopped");
     }
     return true;
 }
@@ -125,8 +121,7 @@ static void end_all(Sequence *sequence) {
     for (int i = 0; i < sequence->jobs; i++) await_end(&sequence->workers[i], &ignored);
 }
 
-static bool draw_all(Sequence *sequence, const WorkerJob *job, int first, const Progress *progress,
-                     Error *error) {
+static bool draw_all(Sequence *sequence, const WorkerJob *job, int first, const Progress *progress, Error *error) {
     sequence->workers = calloc((size_t)sequence->jobs, sizeof *sequence->workers);
     sequence->polls = calloc((size_t)sequence->jobs, sizeof *sequence->polls);
     for (int i = 0; sequence->workers != NULL && i < sequence->jobs; i++) sequence->workers[i].pipe = -1;
@@ -143,11 +138,9 @@ bool render_sequence(const Trajectory *const *panels, int panel_count, const Ren
     Picture picture;
     int first, last;
     if (options->jobs < 1 || options->jobs > RENDER_JOBS_MAX)
-        return error_input(error, "render", "%d jobs asked for; there can be 1 to %d", options->jobs,
-                           RENDER_JOBS_MAX);
+        return error_input(error, "render", "%d jobs asked for; there can be 1 to %d", options->jobs, RENDER_JOBS_MAX);
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error) ||
-        !choose_range(options, &picture, &first, &last, error) ||
-        !file_make_directory(options->directory, error))
+        !choose_range(options, &picture, &first, &last, error) || !file_make_directory(options->directory, error))
         return false;
     int frames = last - first + 1;
     Sequence sequence = {.jobs = options->jobs < frames ? options->jobs : frames, .total = frames};

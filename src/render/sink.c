@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool write_png(void *context, int frame, const Image *image, const ImageText *texts, int count,
-                      Error *error) {
+static bool write_png(void *context, int frame, const Image *image, const ImageText *texts, int count, Error *error) {
     const char *directory = context;
     size_t size = strlen(directory) + sizeof "/frame_.png" + 16;
     char *path = malloc(size);

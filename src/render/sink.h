@@ -4,8 +4,7 @@
 #include "image/image.h"
 
 typedef struct FrameSink {
-    bool (*write)(void *context, int frame, const Image *image, const ImageText *texts, int count,
-                  Error *error);
+    bool (*write)(void *context, int frame, const Image *image, const ImageText *texts, int count, Error *error);
     void *context;
 } FrameSink;
 

@@ -48,8 +48,8 @@ static bool send_frames(Process *ffmpeg, const VideoOptions *options, int width,
         Image *image = read_frame(options, frame, error);
         ok = image != NULL;
         if (ok && (image->width != width || image->height != height))
-            ok = error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", frame,
-                             image->width, image->height, width, height);
+            ok = error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", frame, image->width,
+                             image->height, width, height);
         if (ok) *stopped = !write_frame(ffmpeg, image, rgb);
         image_destroy(image);
         if (ok && !progress_report(progress, frame - options->first + 1, options->last - options->first + 1))
@@ -75,14 +75,13 @@ static bool count_frames(const char *path, int *count, Error *error) {
                           NULL};
     Process ffprobe;
     char text[256];
-    if (!process_start(&ffprobe, argv, error) || !process_finish(&ffprobe, text, sizeof text, error))
-        return false;
+    if (!process_start(&ffprobe, argv, error) || !process_finish(&ffprobe, text, sizeof text, error)) return false;
     *count = atoi(text);
     return true;
 }
 
-static bool run_ffmpeg(const VideoOptions *options, const char *part, int width, int height,
-                       const Progress *progress, Error *error) {
+static bool run_ffmpeg(const VideoOptions *options, const char *part, int width, int height, const Progress *progress,
+                       Error *error) {
     char size[32], rate[32];
     snprintf(size, sizeof size, "%dx%d", width, height);
     snprintf(rate, sizeof rate, "%.0f/1000", 1000 * options->frame_rate);
@@ -139,8 +138,7 @@ static bool encode_to(const VideoOptions *options, const char *part, const Progr
     if (!video_check(options->path, width, height, error) ||
         !run_ffmpeg(options, part, width, height, progress, error) || !count_frames(part, &count, error))
         return false;
-    if (count != wanted)
-        return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
+    if (count != wanted) return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
     return rename(part, options->path) == 0 || error_system(error, options->path, "%s", strerror(errno));
 }
 

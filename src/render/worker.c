@@ -10,11 +10,7 @@
 #include <unistd.h>
 
 /* Texts of a frame, all panels joined. */
-enum {
-    TEXTS = 5,
-    METHODS_SIZE = RENDER_PANELS_MAX * (TRAJECTORY_NAME_SIZE + 3),
-    HASHES_SIZE = RENDER_PANELS_MAX * 20
-};
+enum { TEXTS = 5, METHODS_SIZE = RENDER_PANELS_MAX * (TRAJECTORY_NAME_SIZE + 3), HASHES_SIZE = RENDER_PANELS_MAX * 20 };
 
 typedef struct FrameTexts {
     char methods[METHODS_SIZE], frame[16], state[HASHES_SIZE];
@@ -46,9 +42,7 @@ static void fill_texts(FrameTexts *texts, const Picture *picture, int frame) {
     memcpy(texts->entries, entries, sizeof entries);
 }
 
-static bool report(int pipe, const Error *error) {
-    return write(pipe, error, sizeof *error) == sizeof *error;
-}
+static bool report(int pipe, const Error *error) { return write(pipe, error, sizeof *error) == sizeof *error; }
 
 static bool draw_frames(const WorkerJob *job, Renderer *renderer, Image *image, int pipe, Error *error) {
     FrameTexts texts;

@@ -98,8 +98,7 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
         int value = key + 1;
         const Field *field = find_field(fields, yaml_text(tree, key));
         if (field == NULL) return unknown_key(tree, key, what, fields, error);
-        if (nodes[field - fields] != 0)
-            return yaml_error(tree, key, error, "key '%s' is there twice", field->key);
+        if (nodes[field - fields] != 0) return yaml_error(tree, key, error, "key '%s' is there twice", field->key);
         nodes[field - fields] = value;
         if (!field->parse(tree, value, field, (char *)target + field->offset, error)) return false;
         key = tree->nodes[value].end;
@@ -113,15 +112,13 @@ bool field_number(const YamlTree *tree, int node, const Field *field, void *memb
     float value;
     const Range *range = field->range;
     if (!is_scalar(tree, node) || !parse_float(yaml_text(tree, node), &value))
-        return yaml_error(tree, node, error, "%s must be a number (got %s)", field->key,
-                          yaml_show(tree, node).text);
+        return yaml_error(tree, node, error, "%s must be a number (got %s)", field->key, yaml_show(tree, node).text);
     if (range->minimum > 0 && value <= 0)
         return yaml_error(tree, node, error, "%s must be greater than 0 (got %s)", field->key,
                           yaml_show(tree, node).text);
     if (value < range->minimum || value > range->maximum)
-        return yaml_error(tree, node, error, "%s must be from %g to %g%s (got %s)", field->key,
-                          (double)range->minimum, (double)range->maximum, range->unit,
-                          yaml_show(tree, node).text);
+        return yaml_error(tree, node, error, "%s must be from %g to %g%s (got %s)", field->key, (double)range->minimum,
+                          (double)range->maximum, range->unit, yaml_show(tree, node).text);
     *(float *)member = value;
     return true;
 }
@@ -154,6 +151,5 @@ bool field_switch(const YamlTree *tree, int node, const Field *field, void *memb
         *(bool *)member = i % 2 == 1;
         return true;
     }
-    return yaml_error(tree, node, error, "%s must be on or off (got %s)", field->key,
-                      yaml_show(tree, node).text);
+    return yaml_error(tree, node, error, "%s must be on or off (got %s)", field->key, yaml_show(tree, node).text);
 }

@@ -16,8 +16,8 @@ typedef struct Range {
 } Range;
 
 /* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */
-extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin,
-    range_friction, range_gravity, range_dt, range_rate;
+extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,
+    range_gravity, range_dt, range_rate;
 
 typedef struct Field Field;
 

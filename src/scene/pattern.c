@@ -19,8 +19,7 @@ static int64_t pyramid_body_count(int rows) { return (int64_t)rows * (rows + 1) 
 static Vec2 pyramid_position(Vec2 first, Vec2 spacing, int rows, int64_t i) {
     int row = 0;
     for (; i >= rows - row; row++) i -= rows - row;
-    return vec2(first.x + 0.5f * spacing.x * (float)row + spacing.x * (float)i,
-                first.y + spacing.y * (float)row);
+    return vec2(first.x + 0.5f * spacing.x * (float)row + spacing.x * (float)i, first.y + spacing.y * (float)row);
 }
 
 static const PatternKind row = {"row", line_body_count, line_position};

@@ -39,19 +39,16 @@ static const Field body_fields[] = {
     {NULL, NULL, 0, NULL, false}};
 
 /* What no key can tell by itself. */
-static bool check_keys(const YamlTree *tree, int node, const Pattern *pattern, const int *nodes,
-                       Error *error) {
+static bool check_keys(const YamlTree *tree, int node, const Pattern *pattern, const int *nodes, Error *error) {
     bool fixed = pattern->first.fixed, mass = nodes[MASS] != 0;
     if (fixed && mass) return yaml_error(tree, nodes[MASS], error, "a static body has no mass");
-    if (!fixed && !mass)
-        return yaml_error(tree, node, error, "a body needs the key 'mass', or 'static: true'");
+    if (!fixed && !mass) return yaml_error(tree, node, error, "a body needs the key 'mass', or 'static: true'");
     for (int moving = VELOCITY; fixed && moving <= SPIN; moving++)
         if (nodes[moving] != 0)
             return yaml_error(tree, nodes[moving], error, "a static body has no %s", body_fields[moving].key);
     for (int key = COUNT; key <= SPACING; key++) {
         if (pattern->kind == NULL && nodes[key] != 0)
-            return yaml_error(tree, nodes[key], error, "%s needs the key 'pattern' beside it",
-                              body_fields[key].key);
+            return yaml_error(tree, nodes[key], error, "%s needs the key 'pattern' beside it", body_fields[key].key);
         if (pattern->kind != NULL && nodes[key] == 0)
             return yaml_error(tree, node, error, "a pattern needs the key '%s'", body_fields[key].key);
     }
@@ -67,8 +64,8 @@ static bool read_entry(const YamlTree *tree, int node, Pattern *pattern, int *no
 static bool within(float value) { return fabsf(value) <= range_position.maximum; }
 
 /* Appends the entry's bodies. `place` is the node to show where they are too many or too far away. */
-static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, Scene *scene,
-                       size_t *capacity, Error *error) {
+static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, Scene *scene, size_t *capacity,
+                       Error *error) {
     int64_t count = pattern_body_count(pattern);
     if (count > SCENE_MAX_BODIES - scene->body_count)
         return yaml_error(tree, place, error, "a scene may have at most %d bodies (here they become %lld)",
@@ -80,9 +77,8 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     for (int64_t i = 0; i < count; i++) {
         BodyDef body = pattern_body(pattern, i);
         if (!within(body.position.x) || !within(body.position.y))
-            return yaml_error(tree, place, error,
-                              "body %lld of the pattern would lie at (%g, %g), beyond %g m", (long long)i,
-                              (double)body.position.x, (double)body.position.y,
+            return yaml_error(tree, place, error, "body %lld of the pattern would lie at (%g, %g), beyond %g m",
+                              (long long)i, (double)body.position.x, (double)body.position.y,
                               (double)range_position.maximum);
         scene->bodies[scene->body_count++] = body;
     }

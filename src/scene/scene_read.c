@@ -17,25 +17,22 @@ static const Range range_bomb_frame = {0, SCENE_MAX_FRAMES, ""};
 
 static bool field_camera(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)field;
-    static const Field fields[] = {
-        {"center", field_vector, offsetof(Scene, camera_center), &range_position, true},
-        {"size", field_vector, offsetof(Scene, camera_size), &range_size, true},
-        {NULL, NULL, 0, NULL, false}};
+    static const Field fields[] = {{"center", field_vector, offsetof(Scene, camera_center), &range_position, true},
+                                   {"size", field_vector, offsetof(Scene, camera_size), &range_size, true},
+                                   {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
     return fields_read(tree, node, "a camera", fields, member, nodes, error);
 }
 
 /* Either [vx, vy] or the mapping {times_position: 1/s}. */
-static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *field, void *member,
-                                Error *error) {
+static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     static const Field law[] = {
         {"times_position", field_number, offsetof(SceneBomb, velocity_factor), &range_rate, true},
         {NULL, NULL, 0, NULL, false}};
     SceneBomb *bomb = member;
     bomb->velocity_from_position = tree->nodes[node].kind == YAML_MAPPING;
     int nodes[FIELDS_MAX];
-    if (bomb->velocity_from_position)
-        return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
+    if (bomb->velocity_from_position) return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
     return field_vector(tree, node, field, &bomb->body.velocity, error);
 }
 
@@ -60,8 +57,8 @@ static bool field_bomb(const YamlTree *tree, int node, const Field *field, void 
     Vec2 velocity = scene_bomb_body(scene).velocity;
     if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) <= range_speed.maximum) return true;
     return yaml_error(tree, fields_node(bomb_fields, nodes, "velocity"), error,
-                      "the bomb would start with (%g, %g) m/s, above %g", (double)velocity.x,
-                      (double)velocity.y, (double)range_speed.maximum);
+                      "the bomb would start with (%g, %g) m/s, above %g", (double)velocity.x, (double)velocity.y,
+                      (double)range_speed.maximum);
 }
 
 /* Letters, digits and dashes, as the table of methods has them. */
@@ -84,13 +81,11 @@ static bool has_control_character(const char *text) {
 static bool copy_path(const YamlTree *tree, int node, char *path, Error *error) {
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     if (text[0] == '\0' || has_control_character(text))
-        return yaml_error(tree, node, error, "a network is the path of a file (got %s)",
-                          yaml_show(tree, node).text);
+        return yaml_error(tree, node, error, "a network is the path of a file (got %s)", yaml_show(tree, node).text);
     int folder = text[0] == '/' ? 0 : (int)file_folder_length(tree->source.path);
     int length = snprintf(path, SCENE_PATH_SIZE, "%.*s%s", folder, tree->source.path, text);
     return (length >= 0 && length < SCENE_PATH_SIZE) ||
-           yaml_error(tree, node, error, "the path of a network may have at most %d bytes",
-                      SCENE_PATH_SIZE - 1);
+           yaml_error(tree, node, error, "the path of a network may have at most %d bytes", SCENE_PATH_SIZE - 1);
 }
 
 static bool field_networks(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -132,8 +127,7 @@ static bool read_tree(const YamlTree *tree, Scene *scene, Error *error) {
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
     return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
            yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
-                      "the bomb would come in frame %d, after the last (frames: %d)", scene->bomb.frame,
-                      scene->frames);
+                      "the bomb would come in frame %d, after the last (frames: %d)", scene->bomb.frame, scene->frames);
 }
 
 /* The name goes into captions and files, so it must be text that prints. */

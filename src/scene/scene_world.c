@@ -55,8 +55,7 @@ typedef struct Record {
 } Record;
 
 static void put_word(Record *record, uint32_t word) {
-    for (int shift = 0; shift < 32; shift += 8)
-        record->bytes[record->size++] = (unsigned char)(word >> shift);
+    for (int shift = 0; shift < 32; shift += 8) record->bytes[record->size++] = (unsigned char)(word >> shift);
 }
 
 static void put_float(Record *record, float value) {

@@ -18,12 +18,7 @@ enum { EXCERPT_WIDTH = 100, EXCERPT_BEFORE = 70 };
 static size_t decode(const char *text, size_t size, uint32_t *character) {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
     unsigned char lead = (unsigned char)text[0];
-    size_t length = lead < 0x80   ? 1
-                    : lead < 0xc0 ? 0
-                    : lead < 0xe0 ? 2
-                    : lead < 0xf0 ? 3
-                    : lead < 0xf8 ? 4
-                                  : 0;
+    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
     if (length == 0 || length > size) return 0;
     uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
@@ -78,9 +73,7 @@ static size_t next_line(const Source *source, size_t at) {
     return at;
 }
 
-static bool in_line(const Source *source, size_t at) {
-    return at < source->size && !ends_line(source->text[at]);
-}
+static bool in_line(const Source *source, size_t at) { return at < source->size && !ends_line(source->text[at]); }
 
 /* Bytes of the character at `at`; a byte that is no UTF-8 counts as one. */
 static size_t character_length(const Source *source, size_t at) {
@@ -99,8 +92,7 @@ static size_t find_place(const Source *source, Place *place) {
         start = next < source->size ? next : start;
     }
     int column = 0;
-    for (size_t at = start; column < place->column && in_line(source, at); column++)
-        at += character_length(source, at);
+    for (size_t at = start; column < place->column && in_line(source, at); column++) at += character_length(source, at);
     place->column = column;
     return start;
 }
@@ -143,8 +135,8 @@ bool source_error(const Source *source, Place place, Error *error, const char *f
     Excerpt excerpt = excerpt_line(source, start, place.column);
     snprintf(where, sizeof where, "%.1200s:%d:%d", source->path, place.line + 1, place.column + 1);
     snprintf(number, sizeof number, "%5d", place.line + 1);
-    return error_input(error, where, "%s\n%s | %s\n%*s | %s^", what, number, excerpt.line,
-                       (int)strlen(number), "", excerpt.blanks);
+    return error_input(error, where, "%s\n%s | %s\n%*s | %s^", what, number, excerpt.line, (int)strlen(number), "",
+                       excerpt.blanks);
 }
 
 /* What the checks keep from one character to the next. */

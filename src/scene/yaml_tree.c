@@ -31,20 +31,18 @@ static bool count_in_parent(Builder *builder, Error *error) {
     YamlNode *parent = &builder->tree->nodes[builder->open[builder->depth - 1]];
     parent->count++;
     if (parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
-        return source_error(&builder->tree->source, builder->place, error,
-                            "a mapping may have at most %d keys", YAML_MAX_KEYS);
+        return source_error(&builder->tree->source, builder->place, error, "a mapping may have at most %d keys",
+                            YAML_MAX_KEYS);
     return true;
 }
 
 static bool add_node(Builder *builder, YamlKind kind, Error *error) {
     YamlTree *tree = builder->tree;
     if (tree->node_count == YAML_MAX_NODES)
-        return source_error(&tree->source, builder->place, error, "more than %d values in one file",
-                            YAML_MAX_NODES);
+        return source_error(&tree->source, builder->place, error, "more than %d values in one file", YAML_MAX_NODES);
     if (!count_in_parent(builder, error)) return false;
     void *nodes = tree->nodes;
-    bool room =
-        array_reserve(&nodes, &builder->node_capacity, (size_t)tree->node_count + 1, sizeof *tree->nodes);
+    bool room = array_reserve(&nodes, &builder->node_capacity, (size_t)tree->node_count + 1, sizeof *tree->nodes);
     tree->nodes = nodes;
     if (!room) return error_memory(error, tree->source.path);
     YamlNode node = {kind, tree->node_count + 1, 0, (int)builder->text_size, builder->place};
@@ -57,8 +55,7 @@ static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
     size_t length = 0;
     const char *text = value == NULL ? "" : fy_token_get_text(value, &length);
     if (text == NULL) return error_memory(error, builder->tree->source.path);
-    if (memchr(text, '\0', length) != NULL)
-        return fail(builder, error, "a text may not contain the character \\0");
+    if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text may not contain the character \\0");
     void *texts = builder->tree->texts;
     bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
     builder->tree->texts = texts;
@@ -107,16 +104,12 @@ static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
         return refuse_extras(builder, event->sequence_start.anchor, event->sequence_start.tag, error) &&
                open_node(builder, YAML_SEQUENCE, error);
     case FYET_MAPPING_END:
-    case FYET_SEQUENCE_END:
-        close_node(builder);
-        return true;
+    case FYET_SEQUENCE_END: close_node(builder); return true;
     case FYET_SCALAR:
         return refuse_extras(builder, event->scalar.anchor, event->scalar.tag, error) &&
                add_scalar(builder, event->scalar.value, error);
-    case FYET_ALIAS:
-        return fail(builder, error, "aliases (*) are not allowed in a scene");
-    default:
-        return true;
+    case FYET_ALIAS: return fail(builder, error, "aliases (*) are not allowed in a scene");
+    default: return true;
     }
 }
 
@@ -134,8 +127,8 @@ static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Erro
 }
 
 static bool gap_error(const Builder *builder, Error *error) {
-    return source_error(&builder->tree->source, builder->place, error,
-                        "more than %d bytes from here to the next value", YAML_MAX_GAP);
+    return source_error(&builder->tree->source, builder->place, error, "more than %d bytes from here to the next value",
+                        YAML_MAX_GAP);
 }
 
 static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_diag *diagnosis, Error *error) {
@@ -212,12 +205,8 @@ const char *yaml_text(const YamlTree *tree, int node) { return tree->texts + tre
 YamlShown yaml_show(const YamlTree *tree, int node) {
     YamlShown shown;
     switch (tree->nodes[node].kind) {
-    case YAML_SEQUENCE:
-        strcpy(shown.text, "a list");
-        break;
-    case YAML_MAPPING:
-        strcpy(shown.text, "a mapping");
-        break;
+    case YAML_SEQUENCE: strcpy(shown.text, "a list"); break;
+    case YAML_MAPPING: strcpy(shown.text, "a mapping"); break;
     case YAML_SCALAR:
         source_printable(shown.text, sizeof shown.text, yaml_text(tree, node));
         if (shown.text[0] == '\0') strcpy(shown.text, "nothing");

@@ -122,4 +122,5 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_pair_net = {
-    "pair-net", "the paper's network: the change of a pair's velocities, pair by pair", settings, create, solve, destroy};
+    "pair-net", "the paper's network: the change of a pair's velocities, pair by pair", settings, create, solve,
+    destroy};

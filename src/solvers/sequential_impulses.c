@@ -64,10 +64,9 @@ static void warm_start(const ContactProblem *problem, ContactSolution *solution)
         const ContactPoint *contact = &problem->contacts[i];
         solution->impulses[i] = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
         Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-        Vec2 impulse = vec2_add(vec2_scale(contact->warm_normal, contact->normal),
-                                vec2_scale(contact->warm_tangent, tangent));
-        apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies,
-              impulse);
+        Vec2 impulse =
+            vec2_add(vec2_scale(contact->warm_normal, contact->normal), vec2_scale(contact->warm_tangent, tangent));
+        apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies, impulse);
     }
 }
 

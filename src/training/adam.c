@@ -27,8 +27,7 @@ static void step(const Trainer *trainer, const Moments *moments, double *paramet
         double g = moments->gradient[p];
         moments->mean[p] = beta1 * moments->mean[p] + (1 - beta1) * g;
         moments->square[p] = beta2 * moments->square[p] + (1 - beta2) * g * g;
-        parameters[p] -=
-            rate * (moments->mean[p] / correction1) / (sqrt(moments->square[p] / correction2) + epsilon);
+        parameters[p] -= rate * (moments->mean[p] / correction1) / (sqrt(moments->square[p] / correction2) + epsilon);
     }
 }
 

@@ -105,8 +105,7 @@ static void fill_products(const GaussNewton *work, Chunk *chunk, int l, int m) {
 }
 
 /* D of unit j of layer l and unit j2 of layer m. */
-static void fill_weights(const GaussNewton *work, const Chunk *chunk, int unit, int unit2,
-                         double weights[BLOCK_ROWS]) {
+static void fill_weights(const GaussNewton *work, const Chunk *chunk, int unit, int unit2, double weights[BLOCK_ROWS]) {
     memset(weights, 0, BLOCK_ROWS * sizeof *weights);
     for (int k = 0; k < work->shape->widths[work->shape->layers]; k++) {
         const double *a = chunk->deltas + (k * work->units + unit) * BLOCK_ROWS;
@@ -124,8 +123,7 @@ static void add_unit_pair(const GaussNewton *work, Chunk *chunk, int l, int j, i
             double sum = network_block_dot(weights, product);
             add_symmetric(work, chunk, parameter_index(work, l, j, i), parameter_index(work, m, j2, i2), sum);
             if (l == m && j != j2 && i != i2)
-                add_symmetric(work, chunk, parameter_index(work, l, j, i2), parameter_index(work, m, j2, i),
-                              sum);
+                add_symmetric(work, chunk, parameter_index(work, l, j, i2), parameter_index(work, m, j2, i), sum);
         }
 }
 
@@ -134,8 +132,7 @@ static void add_layer_pair(const GaussNewton *work, Chunk *chunk, int l, int m) 
     bool both_last = m == work->shape->layers - 1; /* m <= l */
     for (int j = 0; j < work->shape->widths[l + 1]; j++)
         for (int j2 = 0; j2 <= (l == m ? j : work->shape->widths[m + 1] - 1); j2++)
-            if (!both_last || j == j2)
-                add_unit_pair(work, chunk, l, j, m, j2); /* outputs share no prediction */
+            if (!both_last || j == j2) add_unit_pair(work, chunk, l, j, m, j2); /* outputs share no prediction */
 }
 
 /* The deltas of every prediction by itself: backward from d prediction k / d prediction = 1. */
@@ -147,8 +144,8 @@ static void fill_deltas(const GaussNewton *work, Chunk *chunk, int rows, const d
         for (int i = 0; i < outputs * BLOCK_ROWS; i++) last[i] = i / BLOCK_ROWS == k && i % BLOCK_ROWS < rows;
         network_backward(chunk->block, parameters);
         for (int l = 0; l < shape->layers; l++)
-            memcpy(chunk->deltas + (k * work->units + work->first_unit[l]) * BLOCK_ROWS,
-                   chunk->block->deltas[l], (size_t)shape->widths[l + 1] * BLOCK_ROWS * sizeof(double));
+            memcpy(chunk->deltas + (k * work->units + work->first_unit[l]) * BLOCK_ROWS, chunk->block->deltas[l],
+                   (size_t)shape->widths[l + 1] * BLOCK_ROWS * sizeof(double));
     }
 }
 
@@ -170,8 +167,8 @@ static void add_chunk(double *total, const double *part, size_t count, bool firs
     for (size_t i = 0; i < count; i++) total[i] = first ? part[i] : total[i] + part[i];
 }
 
-void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u,
-                      double *jtu, double *jtj) {
+void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u, double *jtu,
+                      double *jtj) {
     size_t count = work->parameters;
     /* Waking threads for less than a block each costs more than it saves. */
 #pragma omp parallel for schedule(dynamic, 1) if (samples->blocks >= work->chunk_count)
@@ -179,8 +176,8 @@ void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *p
         Chunk *chunk = &work->chunks[c];
         memset(chunk->jtu, 0, count * sizeof(double));
         memset(chunk->jtj, 0, count * count * sizeof(double));
-        for (int64_t b = samples->blocks * c / work->chunk_count;
-             b < samples->blocks * (c + 1) / work->chunk_count; b++)
+        for (int64_t b = samples->blocks * c / work->chunk_count; b < samples->blocks * (c + 1) / work->chunk_count;
+             b++)
             add_block(work, chunk, samples, b, parameters, u, jtj != NULL);
     }
     for (int c = 0; c < work->chunk_count; c++) {

@@ -13,5 +13,5 @@ void gauss_newton_destroy(GaussNewton *work);
 /* u[blocks, outputs, BLOCK_ROWS], the layout of loss_residuals(), 0 in the rows that fill up. Fills
    jtu[parameters] and, unless jtj is NULL, the lower half of jtj[parameters, parameters]. The same bits at
    any number of threads. */
-void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u,
-                      double *jtu, double *jtj);
+void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u, double *jtu,
+                      double *jtj);

@@ -41,8 +41,8 @@ static double loss_of(const Trainer *trainer, const gsl_vector *f) {
 }
 
 /* Ends early, without an error, where no damping gives a lower loss. */
-static bool run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton,
-                double *parameters, Error *error) {
+static bool run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton, double *parameters,
+                Error *error) {
     LeastSquares problem = {trainer, gauss_newton};
     gsl_multilarge_nlinear_fdf function = {
         .f = residuals, .df = derivatives, .n = work->n, .p = work->p, .params = &problem};
@@ -62,14 +62,14 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
         return error_input(error, "lm", "%d weights; at most %d are possible, adam and bfgs take more",
                            trainer->parameters, MAX_PARAMETERS);
     if (numbers < trainer->parameters)
-        return error_input(error, "lm", "%lld numbers to fit with %d weights; at least as many are needed",
-                           numbers, trainer->parameters);
+        return error_input(error, "lm", "%lld numbers to fit with %d weights; at least as many are needed", numbers,
+                           trainer->parameters);
     gsl_multilarge_nlinear_parameters settings = gsl_multilarge_nlinear_default_parameters();
     settings.trs = gsl_multilarge_nlinear_trs_lm;
     settings.solver = gsl_multilarge_nlinear_solver_cholesky;
     size_t residual_count = (size_t)samples->blocks * (size_t)samples->outputs * BLOCK_ROWS;
-    gsl_multilarge_nlinear_workspace *work = gsl_multilarge_nlinear_alloc(
-        gsl_multilarge_nlinear_trust, &settings, residual_count, (size_t)trainer->parameters);
+    gsl_multilarge_nlinear_workspace *work = gsl_multilarge_nlinear_alloc(gsl_multilarge_nlinear_trust, &settings,
+                                                                          residual_count, (size_t)trainer->parameters);
     GaussNewton *gauss_newton = gauss_newton_create(trainer->network, error);
     bool ok = work != NULL && gauss_newton != NULL ? run(trainer, work, gauss_newton, parameters, error)
                                                    : error_memory(error, "training");
@@ -78,5 +78,4 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     return ok;
 }
 
-const Optimizer optimizer_lm = {"lm", "Levenberg-Marquardt, for small networks (GSL multilarge_nlinear)",
-                                minimize};
+const Optimizer optimizer_lm = {"lm", "Levenberg-Marquardt, for small networks (GSL multilarge_nlinear)", minimize};

@@ -5,9 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static bool is_test(const Dataset *dataset, int64_t row) {
-    return dataset->launch_test[dataset->launch[row]] != 0;
-}
+static bool is_test(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
 
 static float input_at(const Dataset *dataset, int64_t row, int column) {
     return dataset->inputs[row * PAIR_INPUTS + column];
@@ -32,8 +30,7 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
         int64_t count = 0;
         for (int64_t row = 0; row < dataset->rows; row++) {
             if (is_test(dataset, row)) continue;
-            double x =
-                outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
+            double x = outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
             spread.minimum = fmin(spread.minimum, x);
             spread.maximum = fmax(spread.maximum, x);
             sum += pass == 0 ? x : (x - spread.mean) * (x - spread.mean);
@@ -74,8 +71,7 @@ static float normalise(const Normalisation *normalisation, int column, float x) 
     return (x - normalisation->offset[column]) * normalisation->scale[column];
 }
 
-static void put_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row,
-                    const Network *network) {
+static void put_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row, const Network *network) {
     int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
     for (int i = 0; i < samples->inputs; i++)
         samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =

@@ -31,20 +31,16 @@ static bool check_options(const Dataset *dataset, const TrainingOptions *options
                            NETWORK_MAX_LAYERS);
     int first = options->widths[0], last = options->widths[options->layers];
     if (first != PAIR_INPUTS)
-        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
-                           PAIR_INPUTS);
+        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first, PAIR_INPUTS);
     if (last != 2 && last != PAIR_CHANGES)
-        return error_input(error, "layers",
-                           "the last width is %d; 2 (relative velocity) or %d (both bodies) are known", last,
-                           PAIR_CHANGES);
+        return error_input(error, "layers", "the last width is %d; 2 (relative velocity) or %d (both bodies) are known",
+                           last, PAIR_CHANGES);
     if (options->iterations < 0)
         return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
     int64_t test_rows = 0;
-    for (int64_t row = 0; row < dataset->rows; row++)
-        test_rows += dataset->launch_test[dataset->launch[row]] != 0;
+    for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset->launch_test[dataset->launch[row]] != 0;
     if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, "dataset",
-                       "%lld rows to train on and %lld to test on; at least one of each is needed",
+    return error_input(error, "dataset", "%lld rows to train on and %lld to test on; at least one of each is needed",
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 
@@ -133,9 +129,8 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
         trainer->best_loss = train_loss;
     }
     if (is_scored(trainer->iteration)) report_score(trainer);
-    trainer->finished =
-        !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
-        trainer->iteration == trainer->options->iterations;
+    trainer->finished = !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
+                        trainer->iteration == trainer->options->iterations;
     return true;
 }
 
@@ -167,8 +162,8 @@ static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *netw
     return ok;
 }
 
-static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer,
-                  const TrainingOptions *options, const Progress *progress, Error *error) {
+static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
+                  const Progress *progress, Error *error) {
     Loss *loss = loss_create(network, error);
     Samples *train_samples = samples_create(dataset, network, false, error);
     Samples *test_samples = samples_create(dataset, network, true, error);
@@ -181,16 +176,15 @@ static bool train(Network *network, const Dataset *dataset, const Optimizer *opt
                        .parameters = network_parameter_count(network),
                        .iteration = -1,
                        .scored = -1};
-    bool ok = loss != NULL && train_samples != NULL && test_samples != NULL &&
-              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
+    bool ok = loss != NULL && train_samples != NULL && test_samples != NULL && score_constant(&trainer, error) &&
+              minimize(&trainer, optimizer, network, error);
     samples_destroy(test_samples);
     samples_destroy(train_samples);
     loss_destroy(loss);
     return ok;
 }
 
-Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
-                      Error *error) {
+Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error) {
     /* GSL's default handler ends the process. */
     gsl_set_error_handler_off();
     const Optimizer *optimizer = find_optimizer(options->optimizer, error);

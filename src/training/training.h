@@ -35,5 +35,4 @@ typedef struct TrainingOptions {
 
    NULL with error set: shapes that do not fit, no rows to train on or to test on, memory, or training that
    left the finite numbers (with the iteration). */
-Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
-                      Error *error);
+Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error);

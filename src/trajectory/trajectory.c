@@ -14,8 +14,7 @@ static const double MAX_BYTES = 2147483648.0;
 
 static double measure(double frames, double bodies, double contacts) {
     double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 1024;
-    return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) +
-           small;
+    return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
 
 /* calloc, but never NULL for no items. */
@@ -30,8 +29,8 @@ static bool allocate(Trajectory *t) {
     t->velocity = zeros(poses, sizeof *t->velocity);
     t->angular_velocity = zeros(poses, sizeof *t->angular_velocity);
     t->contact_start = zeros((size_t)t->frames + 1, sizeof *t->contact_start);
-    return t->size != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL &&
-           t->velocity != NULL && t->angular_velocity != NULL && t->contact_start != NULL;
+    return t->size != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL && t->velocity != NULL &&
+           t->angular_velocity != NULL && t->contact_start != NULL;
 }
 
 Trajectory *trajectory_create(int frames, int bodies, Error *error) {

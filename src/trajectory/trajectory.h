@@ -13,11 +13,11 @@
 enum { TRAJECTORY_VERSION = 1, TRAJECTORY_NAME_SIZE = 128 };
 
 typedef struct TrajectoryContact {
-    int32_t a, b;             /* body indices, a < b */
-    uint32_t feature;         /* four edge bytes (collision/manifold.h) */
-    Vec2 point, normal;       /* world; unit normal from a to b */
-    float normal_impulse;     /* N s, accumulated over the step */
-    float tangent_impulse;    /* N s, along normal turned a quarter clockwise */
+    int32_t a, b;          /* body indices, a < b */
+    uint32_t feature;      /* four edge bytes (collision/manifold.h) */
+    Vec2 point, normal;    /* world; unit normal from a to b */
+    float normal_impulse;  /* N s, accumulated over the step */
+    float tangent_impulse; /* N s, along normal turned a quarter clockwise */
 } TrajectoryContact;
 
 typedef struct Trajectory {
@@ -36,8 +36,8 @@ typedef struct Trajectory {
     float *angle;                      /* [T, N] */
     Vec2 *velocity;                    /* [T, N] m/s */
     float *angular_velocity;           /* [T, N] rad/s */
-    int64_t *contact_start;            /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
-    TrajectoryContact *contacts;       /* [contact_start[T]] */
+    int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
+    TrajectoryContact *contacts; /* [contact_start[T]] */
     size_t contact_capacity;
     int last_step; /* while contacts are added: contact_start is right up to the end of this step */
 } Trajectory;
@@ -78,13 +78,13 @@ bool trajectory_write_hashes(const Trajectory *trajectory, const char *path, Err
 
 /* Where two trajectories part. */
 typedef struct TrajectoryDifference {
-    bool equal;         /* every bit of every pose and velocity */
-    char what[256];     /* a difference that no distance tells: "bodies: 12 and 67", "frames: 301 and 481", or a body
+    bool equal;      /* every bit of every pose and velocity */
+    char what[256];  /* a difference that no distance tells: "bodies: 12 and 67", "frames: 301 and 481", or a body
                            that only one of the two has in that frame; else empty */
-    int frame, body;    /* the first that differ (-1, -1 where `what` says it all) */
-    double distance;    /* m, between the two positions there */
-    double angle;       /* rad */
-    double speed;       /* m/s, between the two velocities there */
+    int frame, body; /* the first that differ (-1, -1 where `what` says it all) */
+    double distance; /* m, between the two positions there */
+    double angle;    /* rad */
+    double speed;    /* m/s, between the two velocities there */
     int max_frame, max_body; /* where the two are farthest apart over the frames of both; -1, -1 if nowhere */
     double max_distance;     /* m */
 } TrajectoryDifference;

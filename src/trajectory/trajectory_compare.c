@@ -43,8 +43,7 @@ static bool different_worlds(const Trajectory *a, const Trajectory *b, char *wha
     return false;
 }
 
-static void describe_first(const Trajectory *a, const Trajectory *b, int frame, int body,
-                           TrajectoryDifference *d) {
+static void describe_first(const Trajectory *a, const Trajectory *b, int frame, int body, TrajectoryDifference *d) {
     d->frame = frame;
     d->body = body;
     bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
@@ -84,8 +83,7 @@ double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame) 
     double largest = 0;
     for (int body = 0; body < bodies; body++) {
         if (!trajectory_has(a, frame, body) || !trajectory_has(b, frame, body)) continue;
-        largest =
-            fmax(largest, distance(a->position[pose(a, frame, body)], b->position[pose(b, frame, body)]));
+        largest = fmax(largest, distance(a->position[pose(a, frame, body)], b->position[pose(b, frame, body)]));
     }
     return largest;
 }

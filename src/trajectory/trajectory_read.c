@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size,
-                        Error *error) {
+static bool read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error) {
     void *data = npz_read(file, name, type, 0, NULL, error);
     if (data != NULL) memcpy(value, data, size);
     free(data);
@@ -27,12 +26,10 @@ static bool read_name(NpzFile *file, const char *name, char text[TRAJECTORY_NAME
 
 static bool read_version(NpzFile *file, const char *path, Error *error) {
     int32_t version = 0;
-    if (!npz_has(file, "version") || !npz_has(file, "position"))
-        return error_input(error, path, "no trajectory");
+    if (!npz_has(file, "version") || !npz_has(file, "position")) return error_input(error, path, "no trajectory");
     if (!read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
     return version == TRAJECTORY_VERSION ||
-           error_input(error, path, "trajectory version %d; this program reads %d", (int)version,
-                       TRAJECTORY_VERSION);
+           error_input(error, path, "trajectory version %d; this program reads %d", (int)version, TRAJECTORY_VERSION);
 }
 
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
@@ -125,8 +122,7 @@ static bool check_head(const Trajectory *t, const char *path, Error *error) {
     for (int body = 0; body < t->bodies; body++) {
         Vec2 size = t->size[body];
         if (!finite(size) || !(size.x > 0) || !(size.y > 0))
-            return error_input(error, path,
-                               "body %d: its size must be finite and greater than 0 (got %g x %g)", body,
+            return error_input(error, path, "body %d: its size must be finite and greater than 0 (got %g x %g)", body,
                                (double)size.x, (double)size.y);
         if (t->fixed[body] > 1)
             return error_input(error, path, "body %d: 'fixed' must be 0 or 1 (got %d)", body, t->fixed[body]);
@@ -145,8 +141,7 @@ static bool check_pose(const Trajectory *t, int frame, int body, const char *pat
         missing += isnan(state[k]) != 0;
     }
     if (known != 6 && missing != 6)
-        return error_input(error, path, "frame %d, body %d: pose and velocity are not all finite", frame,
-                           body);
+        return error_input(error, path, "frame %d, body %d: pose and velocity are not all finite", frame, body);
     if (missing == 6 && frame > 0 && trajectory_has(t, frame - 1, body))
         return error_input(error, path, "frame %d, body %d: it vanishes", frame, body);
     return true;
@@ -154,10 +149,10 @@ static bool check_pose(const Trajectory *t, int frame, int body, const char *pat
 
 static bool check_contact(const Trajectory *t, int step, int64_t index, const char *path, Error *error) {
     const TrajectoryContact *contact = &t->contacts[index];
-    if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies ||
-        !trajectory_has(t, step, contact->a) || !trajectory_has(t, step, contact->b))
-        return error_input(error, path, "step %d, contact %lld: no pair of bodies that are there (%d and %d)",
-                           step, (long long)index, (int)contact->a, (int)contact->b);
+    if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies || !trajectory_has(t, step, contact->a) ||
+        !trajectory_has(t, step, contact->b))
+        return error_input(error, path, "step %d, contact %lld: no pair of bodies that are there (%d and %d)", step,
+                           (long long)index, (int)contact->a, (int)contact->b);
     if (!finite(contact->point) || !finite(contact->normal) || !isfinite(contact->normal_impulse) ||
         !isfinite(contact->tangent_impulse))
         return error_input(error, path, "step %d, contact %lld: not finite", step, (long long)index);

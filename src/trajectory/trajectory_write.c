@@ -23,8 +23,8 @@ static bool split_contacts(ContactArrays *arrays, const TrajectoryContact *conta
     arrays->point = calloc(room, sizeof *arrays->point);
     arrays->normal = calloc(room, sizeof *arrays->normal);
     arrays->impulse = calloc(room, sizeof *arrays->impulse);
-    if (arrays->bodies == NULL || arrays->feature == NULL || arrays->point == NULL ||
-        arrays->normal == NULL || arrays->impulse == NULL)
+    if (arrays->bodies == NULL || arrays->feature == NULL || arrays->point == NULL || arrays->normal == NULL ||
+        arrays->impulse == NULL)
         return false;
     for (size_t i = 0; i < count; i++) {
         arrays->bodies[i][0] = contacts[i].a;
@@ -82,8 +82,8 @@ static void print_csv(const Trajectory *t, FILE *out) {
             if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
             size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
             fprintf(out, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", frame, body, (double)t->position[i].x,
-                    (double)t->position[i].y, (double)t->angle[i], (double)t->velocity[i].x,
-                    (double)t->velocity[i].y, (double)t->angular_velocity[i]);
+                    (double)t->position[i].y, (double)t->angle[i], (double)t->velocity[i].x, (double)t->velocity[i].y,
+                    (double)t->angular_velocity[i]);
         }
     }
 }
@@ -95,8 +95,7 @@ static void print_hashes(const Trajectory *t, FILE *out) {
 }
 
 /* The text is made in memory and in the C locale, whose decimal point is a point. */
-static bool write_text(const Trajectory *t, void (*print)(const Trajectory *, FILE *), const char *path,
-                       Error *error) {
+static bool write_text(const Trajectory *t, void (*print)(const Trajectory *, FILE *), const char *path, Error *error) {
     char *text = NULL;
     size_t size = 0;
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);

@@ -13,12 +13,9 @@ static const int64_t starts[] = {0, -1, INT64_MAX};
 static const uint64_t hash = 0xfedcba9876543210U;
 static const uint8_t bytes[] = {0, 1, 255, 7, 8};
 static const NpzArray arrays[] = {
-    {"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix},
-    {"starts", NPZ_INT64, 1, {3}, starts},
-    {"hash", NPZ_UINT64, 0, {0}, &hash},
-    {"bytes", NPZ_UINT8, 1, {5}, bytes},
-    {"empty", NPZ_FLOAT32, 2, {0, 2}, NULL},
-    {"name", NPZ_TEXT, 0, {0}, "z\xc3\xa4h \xe2\x82\xac \xf0\x9f\xa7\xb1"},
+    {"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix}, {"starts", NPZ_INT64, 1, {3}, starts},
+    {"hash", NPZ_UINT64, 0, {0}, &hash},        {"bytes", NPZ_UINT8, 1, {5}, bytes},
+    {"empty", NPZ_FLOAT32, 2, {0, 2}, NULL},    {"name", NPZ_TEXT, 0, {0}, "z\xc3\xa4h \xe2\x82\xac \xf0\x9f\xa7\xb1"},
     {"nothing", NPZ_TEXT, 0, {0}, ""},
 };
 enum { ARRAYS = sizeof arrays / sizeof arrays[0] };
@@ -84,8 +81,7 @@ static char *file_bytes(const char *path, size_t *size) {
 /* Whatever the time zone: a zip holds local time. */
 static void same_arrays_same_bytes(void **state) {
     (void)state;
-    static const char *const zones[] = {"UTC0", "XXX-14", "XXX+12", "EST5EDT,M3.2.0,M11.1.0",
-                                        "XXX3:30YYY,J1/0,J2/0"};
+    static const char *const zones[] = {"UTC0", "XXX-14", "XXX+12", "EST5EDT,M3.2.0,M11.1.0", "XXX3:30YYY,J1/0,J2/0"};
     const char *first = temporary_path("first.npz"), *second = temporary_path("second.npz");
     write_arrays(first);
     size_t size, other_size;
@@ -95,8 +91,7 @@ static void same_arrays_same_bytes(void **state) {
         tzset();
         write_arrays(second);
         char *other = file_bytes(second, &other_size);
-        if (other_size != size || memcmp(data, other, size) != 0)
-            fail_msg("other bytes in zone %s", zones[i]);
+        if (other_size != size || memcmp(data, other, size) != 0) fail_msg("other bytes in zone %s", zones[i]);
         free(other);
     }
     /* 1980-01-01 12:00 in the first local header. */
@@ -129,14 +124,8 @@ static void mismatches_name_found_and_wanted(void **state) {
 
 static void bad_texts_are_not_written(void **state) {
     (void)state;
-    static const char *const texts[] = {"\xff",
-                                        "\x80",
-                                        "\xc3",
-                                        "\xc0\xaf",
-                                        "\xe0\x80\x80",
-                                        "\xed\xa0\x80",
-                                        "\xf4\x90\x80\x80",
-                                        "\xf8\x88\x80\x80\x80"};
+    static const char *const texts[] = {
+        "\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         NpzArray array = {"name", NPZ_TEXT, 0, {0}, texts[i]};
         Error error = {0};

@@ -31,8 +31,7 @@ static void put(const char *path, const char *data, size_t size) {
 }
 
 /* A zip of one member with these bytes. */
-static void write_member(const char *path, const char *name, const char *data, size_t size,
-                         zip_int32_t method) {
+static void write_member(const char *path, const char *name, const char *data, size_t size, zip_int32_t method) {
     remove(path);
     zip_t *archive = zip_open(path, ZIP_CREATE, NULL);
     assert_non_null(archive);
@@ -79,12 +78,10 @@ static void heads_are_read_strictly(void **state) {
     expect_head_refused(HEAD("|O", "False", "(3, 2)"), 24, "of type '|O'");
     expect_head_refused(HEAD("\33[2J", "False", "(3, 2)"), 24, "of type '', which");
     expect_head_refused(HEAD("<U2", "False", "(3,)"), 24, "an array of texts");
-    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12,
-                        "no plain array");
-    static const char *const damaged[] = {
-        "(3)",     "(3,2)",   "(,)", "(3, )",           "(3, 2,)",
-        "(-3, 2)", "(3, 2",   "3",   "(1, 1, 1, 1, 6)", "(99999999999999999999,)",
-        "( 3, 2)", "(3, 2) x"};
+    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12, "no plain array");
+    static const char *const damaged[] = {"(3)",     "(3,2)",   "(,)", "(3, )",           "(3, 2,)",
+                                          "(-3, 2)", "(3, 2",   "3",   "(1, 1, 1, 1, 6)", "(99999999999999999999,)",
+                                          "( 3, 2)", "(3, 2) x"};
     for (size_t i = 0; i < sizeof damaged / sizeof damaged[0]; i++) {
         char head[200];
         snprintf(head, sizeof head, HEAD("<f4", "False", "%s"), damaged[i]);
@@ -216,8 +213,7 @@ static void all_that_is_read_is_limited(void **state) {
     free((void *)array.data);
     NpzFile *file = open_file(path);
     int read = 0;
-    for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, array.shape, &error)) != NULL; read++)
-        free(data);
+    for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, array.shape, &error)) != NULL; read++) free(data);
     npz_close(file);
     assert_int_equal(read, 32);
     assert_error(error, ERROR_INPUT, "larger than 2 GiB together");
@@ -259,16 +255,11 @@ static void large_files_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heads_are_read_strictly),
-        cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
-        cmocka_unit_test(other_files_are_refused),
-        cmocka_unit_test(other_compressions_are_refused),
-        cmocka_unit_test(encrypted_arrays_are_refused),
-        cmocka_unit_test(a_name_twice_is_refused),
-        cmocka_unit_test(too_many_arrays_are_refused),
-        cmocka_unit_test(small_files_cannot_hold_much),
-        cmocka_unit_test(all_that_is_read_is_limited),
-        cmocka_unit_test(large_directories_are_refused),
+        cmocka_unit_test(heads_are_read_strictly),      cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
+        cmocka_unit_test(other_files_are_refused),      cmocka_unit_test(other_compressions_are_refused),
+        cmocka_unit_test(encrypted_arrays_are_refused), cmocka_unit_test(a_name_twice_is_refused),
+        cmocka_unit_test(too_many_arrays_are_refused),  cmocka_unit_test(small_files_cannot_hold_much),
+        cmocka_unit_test(all_that_is_read_is_limited),  cmocka_unit_test(large_directories_are_refused),
         cmocka_unit_test(large_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,35 +32,34 @@ static void numpy_reads_what_is_written(void **state) {
     const char *path = temporary_path("written.npz");
     Error error = {0};
     assert_ok(npz_write(path, arrays, sizeof arrays / sizeof arrays[0], &error), error);
-    run_python(
-        "import sys, zipfile, numpy as np\n"
-        "f = np.load(sys.argv[1], allow_pickle=False)\n"
-        "want = {\n"
-        "  'matrix': np.array([[1, -2.5], [0, 3e38], [-0.0, 1e-45]], '<f4'),\n"
-        "  'reals': np.array([0.1, -1e300], '<f8'),\n"
-        "  'cube': np.array([[[1, -2]], [[-2**31, 4]]], '<i4'),\n"
-        "  'features': np.array([2**32 - 1], '<u4'),\n"
-        "  'starts': np.array([0, -1, 2**63 - 1], '<i8'),\n"
-        "  'hash': np.array(0xfedcba9876543210, '<u8'),\n"
-        "  'bytes': np.array([0, 1, 255, 7, 8], 'u1').reshape(1, 1, 5, 1),\n"
-        "  'empty': np.zeros((0, 2), '<f4'),\n"
-        "  'text': np.array('z\\u00e4h \\u20ac \\U0001f9f1'),\n"
-        "  'nothing': np.array('')}\n"
-        "assert f.files == list(want), f.files\n"
-        "for name, array in want.items():\n"
-        "    got = f[name]\n"
-        "    assert got.dtype == array.dtype, (name, got.dtype)\n"
-        "    assert got.shape == array.shape, (name, got.shape)\n"
-        "    assert got.tobytes() == array.tobytes(), (name, got)\n"
-        "z = zipfile.ZipFile(sys.argv[1])\n"
-        "assert z.testzip() is None\n"
-        "for i in z.infolist():\n"
-        "    assert i.date_time == (1980, 1, 1, 12, 0, 0) and i.compress_type == zipfile.ZIP_DEFLATED, i\n"
-        "    with z.open(i) as member:\n"
-        "        assert np.lib.format.read_magic(member) == (1, 0)\n"
-        "        np.lib.format.read_array_header_1_0(member)\n"
-        "        assert member.tell() % 64 == 0, member.tell()\n",
-        path);
+    run_python("import sys, zipfile, numpy as np\n"
+               "f = np.load(sys.argv[1], allow_pickle=False)\n"
+               "want = {\n"
+               "  'matrix': np.array([[1, -2.5], [0, 3e38], [-0.0, 1e-45]], '<f4'),\n"
+               "  'reals': np.array([0.1, -1e300], '<f8'),\n"
+               "  'cube': np.array([[[1, -2]], [[-2**31, 4]]], '<i4'),\n"
+               "  'features': np.array([2**32 - 1], '<u4'),\n"
+               "  'starts': np.array([0, -1, 2**63 - 1], '<i8'),\n"
+               "  'hash': np.array(0xfedcba9876543210, '<u8'),\n"
+               "  'bytes': np.array([0, 1, 255, 7, 8], 'u1').reshape(1, 1, 5, 1),\n"
+               "  'empty': np.zeros((0, 2), '<f4'),\n"
+               "  'text': np.array('z\\u00e4h \\u20ac \\U0001f9f1'),\n"
+               "  'nothing': np.array('')}\n"
+               "assert f.files == list(want), f.files\n"
+               "for name, array in want.items():\n"
+               "    got = f[name]\n"
+               "    assert got.dtype == array.dtype, (name, got.dtype)\n"
+               "    assert got.shape == array.shape, (name, got.shape)\n"
+               "    assert got.tobytes() == array.tobytes(), (name, got)\n"
+               "z = zipfile.ZipFile(sys.argv[1])\n"
+               "assert z.testzip() is None\n"
+               "for i in z.infolist():\n"
+               "    assert i.date_time == (1980, 1, 1, 12, 0, 0) and i.compress_type == zipfile.ZIP_DEFLATED, i\n"
+               "    with z.open(i) as member:\n"
+               "        assert np.lib.format.read_magic(member) == (1, 0)\n"
+               "        np.lib.format.read_array_header_1_0(member)\n"
+               "        assert member.tell() % 64 == 0, member.tell()\n",
+               path);
 }
 
 static void expect_array(NpzFile *file, const NpzArray *wanted, size_t size) {
@@ -119,8 +118,7 @@ static void what_numpy_writes_is_read(void **state) {
 static void expect_refused(const char *expression, const char *reason) {
     const char *path = temporary_path("refused.npz");
     char program[512];
-    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n",
-             expression);
+    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
     run_python(program, path);
     Error error = {0};
     assert_null(npz_open(path, &error));

@@ -17,8 +17,7 @@ static void decimals_round_to_the_nearest_float(void **state) {
     (void)state;
     static const char *const texts[] = {"0",   "1",    "-1",    "+2.5",         ".5",    "5.",
                                         "1e3", "1E-3", "-0.05", "3.4028235e38", "1e-45", "0.1"};
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
-        assert_true(parsed(texts[i]) == strtof(texts[i], NULL));
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) assert_true(parsed(texts[i]) == strtof(texts[i], NULL));
     assert_true(signbit(parsed("-0")));
     assert_true(parsed("1e-60") == 0);
 }
@@ -40,12 +39,10 @@ static void fractions_divide_in_float(void **state) {
 static void what_is_no_decimal_is_refused(void **state) {
     (void)state;
     static const char *const texts[] = {
-        "",      " 1",    "1 ",         "\t1",       "1x",      "0x10",
-        "inf",   "-inf",  "nan",        "infinity",  ".",       "+",
-        "-",     "e5",    "1e",         "1e+",       "1,5",     "--1",
-        "1e39",  "-1e39", "1/0",        "1/-0",      "1/",      "/2",
-        "1/2/3", "1/ 2",  "1e38/1e-38", "1e39/1e39", "1/1e-60", "1e99999999999999999999",
-        "1_000", "1..2",  "0x1p3"};
+        "",      " 1",   "1 ",   "\t1", "1x",    "0x10", "inf",        "-inf",      "nan",     "infinity",
+        ".",     "+",    "-",    "e5",  "1e",    "1e+",  "1,5",        "--1",       "1e39",    "-1e39",
+        "1/0",   "1/-0", "1/",   "/2",  "1/2/3", "1/ 2", "1e38/1e-38", "1e39/1e39", "1/1e-60", "1e99999999999999999999",
+        "1_000", "1..2", "0x1p3"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         float value = 7;
         if (parse_float(texts[i], &value)) fail_msg("'%s' is taken as %g", texts[i], (double)value);
@@ -95,8 +92,7 @@ static void check_range(const char *text, double first, double step, int decimal
     for (int i = 0; i < count; i++) {
         char decimal[32];
         snprintf(decimal, sizeof decimal, "%.*f", decimals, first + i * step);
-        if (range_value(&range, i) != strtof(decimal, NULL))
-            fail_msg("%s: value %d is not %s", text, i, decimal);
+        if (range_value(&range, i) != strtof(decimal, NULL)) fail_msg("%s: value %d is not %s", text, i, decimal);
     }
 }
 
@@ -113,10 +109,9 @@ static void ranges_give_the_decimals(void **state) {
 
 static void bad_ranges_are_refused(void **state) {
     (void)state;
-    static const char *const texts[] = {"",           "1",        "1:2",    "1:2:",          ":2:1",
-                                        "1:2:3:4",    "2:1:0.5",  "1:2:0",  "1:2:-1",        "1:2:nan",
-                                        " 1:2:1",     "1:2:1 ",   "0:10:1", "0:1e300:1e299", "-1e308:1e308:1",
-                                        "0:1:1e-320", "0:1e999:1"};
+    static const char *const texts[] = {
+        "",        "1",      "1:2",    "1:2:",   ":2:1",          "1:2:3:4",        "2:1:0.5",    "1:2:0",    "1:2:-1",
+        "1:2:nan", " 1:2:1", "1:2:1 ", "0:10:1", "0:1e300:1e299", "-1e308:1e308:1", "0:1:1e-320", "0:1e999:1"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         FloatRange range = {0};
         if (parse_range(texts[i], 10, &range)) fail_msg("'%s' is taken", texts[i]);

@@ -4,8 +4,7 @@
 
 #include "common/settings.h"
 
-static const SettingSpec known[] = {
-    {"iterations", "sweeps"}, {"network", "a file"}, {"warm", "on or off"}, {0}};
+static const SettingSpec known[] = {{"iterations", "sweeps"}, {"network", "a file"}, {"warm", "on or off"}, {0}};
 static const SettingSpec none[] = {{0}};
 
 static Settings parsed(const char *text) {

@@ -193,8 +193,7 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
     assert_refused(write_with((NpzArray){"frame", NPZ_INT32, 2, {ROWS, 1}, integers}), "frame");
     assert_refused(write_with((NpzArray){"bodies", NPZ_INT32, 2, {ROWS, 3}, integers}), "bodies");
     assert_refused(write_with((NpzArray){"launch_test", NPZ_UINT8, 1, {LAUNCHES - 1}, bytes}), "launch_test");
-    assert_refused(write_with((NpzArray){"launch_scene", NPZ_INT32, 1, {LAUNCHES + 1}, integers}),
-                   "launch_scene");
+    assert_refused(write_with((NpzArray){"launch_scene", NPZ_INT32, 1, {LAUNCHES + 1}, integers}), "launch_scene");
     assert_refused(write_with((NpzArray){"launch_x", NPZ_INT32, 1, {LAUNCHES}, integers}), "launch_x");
 }
 

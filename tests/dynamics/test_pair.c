@@ -4,15 +4,24 @@
 #include "dynamics/pair.h"
 
 /* A box of mass 2 and inertia 0.5 on a fixed body, touching in two points below it; a third contact with another. */
-static const ProblemBody bodies[3] = {
-    {.position = {0, -10}, .angle = 0.5f, .size = {100, 20}},
-    {.position = {1, 0.5f}, .angle = 0.25f, .size = {1, 1}, .inv_mass = 0.5f, .inv_inertia = 2, .velocity = {3, -4},
-     .angular_velocity = 5},
-    {.position = {1, 1.5f}, .size = {1, 1}, .inv_mass = 1, .inv_inertia = 6, .velocity = {-1, -2},
-     .angular_velocity = -3}};
-static const ContactPoint contacts[3] = {{.a = 0, .b = 1, .normal = {0, 1}, .arm_b = {-0.5f, -0.5f}},
-                                         {.a = 0, .b = 1, .normal = {0, 1}, .arm_b = {0.5f, -0.5f}},
-                                         {.a = 1, .b = 2, .normal = {0, 1}, .arm_a = {0.5f, 0.5f}, .arm_b = {0.5f, -0.5f}}};
+static const ProblemBody bodies[3] = {{.position = {0, -10}, .angle = 0.5f, .size = {100, 20}},
+                                      {.position = {1, 0.5f},
+                                       .angle = 0.25f,
+                                       .size = {1, 1},
+                                       .inv_mass = 0.5f,
+                                       .inv_inertia = 2,
+                                       .velocity = {3, -4},
+                                       .angular_velocity = 5},
+                                      {.position = {1, 1.5f},
+                                       .size = {1, 1},
+                                       .inv_mass = 1,
+                                       .inv_inertia = 6,
+                                       .velocity = {-1, -2},
+                                       .angular_velocity = -3}};
+static const ContactPoint contacts[3] = {
+    {.a = 0, .b = 1, .normal = {0, 1}, .arm_b = {-0.5f, -0.5f}},
+    {.a = 0, .b = 1, .normal = {0, 1}, .arm_b = {0.5f, -0.5f}},
+    {.a = 1, .b = 2, .normal = {0, 1}, .arm_a = {0.5f, 0.5f}, .arm_b = {0.5f, -0.5f}}};
 static const ContactProblem problem = {.body_count = 3, .contact_count = 3, .bodies = bodies, .contacts = contacts};
 
 static void inputs_are_relative_position_velocities_spins_rotations(void **state) {

@@ -16,8 +16,7 @@ typedef struct FakeSolver {
 static bool fake_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     const FakeSolver *fake = state;
     for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] =
-            (BodyVelocity){vec2(0, problem->bodies[i].inv_mass > 0 ? fake->velocity : 0), 0};
+        solution->velocities[i] = (BodyVelocity){vec2(0, problem->bodies[i].inv_mass > 0 ? fake->velocity : 0), 0};
     for (int i = 0; i < problem->contact_count; i++)
         solution->impulses[i] = (ContactImpulse){fake->impulse + (float)i, -fake->impulse};
     return !fake->fails || error_input(error, "fake", "told to fail");

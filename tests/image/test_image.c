@@ -21,9 +21,7 @@ static int destroy(void **state) {
     return 0;
 }
 
-static uint8_t *channel(Image *image, int x, int y, int c) {
-    return &image->pixels[(y * image->width + x) * 4 + c];
-}
+static uint8_t *channel(Image *image, int x, int y, int c) { return &image->pixels[(y * image->width + x) * 4 + c]; }
 
 static void equal_pictures_have_no_difference(void **state) {
     (void)state;

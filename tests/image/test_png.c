@@ -89,9 +89,7 @@ static const PngKind kinds[] = {{"grey 1", PNG_COLOR_TYPE_GRAY, 1, false},
                                 {"rgb alpha 16", PNG_COLOR_TYPE_RGB_ALPHA, 16, false}};
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
-static uint8_t to_byte(unsigned value, unsigned largest) {
-    return (uint8_t)((value * 255 + largest / 2) / largest);
-}
+static uint8_t to_byte(unsigned value, unsigned largest) { return (uint8_t)((value * 255 + largest / 2) / largest); }
 
 /* What the format's specification says that a sample means. */
 static void expected_pixel(const PngKind *kind, int x, int y, uint8_t pixel[4]) {
@@ -212,10 +210,8 @@ static void write_text_bomb(const char *path) {
     text[size - 1] = '\0';
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png_create_info_struct(png);
-    png_text chunk = {.compression = PNG_TEXT_COMPRESSION_zTXt,
-                      .key = (char *)"Bomb",
-                      .text = text,
-                      .text_length = size - 1};
+    png_text chunk = {
+        .compression = PNG_TEXT_COMPRESSION_zTXt, .key = (char *)"Bomb", .text = text, .text_length = size - 1};
     png_init_io(png, file);
     png_set_IHDR(png, info, 1, 1, 8, PNG_COLOR_TYPE_RGB, 0, 0, 0);
     png_set_text(png, info, &chunk, 1);

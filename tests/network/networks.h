@@ -17,7 +17,6 @@ static inline Network *make_network(int layers, const int *widths, const Activat
     assert_ok(network != NULL, error);
     for (int l = 0; l < layers; l++) network->activations[l] = activations[l];
     uint32_t sequence = 1;
-    for (int p = 0; p < network_parameter_count(network); p++)
-        network->weights[0][p] = (float)next_number(&sequence);
+    for (int p = 0; p < network_parameter_count(network); p++) network->weights[0][p] = (float)next_number(&sequence);
     return network;
 }

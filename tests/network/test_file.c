@@ -8,8 +8,7 @@
 static Network *example(void) {
     Network *network =
         make_network(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_SIGMOID});
-    for (int i = 0; i < 3; i++)
-        network->input.offset[i] = 0.1f * (float)i, network->input.scale[i] = (float)i + 0.3f;
+    for (int i = 0; i < 3; i++) network->input.offset[i] = 0.1f * (float)i, network->input.scale[i] = (float)i + 0.3f;
     network->output.offset[1] = -7.7f, network->output.scale[1] = 1e-3f;
     strcpy(network->inputs, "x y angle \xc3\xa4");
     strcpy(network->outputs, "vx vy");
@@ -148,8 +147,7 @@ static void unknown_activations_are_refused(void **state) {
     (void)state;
     assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "relu"}), "activation 0");
     assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, ""}), "0 activations for 1 layers");
-    assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "linear linear"}),
-                   "more activations");
+    assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "linear linear"}), "more activations");
 }
 
 static void damaged_files_are_refused(void **state) {

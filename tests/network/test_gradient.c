@@ -96,8 +96,7 @@ static void backward_is_the_finite_difference(void **state) {
 
 static void gradients_add_up(void **state) {
     (void)state;
-    Case made =
-        make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
+    Case made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
     double once[64] = {0}, twice[64] = {0};
     assert_true(made.count <= 64);
     add_gradient(&made, once);

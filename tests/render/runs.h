@@ -11,9 +11,7 @@ static inline Vec2 *run_position(Trajectory *run, int frame, int body) {
     return &run->position[frame * run->bodies + body];
 }
 
-static inline float *run_angle(Trajectory *run, int frame, int body) {
-    return &run->angle[frame * run->bodies + body];
-}
+static inline float *run_angle(Trajectory *run, int frame, int body) { return &run->angle[frame * run->bodies + body]; }
 
 /* Two boxes on a wide ground, one of them turning, and a bomb that appears in frame 2 and falls. */
 static inline Trajectory *run_make(const char *method, int frames) {

@@ -105,8 +105,7 @@ static void wild_numbers_leave_a_camera(void **state) {
     static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -3e38F, 0};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         for (int body = 0; body < RUN_BODIES; body++)
-            for (int frame = 0; frame < run->frames; frame++)
-                *run_position(run, frame, body) = vec2(bad[i], bad[i]);
+            for (int frame = 0; frame < run->frames; frame++) *run_position(run, frame, body) = vec2(bad[i], bad[i]);
         Camera camera = camera_fit(run, 900, 880);
         assert_true(isfinite(camera.left) && isfinite(camera.top) && camera.scale > 0);
     }

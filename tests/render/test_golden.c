@@ -56,8 +56,7 @@ static void unload(Golden *golden) {
 
 static Image *draw(const Golden *golden, RenderContext context) {
     Error error = {0};
-    RenderOptions options = {
-        .width = golden->image->width, .height = golden->image->height, .context = context};
+    RenderOptions options = {.width = golden->image->width, .height = golden->image->height, .context = context};
     const Trajectory *const panels[PANELS] = {golden->panels[0], golden->panels[1]};
     Renderer *renderer = renderer_create(panels, PANELS, &options, &error);
     assert_ok(renderer != NULL, error);
@@ -77,8 +76,7 @@ static int compare(const Golden *golden) {
         if (!difference.equal) {
             char path[PATH_MAX];
             Error error = {0};
-            snprintf(path, sizeof path, "actual_%s_%06d_%s.png", golden->scene, golden->frame,
-                     contexts[i].name);
+            snprintf(path, sizeof path, "actual_%s_%06d_%s.png", golden->scene, golden->frame, contexts[i].name);
             image_write_png(actual, path, NULL, 0, &error);
             print_error("%s, frame %d, %s: %lld pixels differ, by up to %d, the first at (%d, %d); see %s\n",
                         golden->scene, golden->frame, contexts[i].name, (long long)difference.pixels,
@@ -98,8 +96,7 @@ static void golden_frames_are_drawn_again(void **state) {
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         Golden golden;
         if (entry->d_name[0] == '.') continue;
-        if (!parse_name(entry->d_name, &golden))
-            fail_msg("%s/%s is no SCENE_NNNNNN.png", FRAMES, entry->d_name);
+        if (!parse_name(entry->d_name, &golden)) fail_msg("%s/%s is no SCENE_NNNNNN.png", FRAMES, entry->d_name);
         load(&golden, entry->d_name);
         different += compare(&golden);
         unload(&golden);

@@ -11,8 +11,8 @@ static Trajectory *runs[RENDER_PANELS_MAX];
 
 static int make(void **state) {
     (void)state;
-    static const char *const methods[] = {
-        "engine", "pair-net:network=a/b.npz", "momentum", "x:y=1", "pair-net", "engine"};
+    static const char *const methods[] = {"engine", "pair-net:network=a/b.npz", "momentum", "x:y=1", "pair-net",
+                                          "engine"};
     for (int i = 0; i < RENDER_PANELS_MAX; i++) panels[i] = runs[i] = run_make(methods[i], 12);
     return 0;
 }
@@ -71,8 +71,7 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     Error error = {0};
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
-    Image *last = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 5),
-          *later = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 9);
+    Image *last = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 9);
     Image *a = image_create(640, 360, &error), *b = image_create(640, 360, &error);
     const Rect *rects = picture.layout.panels;
     copy_panel(a, last, &rects[1]);

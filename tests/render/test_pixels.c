@@ -11,8 +11,7 @@
 static const double PI = 3.14159265358979323846;
 
 static Shape box(double x, double y, double width, double height) {
-    return (Shape){
-        .x = x, .y = y, .half_width = width / 2, .half_height = height / 2, .cosine = 1, .fill = WHITE};
+    return (Shape){.x = x, .y = y, .half_width = width / 2, .half_height = height / 2, .cosine = 1, .fill = WHITE};
 }
 
 static Shape turned(Shape shape, double angle) {
@@ -37,8 +36,7 @@ static void assert_only(const Image *image, Rect rect, uint32_t color) {
     for (int y = 0; y < SCREEN_SIDE; y++)
         for (int x = 0; x < SCREEN_SIDE; x++) {
             bool inside = x >= rect.left && x < rect.right && y >= rect.top && y < rect.bottom;
-            if (rgb(image, x, y) != (inside ? color : BLACK))
-                fail_msg("pixel %d, %d: %06x", x, y, rgb(image, x, y));
+            if (rgb(image, x, y) != (inside ? color : BLACK)) fail_msg("pixel %d, %d: %06x", x, y, rgb(image, x, y));
             assert_int_equal(pixel(image, x, y)[3], 255);
         }
 }
@@ -91,8 +89,7 @@ static void moving_by_whole_pixels_moves_the_pixels(void **state) {
     shape.x += 17, shape.y += 23;
     const Image *after = paint(shape);
     for (int y = 0; y < SCREEN_SIDE - 23; y++)
-        for (int x = 0; x < SCREEN_SIDE - 17; x++)
-            assert_int_equal(rgb(before, x, y), rgb(after, x + 17, y + 23));
+        for (int x = 0; x < SCREEN_SIDE - 17; x++) assert_int_equal(rgb(before, x, y), rgb(after, x + 17, y + 23));
     image_destroy(before);
 }
 
@@ -140,8 +137,7 @@ static void the_band_tells_quarter_turns(void **state) {
         Shape shape = turned(box(48, 48, 40, 40), quarter * PI / 2);
         shape.band = 8, shape.band_color = 0xFF0000;
         const Image *image = paint(shape);
-        for (int i = 0; i < 4; i++)
-            assert_int_equal(rgb(image, at[i][0], at[i][1]), i == quarter ? 0xFF0000 : WHITE);
+        for (int i = 0; i < 4; i++) assert_int_equal(rgb(image, at[i][0], at[i][1]), i == quarter ? 0xFF0000 : WHITE);
     }
 }
 
@@ -168,8 +164,8 @@ static void what_has_no_place_is_not_painted(void **state) {
     (void)state;
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 3e9};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        Shape shapes[] = {box(bad[i], 10, 5, 5), box(10, bad[i], 5, 5), box(10, 10, NAN, 5),
-                          box(10, 10, 5, -3), turned(box(10, 10, 5, 5), NAN)};
+        Shape shapes[] = {box(bad[i], 10, 5, 5), box(10, bad[i], 5, 5), box(10, 10, NAN, 5), box(10, 10, 5, -3),
+                          turned(box(10, 10, 5, 5), NAN)};
         for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++)
             drawing_add_shape(&drawing, &shapes[k], &everything);
     }

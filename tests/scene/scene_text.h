@@ -26,9 +26,7 @@ static inline Scene *read_bytes(const void *text, size_t size, Error *error) {
     return scene_read(write_scene(text, size), error);
 }
 
-static inline Scene *read_text(const char *text, Error *error) {
-    return read_bytes(text, strlen(text), error);
-}
+static inline Scene *read_text(const char *text, Error *error) { return read_bytes(text, strlen(text), error); }
 
 /* A scene that must be in order. */
 static inline Scene *good_scene(const char *text) {

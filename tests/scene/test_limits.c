@@ -59,8 +59,7 @@ static void ten_thousand_bodies_are_the_most(void **state) {
     text_expect(&text, "10006:5: error: a scene may have at most 10000 bodies (here they become 10001)");
 }
 
-#define ROW(count) \
-    "  - {pattern: row, count: " count ", spacing: [0, 1], size: [1, 1], mass: 1, position: [0, 0]}\n"
+#define ROW(count) "  - {pattern: row, count: " count ", spacing: [0, 1], size: [1, 1], mass: 1, position: [0, 0]}\n"
 #define PYRAMID(rows) \
     "  - {pattern: pyramid, count: " rows ", spacing: [2, 2], size: [1, 1], mass: 1, position: [0, 0]}\n"
 
@@ -106,10 +105,10 @@ static void aliases_of_aliases_are_refused(void **state) {
     (void)state;
     Text text = text_new("a: &a [x, x, x, x, x, x, x, x, x]\n");
     for (int level = 1; level < 20; level++)
-        text.size += (size_t)sprintf(
-            text.data + text.size, "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", 'a' + level,
-            'a' + level, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1,
-            'a' + level - 1, 'a' + level - 1, 'a' + level - 1);
+        text.size +=
+            (size_t)sprintf(text.data + text.size, "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", 'a' + level,
+                            'a' + level, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1,
+                            'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1);
     text_expect(&text, "1:7: error: anchors (&) are not allowed in a scene");
 }
 
@@ -160,23 +159,13 @@ static void damage(char *text, size_t *size, uint64_t *seed) {
     for (uint32_t changes = 1 + next_random(seed) % 4; changes > 0 && *size > 16; changes--) {
         size_t at = next_random(seed) % (*size - 8), gone = 1 + next_random(seed) % 8;
         switch (next_random(seed) % 8) {
-        case 0:
-            *size = at + 1;
-            break;
-        case 1:
-            memmove(text + at, text + at + gone, *size - at - gone), *size -= gone;
-            break;
+        case 0: *size = at + 1; break;
+        case 1: memmove(text + at, text + at + gone, *size - at - gone), *size -= gone; break;
         case 2:
-        case 3:
-            text[at] = " \t\n:-[]{},#\"'&*!|>%?"[next_random(seed) % 20];
-            break;
+        case 3: text[at] = " \t\n:-[]{},#\"'&*!|>%?"[next_random(seed) % 20]; break;
         case 4:
-        case 5:
-            text[at] = (char)next_random(seed);
-            break;
-        default:
-            text[at] = (char)(text[at] ^ 1 << next_random(seed) % 8);
-            break;
+        case 5: text[at] = (char)next_random(seed); break;
+        default: text[at] = (char)(text[at] ^ 1 << next_random(seed) % 8); break;
         }
     }
 }

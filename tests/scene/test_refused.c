@@ -58,8 +58,7 @@ static const Refused numbers[] = {
     {"dt: 1e-6\n", "1:5: error: dt must be from 1e-05 to 1 s (got 1e-6)"},
     {"iterations: 0\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 0)"},
     {"iterations: 2.5\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 2.5)"},
-    {"iterations: 1000001\n",
-     "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
+    {"iterations: 1000001\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
     {"iterations: 99999999999999999999\n",
      "1:13: error: iterations must be a whole number from 1 to 1000000 (got 99999999999999999999)"},
     {"frames: [1]\n", "1:9: error: frames must be a whole number from 1 to 1000000 (got a list)"},
@@ -68,16 +67,13 @@ static const Refused numbers[] = {
     {"camera: {center: [0, 0]}\n", "1:9: error: a camera needs the key 'size'"},
     {"camera: {size: [0, 1]}\n", "1:17: error: size must be greater than 0 (got 0)"},
     {"camera: {zoom: 1}\n", "1:10: error: unknown key 'zoom'; a camera has: center, size"},
-    {"dt: " TEXT_64 "\n",
-     "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+    {"dt: " TEXT_64 "\n", "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused bodies[] = {
     {BODY("size: [1, 1], mass: -10, position: [0, 0]"), "6:26: error: mass must be greater than 0 (got -10)"},
-    {BODY("size: [1, 1], mass: 1e10, position: [0, 0]"),
-     "6:26: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"},
-    {BODY("size: [1, 1], mass: {a: 1}, position: [0, 0]"),
-     "6:26: error: mass must be a number (got a mapping)"},
+    {BODY("size: [1, 1], mass: 1e10, position: [0, 0]"), "6:26: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"},
+    {BODY("size: [1, 1], mass: {a: 1}, position: [0, 0]"), "6:26: error: mass must be a number (got a mapping)"},
     {BODY("size: [1, 0]"), "6:16: error: size must be greater than 0 (got 0)"},
     {BODY("size: [-1, 1]"), "6:13: error: size must be greater than 0 (got -1)"},
     {BODY("size: [1, 1e5]"), "6:16: error: size must be from 0.001 to 10000 m (got 1e5)"},
@@ -88,8 +84,7 @@ static const Refused bodies[] = {
     {BODY("friction: -0.1"), "6:16: error: friction must be from 0 to 10 (got -0.1)"},
     {BODY("friction: 11"), "6:16: error: friction must be from 0 to 10 (got 11)"},
     {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
-    {BODY("size: [1, 1], position: [0, 0], static: off"),
-     "6:5: error: a body needs the key 'mass', or 'static: true'"},
+    {BODY("size: [1, 1], position: [0, 0], static: off"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
     {BODY(BOX ", static: true"), "6:26: error: a static body has no mass"},
     {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
      "6:60: error: a static body has no velocity"},
@@ -100,8 +95,7 @@ static const Refused bodies[] = {
     {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
     {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
     {BODY(BOX ", spacing: [1, 1]"), "6:56: error: spacing needs the key 'pattern' beside it"},
-    {BODY(BOX ", pattern: row, count: 0"),
-     "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
+    {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
     {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
     {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
      "6:68: error: body 3 of the pattern would lie at (0, 1.5e+06), beyond 1e+06 m"},
@@ -119,10 +113,8 @@ static const Refused bombs[] = {
     {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
     {BASE GROUND "bomb: {" BOMB ", frame: 301}\n",
      "7:7: error: the bomb would come in frame 301, after the last (frames: 300)"},
-    {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n",
-     "7:55: error: velocity must be a list of two numbers (got 3)"},
-    {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n",
-     "7:55: error: a velocity law needs the key 'times_position'"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n", "7:55: error: velocity must be a list of two numbers (got 3)"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n", "7:55: error: a velocity law needs the key 'times_position'"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {times: 3}}\n",
      "7:56: error: unknown key 'times'; a velocity law has: times_position"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
@@ -131,8 +123,7 @@ static const Refused bombs[] = {
 
 static const Refused networks[] = {
     {BASE GROUND "networks: x.npz\n", "7:11: error: networks is a mapping of methods to files (got x.npz)"},
-    {BASE GROUND "networks: {Pair: x.npz}\n",
-     "7:12: error: a method's name is made of a-z, 0-9 and - (got Pair)"},
+    {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name is made of a-z, 0-9 and - (got Pair)"},
     {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network is the path of a file (got a list)"},
     {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network is the path of a file (got nothing)"},
     {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network is the path of a file (got b?c)"},
@@ -141,9 +132,8 @@ static const Refused networks[] = {
      "7:60: error: a scene may name at most 8 networks"},
     {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
      "7:15: error: the path of a network may have at most 511 bytes"},
-    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",
-     "7:12: error: a method's name is made of a-z, 0-9 and - (got "
-     "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n", "7:12: error: a method's name is made of a-z, 0-9 and - (got "
+                                                         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused yaml[] = {
@@ -210,10 +200,9 @@ static void syntax_errors_have_place_and_excerpt(void **state) {
 
 static void excerpt_points_at_the_value(void **state) {
     (void)state;
-    expect_refused("dt: 1/60\nframes: few\n",
-                   "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
-                   "    2 | frames: few\n"
-                   "      |         ^");
+    expect_refused("dt: 1/60\nframes: few\n", "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
+                                              "    2 | frames: few\n"
+                                              "      |         ^");
     expect_refused("dt: 1/60\r\nframes: few\r\n",
                    "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
                    "    2 | frames: few\n"
@@ -222,13 +211,12 @@ static void excerpt_points_at_the_value(void **state) {
 
 static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     (void)state;
-    expect_refused(
-        "{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
-        "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
-        "iterations, "
-        "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks\n"
-        "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
-        "      |   ^");
+    expect_refused("{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+                   "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
+                   "iterations, "
+                   "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks\n"
+                   "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+                   "      |   ^");
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
@@ -274,13 +262,12 @@ static void excerpt_hides_what_does_not_print(void **state) {
 
 static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
     (void)state;
-    expect_refused(
-        "{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
-        "1:10: error: unknown key 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'; a scene has: gravity, dt, "
-        "iterations, warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, "
-        "networks\n"
-        "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
-        "      |          ^");
+    expect_refused("{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
+                   "1:10: error: unknown key 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'; a scene has: gravity, dt, "
+                   "iterations, warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, "
+                   "networks\n"
+                   "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
+                   "      |          ^");
     expect_refused("[" TEXT_64 TEXT_64 ", &a b, " TEXT_64 "]\n",
                    "1:135: error: anchors (&) are not allowed in a scene\n"
                    "    1 | ...aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa, &a b, "

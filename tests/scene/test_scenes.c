@@ -130,12 +130,8 @@ static void every_key_reaches_its_member(void **state) {
                           .angle = 0.1f,
                           .velocity = {1, 2},
                           .angular_velocity = 0.25f};
-    const BodyDef bomb = {.size = {2, 3},
-                          .mass = 7,
-                          .position = {5, 6},
-                          .angle = 0.5f,
-                          .velocity = {3, 4},
-                          .angular_velocity = -2};
+    const BodyDef bomb = {
+        .size = {2, 3}, .mass = 7, .position = {5, 6}, .angle = 0.5f, .velocity = {3, 4}, .angular_velocity = -2};
     assert_same_body(&scene->bodies[0], &body);
     BodyDef found = scene_bomb_body(scene);
     assert_same_body(&found, &bomb);
@@ -182,9 +178,8 @@ static void rows_go_by_their_spacing(void **state) {
 static void line_ends_and_byte_order_mark_do_not_matter(void **state) {
     (void)state;
     Scene *unix_ends = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
-    Scene *dos_ends =
-        good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
-                   "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
+    Scene *dos_ends = good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
+                                 "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
     assert_int_equal(scene_hash(unix_ends), scene_hash(dos_ends));
     scene_destroy(unix_ends);
     scene_destroy(dos_ends);
@@ -263,20 +258,18 @@ static void hash_changes_with_every_physical_value(void **state) {
 static void hash_keeps_with_all_else(void **state) {
     (void)state;
     uint64_t hash = hash_of(BASE, bodies[0], bombs[0]);
-    assert_int_equal(
-        hash, hash_text("# comment\nframes: 200 # not physics\niterations: +10\ndt: 1/60\n"
-                        "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
-                        "networks: {pair-net: x.npz}\nbomb:\n  mass: 1\n  size: [1, 1]\n  y: 1\n  x: 1\n"
-                        "bodies: [{position: [0, 0], friction: 0.2, size: [1, 1], mass: 1.0}]\n"));
+    assert_int_equal(hash, hash_text("# comment\nframes: 200 # not physics\niterations: +10\ndt: 1/60\n"
+                                     "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
+                                     "networks: {pair-net: x.npz}\nbomb:\n  mass: 1\n  size: [1, 1]\n  y: 1\n  x: 1\n"
+                                     "bodies: [{position: [0, 0], friction: 0.2, size: [1, 1], mass: 1.0}]\n"));
     Scene *scene = shipped("single");
     uint64_t without_mass = scene_hash(scene);
     scene->bodies[0].mass = 7; /* the ground is static */
     assert_int_equal(scene_hash(scene), without_mass);
     scene_destroy(scene);
     /* The velocity counts and not the law that gave it. */
-    assert_int_equal(
-        hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: [-3, -6]}"),
-        hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: {times_position: -1.5}}"));
+    assert_int_equal(hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: [-3, -6]}"),
+                     hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: {times_position: -1.5}}"));
 }
 
 static void world_has_the_bodies_in_order_and_the_bomb_last(void **state) {
@@ -286,8 +279,7 @@ static void world_has_the_bodies_in_order_and_the_bomb_last(void **state) {
     World *world = scene_world(scene, &error);
     assert_ok(world != NULL, error);
     assert_int_equal(world_body_count(world), 68);
-    for (int i = 0; i < 67; i++)
-        assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
+    for (int i = 0; i < 67; i++) assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
     assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
     assert_same_vector(world_bodies(world)[67].velocity, vec2(-1.5f * scene->bomb.body.position.x, -22.5f));
     world_destroy(world);

@@ -45,7 +45,8 @@ static void every_launch_has_the_bits_of_box2d_lite(void **state) {
     const int frames[3] = {60, 120, 300};
     int launches = 0;
     for (; fgets(line, sizeof line, file) != NULL; launches++) {
-        assert_int_equal(sscanf(line, "%31[^,],%15[^,],%llx,%llx,%llx", name, x, &hashes[0], &hashes[1], &hashes[2]), 5);
+        assert_int_equal(sscanf(line, "%31[^,],%15[^,],%llx,%llx,%llx", name, x, &hashes[0], &hashes[1], &hashes[2]),
+                         5);
         Scene *scene = read_scene(name);
         scene->frames = 300;
         scene->bomb.frame = 0;

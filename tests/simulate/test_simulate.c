@@ -138,10 +138,9 @@ static void methods_are_found_by_name(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trajectory_says_what_it_is),
-                                       cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
-                                       cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
-                                       cmocka_unit_test(a_run_that_cannot_go_on_says_why),
-                                       cmocka_unit_test(methods_are_found_by_name)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_trajectory_says_what_it_is), cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
+        cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
+        cmocka_unit_test(a_run_that_cannot_go_on_says_why), cmocka_unit_test(methods_are_found_by_name)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

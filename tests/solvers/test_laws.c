@@ -6,7 +6,8 @@
 static void a_free_box_falls_as_it_should(void **state) {
     (void)state;
     World *world = make_world();
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
     ContactSolver engine = make_engine("");
     const int k = 120;
     run(world, &engine, k);
@@ -39,8 +40,18 @@ static void sum_momentum(const ContactProblem *problem, const BodyVelocity *afte
 static void a_pair_impulse_keeps_momentum_and_angular_momentum(void **state) {
     (void)state;
     World *world = make_world();
-    add_body(world, &(BodyDef){.size = {1, 2}, .mass = 3, .friction = 0.6f, .position = {0, 10}, .velocity = {4, 1}, .angular_velocity = 3});
-    add_body(world, &(BodyDef){.size = {2, 1}, .mass = 0.5f, .friction = 0.5f, .position = {1.3f, 10.4f}, .angle = 0.3f, .velocity = {-6, 0}});
+    add_body(world, &(BodyDef){.size = {1, 2},
+                               .mass = 3,
+                               .friction = 0.6f,
+                               .position = {0, 10},
+                               .velocity = {4, 1},
+                               .angular_velocity = 3});
+    add_body(world, &(BodyDef){.size = {2, 1},
+                               .mass = 0.5f,
+                               .friction = 0.5f,
+                               .position = {1.3f, 10.4f},
+                               .angle = 0.3f,
+                               .velocity = {-6, 0}});
     ContactSolver engine = make_engine("");
     run(world, &engine, 1);
     const ContactProblem *problem = world_problem(world);
@@ -110,7 +121,8 @@ static void a_landing_box_stops(void **state) {
     (void)state;
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 4, .friction = 0.2f, .position = {0, 0.495f}, .velocity = {0, -3}});
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 4, .friction = 0.2f, .position = {0, 0.495f}, .velocity = {0, -3}});
     ContactSolver engine = make_engine("");
     run(world, &engine, 1);
     const ContactImpulse *impulses = world_solution(world)->impulses;
@@ -125,7 +137,8 @@ static void friction_stays_in_its_cone(void **state) {
     (void)state;
     World *world = make_world();
     add_ground(world, 0.5f);
-    add_body(world, &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
+    add_body(world,
+             &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
     ContactSolver engine = make_engine("iterations=200");
     run(world, &engine, 1);
     assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);
@@ -166,14 +179,13 @@ static void iterations_out_of_range_are_refused(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_free_box_falls_as_it_should),
-        cmocka_unit_test(a_pair_impulse_keeps_momentum_and_angular_momentum),
-        cmocka_unit_test(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle),
-        cmocka_unit_test(a_resting_stacks_impulses_carry_its_weight),
-        cmocka_unit_test(a_landing_box_stops),
-        cmocka_unit_test(friction_stays_in_its_cone),
-        cmocka_unit_test(the_form_without_accumulation_keeps_a_box_up),
-        cmocka_unit_test(iterations_out_of_range_are_refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_free_box_falls_as_it_should),
+                                       cmocka_unit_test(a_pair_impulse_keeps_momentum_and_angular_momentum),
+                                       cmocka_unit_test(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle),
+                                       cmocka_unit_test(a_resting_stacks_impulses_carry_its_weight),
+                                       cmocka_unit_test(a_landing_box_stops),
+                                       cmocka_unit_test(friction_stays_in_its_cone),
+                                       cmocka_unit_test(the_form_without_accumulation_keeps_a_box_up),
+                                       cmocka_unit_test(iterations_out_of_range_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,12 @@ static ContactSolver make_pair_net(const char *path) {
 
 /* A (mass 2, inertia 1/3) below B (mass 1), touching at B's lower corners and in nothing else. */
 static const ProblemBody bodies[3] = {
-    {.position = {0, 0}, .size = {1, 1}, .inv_mass = 0.5f, .inv_inertia = 3, .velocity = {1, 2}, .angular_velocity = 0.5f},
+    {.position = {0, 0},
+     .size = {1, 1},
+     .inv_mass = 0.5f,
+     .inv_inertia = 3,
+     .velocity = {1, 2},
+     .angular_velocity = 0.5f},
     {.position = {0.25f, 1}, .size = {1, 1}, .inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}},
     {.position = {9, 9}, .size = {1, 1}, .velocity = {0, 0}}};
 static const ContactPoint contacts[2] = {

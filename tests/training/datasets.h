@@ -40,12 +40,10 @@ static inline Dataset *make_taught_dataset(int rows) {
     assert_ok(teacher != NULL, error);
     teacher->activations[0] = teacher->activations[1] = ACTIVATION_SIGMOID;
     uint32_t sequence = 11;
-    for (int p = 0; p < network_parameter_count(teacher); p++)
-        teacher->weights[0][p] = 3 * next_number(&sequence);
+    for (int p = 0; p < network_parameter_count(teacher); p++) teacher->weights[0][p] = 3 * next_number(&sequence);
     for (int r = 0; r < rows; r++) {
         float scratch[2 * PAIR_INPUTS];
-        network_predict(teacher, dataset->inputs + r * PAIR_INPUTS, scratch,
-                        dataset->changes + r * PAIR_CHANGES + 3);
+        network_predict(teacher, dataset->inputs + r * PAIR_INPUTS, scratch, dataset->changes + r * PAIR_CHANGES + 3);
     }
     network_destroy(teacher);
     return dataset;
@@ -53,9 +51,6 @@ static inline Dataset *make_taught_dataset(int rows) {
 
 /* To train a 10-4-2 network. */
 static inline TrainingOptions small(const char *optimizer, int iterations) {
-    return (TrainingOptions){.layers = 2,
-                             .widths = {PAIR_INPUTS, 4, 2},
-                             .optimizer = optimizer,
-                             .iterations = iterations,
-                             .seed = 1};
+    return (TrainingOptions){
+        .layers = 2, .widths = {PAIR_INPUTS, 4, 2}, .optimizer = optimizer, .iterations = iterations, .seed = 1};
 }

@@ -24,8 +24,7 @@ static Case make_case(int layers, const int *widths, Activation last) {
     Error error = {0};
     Case made = {.dataset = make_taught_dataset(ROWS), .network = network_create(layers, widths, &error)};
     assert_ok(made.network != NULL, error);
-    for (int l = 0; l < layers; l++)
-        made.network->activations[l] = l < layers - 1 ? ACTIVATION_SIGMOID : last;
+    for (int l = 0; l < layers; l++) made.network->activations[l] = l < layers - 1 ? ACTIVATION_SIGMOID : last;
     samples_fit_normalisation(made.dataset, made.network);
     made.train = samples_create(made.dataset, made.network, false, &error);
     made.loss = loss_create(made.network, &error);
@@ -85,8 +84,7 @@ static void residuals_make_up_the_loss(void **state) {
     double *residuals = numbers(count), sum = 0;
     loss_residuals(made.loss, made.train, made.parameters, residuals);
     for (size_t i = 0; i < count; i++) sum += residuals[i] * residuals[i];
-    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, made.parameters),
-                1e-12);
+    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, made.parameters), 1e-12);
     free(residuals);
     free_case(&made);
 }
@@ -117,8 +115,7 @@ static double dot(const double *a, const double *b, size_t count) {
 static void check_gauss_newton(int layers, const int *widths, Activation last) {
     Case made = make_case(layers, widths, last);
     size_t count = residual_count(&made), size = (size_t)made.count;
-    double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size),
-           *jtj = numbers(size * size);
+    double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size), *jtj = numbers(size * size);
     fill_jacobian(&made, jacobian, count);
     loss_residuals(made.loss, made.train, made.parameters, u);
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu, jtj);
@@ -153,8 +150,7 @@ static void sums_do_not_depend_on_threads(void **state) {
     for (size_t i = 0; i < 2; i++) {
         omp_set_num_threads(i == 0 ? 1 : 3);
         value[i] = loss_gradient(made.loss, made.train, made.parameters, gradient + i * size);
-        gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + i * size,
-                         jtj + i * size * size);
+        gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + i * size, jtj + i * size * size);
     }
     omp_set_num_threads(threads);
     assert_true(value[0] == value[1]);

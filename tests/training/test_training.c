@@ -56,8 +56,8 @@ static void check_learns(const char *optimizer, int iterations, double factor) {
     const TrainingScore *first = &scores.items[0], *last = last_score(&scores);
     if (!(last->train < first->train / factor && last->test < first->test / factor &&
           last->test < last->constant_test / factor))
-        fail_msg("%s: test %g -> %g, train %g -> %g, constant %g", optimizer, first->test, last->test,
-                 first->train, last->train, last->constant_test);
+        fail_msg("%s: test %g -> %g, train %g -> %g, constant %g", optimizer, first->test, last->test, first->train,
+                 last->train, last->constant_test);
     assert_near(error_of(network, dataset, false), last->train, 0.01 * last->train);
     assert_near(error_of(network, dataset, true), last->test, 0.01 * last->test);
     network_destroy(network);
@@ -84,17 +84,16 @@ static void linear_problems_are_solved(void **state) {
     Scores scores;
     const char *const names[] = {"lm", "bfgs"};
     for (int i = 0; i < 2; i++) {
-        Network *network = train(dataset,
-                                 (TrainingOptions){.layers = 1,
-                                                   .widths = {PAIR_INPUTS, PAIR_CHANGES},
-                                                   .optimizer = names[i],
-                                                   .iterations = 1000},
-                                 &scores);
+        Network *network =
+            train(dataset,
+                  (TrainingOptions){
+                      .layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = names[i], .iterations = 1000},
+                  &scores);
         assert_true(last_score(&scores)->train < 1e-12 && last_score(&scores)->test < 1e-12);
         assert_true(last_score(&scores)->iteration < 200);
         /* The weight from x_0 to output 0, in the units of the data. */
-        double slope = (double)network->weights[0][0] * (double)network->input.scale[0] /
-                       (double)network->output.scale[0];
+        double slope =
+            (double)network->weights[0][0] * (double)network->input.scale[0] / (double)network->output.scale[0];
         assert_near(slope, 2, 1e-4);
         assert_int_equal(network->activations[0], ACTIVATION_LINEAR);
         network_destroy(network);

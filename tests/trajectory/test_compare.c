@@ -38,8 +38,7 @@ static void same_is_equal(void **state) {
     TrajectoryDifference d = compared();
     assert_true(d.equal);
     assert_string_equal(d.what, "");
-    assert_true(d.frame == -1 && d.body == -1 && d.max_frame == -1 && d.max_body == -1 &&
-                d.max_distance == 0);
+    assert_true(d.frame == -1 && d.body == -1 && d.max_frame == -1 && d.max_body == -1 && d.max_distance == 0);
 }
 
 static void names_and_contacts_do_not_count(void **state) {

@@ -203,8 +203,8 @@ static void csv_gives_every_float_back(void **state) {
                                   t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
             line = strtok(NULL, "\n");
             assert_non_null(line);
-            assert_int_equal(sscanf(line, "%d,%d,%f,%f,%f,%f,%f,%f", &got_frame, &got_body, &s[0], &s[1],
-                                    &s[2], &s[3], &s[4], &s[5]),
+            assert_int_equal(sscanf(line, "%d,%d,%f,%f,%f,%f,%f,%f", &got_frame, &got_body, &s[0], &s[1], &s[2], &s[3],
+                                    &s[4], &s[5]),
                              8);
             assert_true(got_frame == frame && got_body == body);
             assert_memory_equal(s, want, sizeof s);
@@ -224,8 +224,8 @@ static void hashes_are_those_of_the_frames(void **state) {
     assert_ok(trajectory_write_hashes(t, path, &error), error);
     char *text = text_of(path);
     /* Of no bodies: the start value. */
-    assert_string_equal(
-        text, "frame,hash\n0,14650fb0739d0383\n1,14650fb0739d0383\n2,14650fb0739d0383\n3,14650fb0739d0383\n");
+    assert_string_equal(text,
+                        "frame,hash\n0,14650fb0739d0383\n1,14650fb0739d0383\n2,14650fb0739d0383\n3,14650fb0739d0383\n");
     free(text);
     t->fixed[1] = 0;
     assert_ok(trajectory_write_hashes(t, path, &error), error);
@@ -239,8 +239,8 @@ static void hashes_are_those_of_the_frames(void **state) {
 
 static void failed_writes_tell(void **state) {
     (void)state;
-    bool (*const writers[])(const Trajectory *, const char *,
-                            Error *) = {trajectory_write, trajectory_write_csv, trajectory_write_hashes};
+    bool (*const writers[])(const Trajectory *, const char *, Error *) = {trajectory_write, trajectory_write_csv,
+                                                                          trajectory_write_hashes};
     Trajectory *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
         Error error = {0};

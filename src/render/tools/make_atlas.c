@@ -13,8 +13,7 @@
 static const int sizes[FONT_SIZES] = {9,  10, 11, 12, 13, 14, 15, 16, 18, 20, 22, 24,
                                       26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 64, 72};
 
-static const unsigned extra[] = {0xB0,   0xB1,   0xB5,   0xB7,   0xD7,  0x2007,
-                                 0x2013, 0x2014, 0x2026, 0x2212, 0x221E};
+static const unsigned extra[] = {0xB0, 0xB1, 0xB5, 0xB7, 0xD7, 0x2007, 0x2013, 0x2014, 0x2026, 0x2212, 0x221E};
 enum { ASCII_FIRST = 0x20, ASCII_LAST = 0x7E, FIGURE_SPACE = 0x2007 };
 
 static FILE *output;
@@ -85,8 +84,8 @@ static void print_glyphs(FontGlyph glyphs[FONT_FACES][FONT_SIZES][FONT_GLYPHS]) 
         for (int size = 0; size < FONT_SIZES; size++)
             for (int i = 0; i < FONT_GLYPHS; i++) {
                 const FontGlyph *g = &glyphs[face][size][i];
-                fprintf(output, "[%d][%d][%d] = {%u,%u,%d,%d,%d,%d,%d},\n", face, size, i, g->code, g->offset,
-                        g->width, g->height, g->left, g->top, g->advance);
+                fprintf(output, "[%d][%d][%d] = {%u,%u,%d,%d,%d,%d,%d},\n", face, size, i, g->code, g->offset, g->width,
+                        g->height, g->left, g->top, g->advance);
             }
     fputs("};\nconst int font_sizes[FONT_SIZES] = {", output);
     for (int size = 0; size < FONT_SIZES; size++) fprintf(output, "%d,", sizes[size]);
