@@ -81,18 +81,24 @@ static void close_node(Builder *builder) {
     if (node->kind == YAML_MAPPING) node->count /= 2;
 }
 
-/* Anchors stand before their value, so refusing them refuses aliases too; an alias alone is a mistake as
- * well. */
+/* Anchors stand before their value, so refusing them refuses aliases too; an alias alone is a mistake as well. */
 static bool refuse_extras(const Builder *builder, const struct fy_token *anchor, const struct fy_token *tag,
                           Error *error) {
     if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed in a scene");
     return tag == NULL || fail(builder, error, "tags (!) are not allowed in a scene");
 }
 
+/* `dt:` with nothing behind it; `dt: ""` is something. */
+static bool is_left_out(struct fy_event *event) {
+    if (event->type != FYET_SCALAR) return false;
+    struct fy_token *value = event->scalar.value;
+    return value == NULL || (fy_token_scalar_style(value) == FYSS_PLAIN && fy_token_get_text_length(value) == 0);
+}
+
 static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     const struct fy_mark *mark = fy_event_start_mark(event);
-    /* A value left out has no mark: it is shown at its key. */
-    if (mark != NULL) builder->place = (Place){mark->line, mark->column};
+    /* A value left out is shown at its key; some versions of libfyaml give it a mark, some do not. */
+    if (mark != NULL && !is_left_out(event)) builder->place = (Place){mark->line, mark->column};
     builder->handed_out_before = builder->handed_out;
     switch (event->type) {
     case FYET_DOCUMENT_START:
