@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
+#include "common/hash.h"
 #include "network/activation.h"
 
 #include <float.h>
@@ -123,6 +124,20 @@ static void bits_are_the_same_everywhere(void **state) {
     }
 }
 
+/* The last bits of the small terms show in one value of many. */
+static void many_bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    uint64_t hash = FNV1A64_START;
+    for (uint32_t bits = 0x30000000; from_bits(bits) < 90; bits += 1009) {
+        float x = from_bits(bits);
+        const float floats[] = {sigmoid_float(x), sigmoid_float(-x), tanh_float(x)};
+        const double doubles[] = {sigmoid((double)x), sigmoid(-(double)x), tangent((double)x)};
+        hash = hash_fnv1a64(hash, floats, sizeof floats);
+        hash = hash_fnv1a64(hash, doubles, sizeof doubles);
+    }
+    if (hash != UINT64_C(0x2fcf31d30316d167)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_stays_within_three_last_places),
@@ -131,6 +146,7 @@ int main(void) {
         cmocka_unit_test(limits_are_exact),
         cmocka_unit_test(tanh_is_odd),
         cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(many_bits_are_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
