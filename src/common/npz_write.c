@@ -16,6 +16,10 @@ enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
 /* zlib's own default. libzip's is 9, which made a file of positions no smaller. */
 enum { DEFLATE_LEVEL = 6 };
 
+/* Bytes of floats from which on they are stored as they are: a second for every 30 MB would be spent on taking away
+   half of a dataset. */
+enum { STORED_SIZE = 1 << 24 };
+
 enum { MEMBER_NAME_SIZE = 72 };
 
 /* What libzip reads when it closes the archive, so it must live until then. */
@@ -72,9 +76,13 @@ static bool zip_failed(const char *path, zip_t *archive, Error *error) {
     return error_system(error, path, "cannot write: %s", zip_strerror(archive));
 }
 
-static bool add(zip_t *archive, const char *name, const Member *member, const char *path, Error *error) {
+static zip_int32_t compression(const NpzArray *array, const Member *member) {
+    return array->type == NPZ_FLOAT32 && member->fragments[1].length >= STORED_SIZE ? ZIP_CM_STORE : ZIP_CM_DEFLATE;
+}
+
+static bool add(zip_t *archive, const NpzArray *array, const Member *member, const char *path, Error *error) {
     char member_name[MEMBER_NAME_SIZE];
-    int length = snprintf(member_name, sizeof member_name, "%s.npy", name);
+    int length = snprintf(member_name, sizeof member_name, "%s.npy", array->name);
     assert(length > 0 && length < MEMBER_NAME_SIZE);
     (void)length;
     zip_uint64_t fragments = member->fragments[1].length > 0 ? 2 : 1;
@@ -85,7 +93,8 @@ static bool add(zip_t *archive, const char *name, const Member *member, const ch
         zip_source_free(source);
         return zip_failed(path, archive, error);
     }
-    if (zip_set_file_compression(archive, (zip_uint64_t)index, ZIP_CM_DEFLATE, DEFLATE_LEVEL) != 0 ||
+    zip_int32_t method = compression(array, member);
+    if (zip_set_file_compression(archive, (zip_uint64_t)index, method, DEFLATE_LEVEL) != 0 ||
         zip_file_set_dostime(archive, (zip_uint64_t)index, DOS_TIME, DOS_DATE, 0) != 0)
         return zip_failed(path, archive, error);
     return true;
@@ -106,7 +115,7 @@ static bool build(zip_source_t *source, Member *members, const NpzArray *arrays,
     zip_source_keep(source);
     bool done = true;
     for (size_t i = 0; done && i < count; i++)
-        done = prepare(&members[i], &arrays[i], path, error) && add(archive, arrays[i].name, &members[i], path, error);
+        done = prepare(&members[i], &arrays[i], path, error) && add(archive, &arrays[i], &members[i], path, error);
     if (done && zip_close(archive) == 0) return true;
     if (done) zip_failed(path, archive, error);
     zip_discard(archive);

@@ -2,7 +2,9 @@
 /* Networks in memory, and inference with one order of summation. */
 #include "network/network.h"
 
-#include <math.h>
+#include "network/activation.h"
+#include "network/kernels.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,8 +82,8 @@ int network_scratch_width(const Network *network) {
 
 static float activate(Activation activation, float x) {
     switch (activation) {
-    case ACTIVATION_SIGMOID: return (float)(1.0 / (1.0 + exp(-(double)x)));
-    case ACTIVATION_TANH: return (float)tanh((double)x);
+    case ACTIVATION_SIGMOID: return sigmoid_float(x);
+    case ACTIVATION_TANH: return tanh_float(x);
     case ACTIVATION_LINEAR: break;
     }
     return x;
@@ -109,4 +111,16 @@ void network_predict(const Network *network, const float *input, float *scratch,
     }
     for (int k = 0; k < network->widths[network->layers]; k++)
         output[k] = in[k] / network->output.scale[k] + network->output.offset[k];
+}
+
+size_t network_batch_scratch(const Network *network) {
+    return 2 * (size_t)network_scratch_width(network) * TILE_ROWS + CACHE_LINE / sizeof(float);
+}
+
+void network_predict_batch(const Network *network, const float *inputs, float *scratch, float *outputs, int rows) {
+    const Kernels *kernels = kernels_best();
+    for (int first = 0; first < rows; first += TILE_ROWS) {
+        int count = rows - first < TILE_ROWS ? rows - first : TILE_ROWS;
+        kernels->predict(network, inputs, scratch, outputs, rows, first, count);
+    }
 }

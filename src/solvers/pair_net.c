@@ -12,6 +12,7 @@
 
    Fails on stacks: it sees one pair and no other, so no impulse can be carried through a chain of boxes; and what
    it leaves of a velocity that should be zero adds up to sinking. */
+#include "common/array.h"
 #include "dynamics/pair.h"
 #include "network/network.h"
 #include "solvers/solvers.h"
@@ -22,6 +23,8 @@
 typedef struct PairNet {
     Network *network;
     float *scratch;
+    float *numbers; /* inputs[PAIR_INPUTS, pairs], then outputs[.., pairs], of the step's pairs */
+    size_t capacity;
 } PairNet;
 
 static const SettingSpec settings[] = {{"network", "file of the trained network (the scene's own)"}, {NULL, NULL}};
@@ -31,6 +34,7 @@ static void destroy(void *state) {
     if (solver == NULL) return;
     network_destroy(solver->network);
     free(solver->scratch);
+    free(solver->numbers);
     free(solver);
 }
 
@@ -53,7 +57,7 @@ static void *create(const Settings *chosen, Error *error) {
                     outputs, PAIR_INPUTS, PAIR_CHANGES);
         goto fail;
     }
-    solver->scratch = malloc(2 * (size_t)network_scratch_width(solver->network) * sizeof *solver->scratch);
+    solver->scratch = malloc(network_batch_scratch(solver->network) * sizeof *solver->scratch);
     if (solver->scratch == NULL) {
         error_memory(error, "pair-net");
         goto fail;
@@ -92,31 +96,56 @@ static void add_changes(BodyVelocity *velocity, const ProblemBody *body, const f
     velocity->angular += changes[2];
 }
 
-static void solve_pair(const PairNet *solver, const ContactProblem *problem, int first, int count,
-                       BodyVelocity *velocities) {
+static int count_pairs(const ContactProblem *problem) {
+    int pairs = 0;
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) pairs++;
+    return pairs;
+}
+
+/* The network's outputs[.., pairs] for all pairs of the step, in the solver's numbers. NULL: no memory. */
+static const float *predict_pairs(PairNet *solver, const ContactProblem *problem, int pairs) {
+    const size_t inputs_size = (size_t)pairs * PAIR_INPUTS;
+    const size_t outputs_size = (size_t)pairs * (size_t)solver->network->widths[solver->network->layers];
+    if (!array_reserve((void **)&solver->numbers, &solver->capacity, inputs_size + outputs_size, sizeof(float)))
+        return NULL;
+    float *inputs = solver->numbers, *outputs = solver->numbers + inputs_size;
+    for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
+        float numbers[PAIR_INPUTS];
+        pair_inputs(problem, problem->contacts[first].a, problem->contacts[first].b, numbers);
+        for (int i = 0; i < PAIR_INPUTS; i++) inputs[i * pairs + p] = numbers[i];
+    }
+    network_predict_batch(solver->network, inputs, solver->scratch, outputs, pairs);
+    return outputs;
+}
+
+/* outputs: one number of the pair every `pairs`. */
+static void apply_pair(const PairNet *solver, const ContactProblem *problem, int first, int count, const float *outputs,
+                       int pairs, BodyVelocity *velocities) {
     int a = problem->contacts[first].a, b = problem->contacts[first].b;
-    float inputs[PAIR_INPUTS], outputs[PAIR_CHANGES], changes[PAIR_CHANGES];
-    pair_inputs(problem, a, b, inputs);
-    network_predict(solver->network, inputs, solver->scratch, outputs);
-    bool relative = solver->network->widths[solver->network->layers] == 2;
-    if (relative) share_relative_change(problem, first, count, vec2(outputs[0], outputs[1]), changes);
-    const float *applied = relative ? changes : outputs;
+    float changes[PAIR_CHANGES];
+    if (solver->network->widths[solver->network->layers] == 2)
+        share_relative_change(problem, first, count, vec2(outputs[0], outputs[pairs]), changes);
+    else
+        for (int i = 0; i < PAIR_CHANGES; i++) changes[i] = outputs[i * pairs];
     /* A number that is not finite never reaches a body: the pair is left as it is. */
     for (int i = 0; i < PAIR_CHANGES; i++)
-        if (!isfinite(applied[i])) return;
-    add_changes(&velocities[a], &problem->bodies[a], applied);
-    add_changes(&velocities[b], &problem->bodies[b], applied + 3);
+        if (!isfinite(changes[i])) return;
+    add_changes(&velocities[a], &problem->bodies[a], changes);
+    add_changes(&velocities[b], &problem->bodies[b], changes + 3);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    (void)error;
-    const PairNet *solver = state;
+    PairNet *solver = state;
     for (int i = 0; i < problem->body_count; i++)
         solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-    for (int first = 0, count; first < problem->contact_count; first += count) {
+    const int pairs = count_pairs(problem);
+    if (pairs == 0) return true;
+    const float *outputs = predict_pairs(solver, problem, pairs);
+    if (outputs == NULL) return error_memory(error, "pair-net");
+    for (int first = 0, count; first < problem->contact_count; first += count, outputs++) {
         count = pair_contact_count(problem, first);
-        solve_pair(solver, problem, first, count, solution->velocities);
+        apply_pair(solver, problem, first, count, outputs, pairs, solution->velocities);
     }
     return true;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
 
-#include "network/network_gradient.h"
+#include "network/kernels.h"
 
 #include <math.h>
 
@@ -130,12 +130,42 @@ static void dot_sums_every_row_once(void **state) {
     assert_true(network_block_dot(a, b) == (BLOCK_ROWS - 1.0) * BLOCK_ROWS * (BLOCK_ROWS + 1.0) / 3);
 }
 
+static void run_by(const Kernels *kernels, Case *made, double *gradient) {
+    const int layers = made->network->layers;
+    kernels->forward(made->block, made->parameters);
+    const double *y = made->block->values[layers];
+    for (int i = 0; i < made->outputs * BLOCK_ROWS; i++) made->block->deltas[layers - 1][i] = made->factors[i] + y[i];
+    kernels->backward(made->block, made->parameters);
+    kernels->add_gradient(made->block, gradient);
+}
+
+static void all_instruction_sets_give_the_same_bits(void **state) {
+    (void)state;
+    Case made = make_case(3, (const int[]){10, 9, 7, 2},
+                          (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_LINEAR});
+    double expected[256] = {0};
+    assert_true(made.count <= 256);
+    run_by(&kernels_plain, &made, expected);
+    const double *y = made.block->values[1];
+    const double expected_dot = kernels_plain.dot(y, y + BLOCK_ROWS);
+    const Kernels *list[KERNELS_MAX + 1];
+    kernels_list(list);
+    for (int k = 0; list[k] != NULL; k++) {
+        double gradient[256] = {0};
+        run_by(list[k], &made, gradient);
+        assert_memory_equal(gradient, expected, sizeof gradient);
+        assert_true(list[k]->dot(y, y + BLOCK_ROWS) == expected_dot);
+    }
+    free_case(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(backward_is_the_finite_difference),
         cmocka_unit_test(gradients_add_up),
         cmocka_unit_test(forward_agrees_with_predict),
         cmocka_unit_test(dot_sums_every_row_once),
+        cmocka_unit_test(all_instruction_sets_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
 
+#include "network/activation.h"
+#include "network/kernels.h"
+
 #include <math.h>
 
 static void predict(const Network *network, const float *input, float *output) {
@@ -76,21 +79,94 @@ static float activated(Activation activation, float x) {
     return output;
 }
 
-/* Values of the functions to 17 digits, from their series; sigmoid(-x) = 1 - sigmoid(x). */
-static void activations_are_the_double_function_rounded(void **state) {
+static void layers_apply_their_activation(void **state) {
     (void)state;
-    assert_true(activated(ACTIVATION_SIGMOID, 0) == 0.5f);
-    assert_true(activated(ACTIVATION_SIGMOID, 1) == (float)0.73105857863000488);
-    assert_true(activated(ACTIVATION_SIGMOID, -1) == (float)0.26894142136999512);
-    assert_true(activated(ACTIVATION_SIGMOID, 1000) == 1 && activated(ACTIVATION_SIGMOID, -1000) == 0);
-    assert_true(activated(ACTIVATION_TANH, 1) == (float)0.76159415595576489);
-    assert_true(activated(ACTIVATION_TANH, -0.5f) == (float)-0.46211715726000975);
-    assert_true(activated(ACTIVATION_LINEAR, -3.25f) == -3.25f);
     for (int i = -2000; i <= 2000; i++) {
         float x = (float)i / 128;
-        assert_true(activated(ACTIVATION_SIGMOID, x) == (float)(1.0 / (1.0 + exp(-(double)x))));
-        assert_true(activated(ACTIVATION_TANH, x) == (float)tanh((double)x));
+        assert_true(activated(ACTIVATION_SIGMOID, x) == sigmoid_float(x));
+        assert_true(activated(ACTIVATION_TANH, x) == tanh_float(x));
+        assert_true(activated(ACTIVATION_LINEAR, x) == x);
     }
+}
+
+static bool same_bits(float a, float b) { return (isnan(a) && isnan(b)) || memcmp(&a, &b, sizeof a) == 0; }
+
+/* Buffers of a batch of `rows`, and its inputs row by row. */
+typedef struct Batch {
+    int rows, ins, outs;
+    float *row_inputs, *inputs, *outputs, *scratch;
+} Batch;
+
+static Batch make_batch(const Network *network, int rows) {
+    Batch batch = {.rows = rows, .ins = network->widths[0], .outs = network->widths[network->layers]};
+    const size_t inputs_size = (size_t)(rows * batch.ins) * sizeof(float);
+    batch.row_inputs = malloc(inputs_size);
+    batch.inputs = malloc(inputs_size);
+    batch.outputs = malloc((size_t)(rows * batch.outs) * sizeof(float));
+    batch.scratch = malloc(network_batch_scratch(network) * sizeof(float));
+    assert_true(batch.row_inputs && batch.inputs && batch.outputs && batch.scratch);
+    const float special[] = {NAN, INFINITY, -INFINITY, 1e38f, -0.0f};
+    uint32_t sequence = 3;
+    for (int r = 0; r < rows; r++)
+        for (int i = 0; i < batch.ins; i++) {
+            float x = 4 * (float)next_number(&sequence);
+            if (r % 16 == 15 && i == r % batch.ins) x = special[r / 16 % 5];
+            batch.row_inputs[r * batch.ins + i] = x;
+            batch.inputs[i * rows + r] = x;
+        }
+    return batch;
+}
+
+static void free_batch(Batch *batch) {
+    free(batch->row_inputs);
+    free(batch->inputs);
+    free(batch->outputs);
+    free(batch->scratch);
+}
+
+static void assert_as_row_by_row(const Network *network, const Batch *batch) {
+    float output[8];
+    for (int r = 0; r < batch->rows; r++) {
+        network_predict(network, batch->row_inputs + r * batch->ins, batch->scratch, output);
+        for (int k = 0; k < batch->outs; k++)
+            if (!same_bits(output[k], batch->outputs[k * batch->rows + r]))
+                fail_msg("row %d of %d, output %d: %a, not %a", r, batch->rows, k, batch->outputs[k * batch->rows + r],
+                         output[k]);
+    }
+}
+
+static void check_batches(int layers, const int *widths, const Activation *activations) {
+    Network *network = make_network(layers, widths, activations);
+    for (int i = 0; i < widths[0]; i++) network->input.offset[i] = 0.1f * (float)i, network->input.scale[i] = 0.7f;
+    for (int k = 0; k < widths[layers]; k++) network->output.offset[k] = -0.3f, network->output.scale[k] = 0.11f;
+    const int rows[] = {1, 2, 3, 63, 64, 65, 200};
+    const Kernels *list[KERNELS_MAX + 1];
+    kernels_list(list);
+    for (size_t n = 0; n < sizeof rows / sizeof rows[0]; n++) {
+        Batch batch = make_batch(network, rows[n]);
+        network_predict_batch(network, batch.inputs, batch.scratch, batch.outputs, batch.rows);
+        assert_as_row_by_row(network, &batch);
+        for (int k = 0; list[k] != NULL; k++) {
+            memset(batch.outputs, 0x55, (size_t)(batch.rows * batch.outs) * sizeof(float));
+            for (int first = 0; first < batch.rows; first += TILE_ROWS) {
+                int left = batch.rows - first;
+                list[k]->predict(network, batch.inputs, batch.scratch, batch.outputs, batch.rows, first,
+                                 left < TILE_ROWS ? left : TILE_ROWS);
+            }
+            assert_as_row_by_row(network, &batch);
+        }
+        free_batch(&batch);
+    }
+    network_destroy(network);
+}
+
+static void a_batch_has_the_bits_of_single_rows_whatever_the_instructions(void **state) {
+    (void)state;
+    const Activation l = ACTIVATION_LINEAR, s = ACTIVATION_SIGMOID, t = ACTIVATION_TANH;
+    check_batches(2, (const int[]){10, 10, 2}, (const Activation[]){s, s});
+    check_batches(3, (const int[]){10, 8, 8, 6}, (const Activation[]){s, s, l});
+    check_batches(3, (const int[]){3, 37, 1, 5}, (const Activation[]){t, l, t});
+    check_batches(1, (const int[]){1, 1}, (const Activation[]){t});
 }
 
 static void a_copy_has_numbers_of_its_own(void **state) {
@@ -135,7 +211,8 @@ int main(void) {
         cmocka_unit_test(two_layers_in_closed_form),
         cmocka_unit_test(weights_are_stored_row_by_row),
         cmocka_unit_test(sums_start_from_the_bias_and_rise),
-        cmocka_unit_test(activations_are_the_double_function_rounded),
+        cmocka_unit_test(layers_apply_their_activation),
+        cmocka_unit_test(a_batch_has_the_bits_of_single_rows_whatever_the_instructions),
         cmocka_unit_test(a_copy_has_numbers_of_its_own),
         cmocka_unit_test(impossible_shapes_are_refused),
     };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "worlds.h"
 
+#include "dynamics/pair.h"
 #include "network/network.h"
 
 /* A network of one linear layer that says the same whatever it sees; written to a file, as the solver takes it. */
@@ -114,6 +115,41 @@ static void what_is_not_finite_never_reaches_a_body(void **state) {
     assert_near(v[1].linear.x, 1e20f, 0);
 }
 
+/* A network that tells pairs, inputs and outputs apart: three pairs of one batch, each added as its own prediction. */
+static void every_pair_gets_its_own_prediction(void **state) {
+    (void)state;
+    Error error = {0};
+    Network *network = network_create(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES}, &error);
+    assert_ok(network != NULL, error);
+    for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) network->weights[0][i] = (float)(i * i % 17) / 16 - 0.4f;
+    const char *path = temporary_path("different.npz");
+    assert_ok(network_write(network, path, &error), error);
+    ProblemBody three[3];
+    memcpy(three, bodies, sizeof three);
+    three[2].inv_mass = 1, three[2].velocity = vec2(-3, 0.5f), three[2].angle = 0.7f;
+    const ContactPoint touching[3] = {{.a = 0, .b = 1}, {.a = 0, .b = 2}, {.a = 1, .b = 2}};
+    const ContactProblem problem = {
+        .body_count = 3, .contact_count = 3, .bomb = -1, .bodies = three, .contacts = touching};
+    BodyVelocity expected[3], found[3];
+    for (int i = 0; i < 3; i++) expected[i] = (BodyVelocity){three[i].velocity, three[i].angular_velocity};
+    for (int p = 0; p < 3; p++) {
+        float inputs[PAIR_INPUTS], changes[PAIR_CHANGES], scratch[2 * PAIR_INPUTS];
+        pair_inputs(&problem, touching[p].a, touching[p].b, inputs);
+        network_predict(network, inputs, scratch, changes);
+        for (int side = 0; side < 2; side++) {
+            BodyVelocity *body = &expected[side == 0 ? touching[p].a : touching[p].b];
+            body->linear = vec2_add(body->linear, vec2(changes[3 * side], changes[3 * side + 1]));
+            body->angular += changes[3 * side + 2];
+        }
+    }
+    ContactSolver solver = make_pair_net(path);
+    ContactSolution solution = {found, (ContactImpulse[3]){{0}}};
+    assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
+    assert_memory_equal(found, expected, sizeof found);
+    free_solver(&solver);
+    network_destroy(network);
+}
+
 static void a_network_of_another_shape_is_refused(void **state) {
     (void)state;
     Error error = {0};
@@ -138,6 +174,7 @@ int main(void) {
                                        cmocka_unit_test(six_outputs_are_added_as_they_are),
                                        cmocka_unit_test(a_fixed_body_is_not_moved),
                                        cmocka_unit_test(what_is_not_finite_never_reaches_a_body),
+                                       cmocka_unit_test(every_pair_gets_its_own_prediction),
                                        cmocka_unit_test(a_network_of_another_shape_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kernels for any CPU. */
+#define KERNELS kernels_plain
+#define KERNELS_NAME "plain"
+#define VECTOR_BYTES 16
+#include "network/kernels_code.h"
