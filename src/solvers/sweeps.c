@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solvers/sweeps.h"
+
+#include "common/array.h"
+#include "solvers/sweeps_kernels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SWEEPS_AT_ONCE = 16,      /* sweeps in one schedule; more are this one again */
+    VISITS_AT_ONCE = 1 << 17, /* visits in one schedule: it should stay in the cache */
+    LEVEL_PAYS = 3            /* visits a level from which on lanes are faster than one by one */
+};
+
+void sweeps_free(Sweeps *sweeps) {
+    SweepSchedule *schedules[] = {&sweeps->whole, &sweeps->rest};
+    for (int i = 0; i < 2; i++) {
+        free(schedules[i]->levels);
+        free(schedules[i]->filled);
+        free(schedules[i]->open);
+    }
+    free(sweeps->bodies);
+    free(sweeps->pairs);
+    free(sweeps->ends);
+    free(sweeps->scheduled);
+    free(sweeps->moves);
+    free(sweeps->ready);
+    *sweeps = (Sweeps){0};
+}
+
+bool sweeps_can(SweepKernel kernel) {
+    switch (kernel) {
+#ifdef __x86_64__
+    case SWEEP_AVX2: return __builtin_cpu_supports("avx2");
+#endif
+    default: return kernel == SWEEP_ONE_BY_ONE;
+    }
+}
+
+static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
+    size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
+    return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, bodies, sizeof *sweeps->bodies) &&
+           array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
+           array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
+           array_reserve((void **)&sweeps->pairs, &sweeps->pair_capacity, pairs, sizeof *sweeps->pairs) &&
+           array_reserve((void **)&sweeps->ends, &sweeps->ends_capacity, pairs, sizeof *sweeps->ends) &&
+           array_reserve((void **)&sweeps->scheduled, &sweeps->scheduled_capacity, pairs, sizeof *sweeps->scheduled);
+}
+
+static bool is_negative_zero(float x) { return x == 0.0f && signbit(x); }
+
+/* Can an impulse change the velocity? Without mass only where it is -0, which may become 0. */
+static bool moves(const ProblemBody *body) {
+    return body->inv_mass != 0.0f || body->inv_inertia != 0.0f || is_negative_zero(body->velocity.x) ||
+           is_negative_zero(body->velocity.y) || is_negative_zero(body->angular_velocity);
+}
+
+static SweepPoint point_of(const ContactPoint *contact, float extra) {
+    return (SweepPoint){contact->arm_a,        contact->arm_b, contact->mass_normal,
+                        contact->mass_tangent, contact->bias,  extra};
+}
+
+/* Can both be points of one SweepPair? */
+static bool share_surface(const ContactPoint *first, const ContactPoint *second) {
+    return first->a == second->a && first->b == second->b &&
+           memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
+           memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
+}
+
+static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
+    sweeps->body_count = problem->body_count;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
+        sweeps->moves[i] = moves(body);
+    }
+    sweeps->bodies[problem->body_count] = (SweepBody){0};
+}
+
+/* Where neither moves, a counts as moving: the visits of one pair must not share a level. */
+static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
+    bool moves_a = sweeps->moves[a] || !sweeps->moves[b];
+    return (SweepEnds){moves_a ? a : ~a, sweeps->moves[b] ? b : ~b};
+}
+
+static void load_pairs(Sweeps *sweeps, const ContactProblem *problem) {
+    sweeps->pair_count = 0;
+    for (int i = 0; i < problem->contact_count;) {
+        const ContactPoint *contact = &problem->contacts[i], *next = contact + 1;
+        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+        bool two = i + 1 < problem->contact_count && share_surface(contact, next);
+        SweepPair *pair = &sweeps->pairs[sweeps->pair_count];
+        *pair = (SweepPair){.sums = {{contact->warm_normal, contact->warm_tangent}},
+                            .normal = contact->normal,
+                            .friction = contact->friction,
+                            .inv_inertia_a = a->inv_inertia,
+                            .points = {point_of(contact, b->inv_inertia)}};
+        if (two) {
+            pair->sums[1] = (ContactImpulse){next->warm_normal, next->warm_tangent};
+            pair->points[1] = point_of(next, -1.0f);
+        }
+        sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
+        i += two ? 2 : 1;
+    }
+    sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
+}
+
+static void warm_start_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k) {
+    const SweepPoint *point = &pair->points[k];
+    Vec2 impulse = vec2_add(vec2_scale(pair->sums[k].normal, pair->normal),
+                            vec2_scale(pair->sums[k].tangent, vec2_cross_scalar(pair->normal, 1.0f)));
+    a->x -= a->inv_mass * impulse.x;
+    a->y -= a->inv_mass * impulse.y;
+    a->spin -= pair->inv_inertia_a * vec2_cross(point->arm_a, impulse);
+    b->x += b->inv_mass * impulse.x;
+    b->y += b->inv_mass * impulse.y;
+    b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
+}
+
+static void warm_start(Sweeps *sweeps) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepPair *pair = &sweeps->pairs[i];
+        SweepEnds ends = sweeps->ends[i];
+        SweepBody a = sweeps->bodies[ends.a < 0 ? ~ends.a : ends.a];
+        SweepBody b = sweeps->bodies[ends.b < 0 ? ~ends.b : ends.b];
+        warm_start_point(&a, &b, pair, 0);
+        if (pair->points[1].extra < 0.0f) warm_start_point(&a, &b, pair, 1);
+        if (ends.a >= 0) sweeps->bodies[ends.a] = a;
+        if (ends.b >= 0) sweeps->bodies[ends.b] = b;
+    }
+}
+
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
+    if (!reserve(sweeps, problem)) return false;
+    sweeps->kernel = kernel;
+    load_bodies(sweeps, problem);
+    load_pairs(sweeps, problem);
+    warm_start(sweeps);
+    return true;
+}
+
+/* Makes both schedules, unless those of the step before are for the same pairs. */
+static bool reschedule(Sweeps *sweeps, int at_once, int rest) {
+    size_t size = (size_t)sweeps->pair_count * sizeof *sweeps->ends;
+    if (sweeps->scheduled_count == sweeps->pair_count && memcmp(sweeps->scheduled, sweeps->ends, size) == 0 &&
+        sweeps->scheduled_bodies == sweeps->body_count && sweeps->whole.sweeps == at_once &&
+        sweeps->rest.sweeps == rest)
+        return true;
+    sweeps->scheduled_count = 0;
+    if (!sweeps_schedule(&sweeps->whole, sweeps, at_once) || !sweeps_schedule(&sweeps->rest, sweeps, rest))
+        return false;
+    memcpy(sweeps->scheduled, sweeps->ends, size);
+    sweeps->scheduled_count = sweeps->pair_count;
+    sweeps->scheduled_bodies = sweeps->body_count;
+    return true;
+}
+
+static void run_schedule(Sweeps *sweeps, const SweepSchedule *schedule) {
+#ifdef __x86_64__
+    sweeps_run_avx2(sweeps, schedule);
+#endif
+}
+
+bool sweeps_run(Sweeps *sweeps, int count) {
+    if (sweeps->pair_count == 0) return true;
+    int at_once = VISITS_AT_ONCE / sweeps->pair_count;
+    if (at_once < 1) at_once = 1;
+    if (at_once > SWEEPS_AT_ONCE) at_once = SWEEPS_AT_ONCE;
+    if (at_once > count) at_once = count;
+    if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once)) return false;
+    bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
+    if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
+        sweeps_run_one_by_one(sweeps, count);
+        return true;
+    }
+    for (int done = 0; done + at_once <= count; done += at_once) run_schedule(sweeps, &sweeps->whole);
+    run_schedule(sweeps, &sweeps->rest);
+    return true;
+}
+
+bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
+    bool finite = true;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        const SweepBody *body = &sweeps->bodies[i];
+        solution->velocities[i] = (BodyVelocity){vec2(body->x, body->y), body->spin};
+        finite &= isfinite(body->x) && isfinite(body->y) && isfinite(body->spin);
+    }
+    for (int i = 0, contact = 0; i < sweeps->pair_count; i++) {
+        const SweepPair *pair = &sweeps->pairs[i];
+        solution->impulses[contact++] = pair->sums[0];
+        if (pair->points[1].extra < 0.0f) solution->impulses[contact++] = pair->sums[1];
+    }
+    return finite;
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The packed records in the order of the plain text: for few contacts, and for every processor. */
+#include "solvers/sweeps_kernels.h"
+
+#include <string.h>
+
+static Vec2 relative_velocity(const SweepBody *a, const SweepBody *b, const SweepPoint *point) {
+    return vec2(((b->x - b->spin * point->arm_b.y) - a->x) + a->spin * point->arm_a.y,
+                ((b->y + b->spin * point->arm_b.x) - a->y) - a->spin * point->arm_a.x);
+}
+
+static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point, Vec2 impulse) {
+    a->x -= a->inv_mass * impulse.x;
+    a->y -= a->inv_mass * impulse.y;
+    a->spin -= pair->inv_inertia_a * vec2_cross(point->arm_a, impulse);
+    b->x += b->inv_mass * impulse.x;
+    b->y += b->inv_mass * impulse.y;
+    b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
+}
+
+static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point,
+                        ContactImpulse *sum) {
+    float normal_velocity = vec2_dot(relative_velocity(a, b, point), pair->normal);
+    float total = sum->normal + point->mass_normal * (point->bias - normal_velocity);
+    total = total > 0.0f ? total : 0.0f;
+    float normal = total - sum->normal;
+    sum->normal = total;
+    apply(a, b, pair, point, vec2_scale(normal, pair->normal));
+
+    Vec2 direction = vec2_cross_scalar(pair->normal, 1.0f);
+    float tangent_velocity = vec2_dot(relative_velocity(a, b, point), direction);
+    float limit = pair->friction * sum->normal;
+    total = sum->tangent - point->mass_tangent * tangent_velocity;
+    total = total < limit ? total : limit;
+    total = -limit > total ? -limit : total;
+    float tangent = total - sum->tangent;
+    sum->tangent = total;
+    apply(a, b, pair, point, vec2_scale(tangent, direction));
+}
+
+/* Not 0 where the bits differ: 0 and -0 do. */
+static uint32_t difference(float x, float y) {
+    uint32_t bits_x, bits_y;
+    memcpy(&bits_x, &x, sizeof x);
+    memcpy(&bits_y, &y, sizeof y);
+    return bits_x ^ bits_y;
+}
+
+/* Puts a body's velocity back; not 0 where it is another one. By components: the next visit reads them so. */
+static uint32_t put_back(SweepBody *body, const SweepBody *after) {
+    uint32_t changed =
+        difference(body->x, after->x) | difference(body->y, after->y) | difference(body->spin, after->spin);
+    body->x = after->x;
+    body->y = after->y;
+    body->spin = after->spin;
+    return changed;
+}
+
+static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
+    uint32_t changed = difference(sum->normal, after.normal) | difference(sum->tangent, after.tangent);
+    sum->normal = after.normal;
+    sum->tangent = after.tangent;
+    return changed;
+}
+
+/* Not 0 where the visit changed anything. */
+static uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
+    SweepBody *body_a = &bodies[ends.a < 0 ? ~ends.a : ends.a], *body_b = &bodies[ends.b < 0 ? ~ends.b : ends.b];
+    SweepBody a = *body_a, b = *body_b;
+    uint32_t changed = 0;
+    int points = pair->points[1].extra < 0.0f ? 2 : 1;
+    for (int k = 0; k < points; k++) {
+        ContactImpulse sum = pair->sums[k];
+        solve_point(&a, &b, pair, &pair->points[k], &sum);
+        changed |= put_back_sum(&pair->sums[k], sum);
+    }
+    if (ends.a >= 0) changed |= put_back(body_a, &a);
+    if (ends.b >= 0) changed |= put_back(body_b, &b);
+    return changed;
+}
+
+void sweeps_run_one_by_one(Sweeps *sweeps, int count) {
+    uint32_t changed = 1;
+    for (int sweep = 0; changed != 0 && sweep < count; sweep++) {
+        changed = 0;
+        for (int i = 0; i < sweeps->pair_count; i++)
+            changed |= visit(sweeps->bodies, &sweeps->pairs[i], sweeps->ends[i]);
+    }
+}
