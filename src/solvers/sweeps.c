@@ -10,7 +10,7 @@
 
 enum {
     SWEEPS_AT_ONCE = 16,      /* sweeps in one schedule; more are this one again */
-    VISITS_AT_ONCE = 1 << 17, /* visits in one schedule: it should stay in the cache */
+    VISITS_AT_ONCE = 1 << 12, /* visits in one schedule: it should stay in the cache */
     LEVEL_PAYS = 3            /* visits a level from which on lanes are faster than one by one */
 };
 
@@ -26,6 +26,8 @@ void sweeps_free(Sweeps *sweeps) {
     free(sweeps->ends);
     free(sweeps->scheduled);
     free(sweeps->moves);
+    free(sweeps->quiet_since);
+    free(sweeps->changed_at);
     free(sweeps->ready);
     *sweeps = (Sweeps){0};
 }
@@ -41,10 +43,13 @@ bool sweeps_can(SweepKernel kernel) {
 
 static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
     size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
+    if (bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity) return true;
     return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, bodies, sizeof *sweeps->bodies) &&
            array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
            array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
            array_reserve((void **)&sweeps->pairs, &sweeps->pair_capacity, pairs, sizeof *sweeps->pairs) &&
+           array_reserve((void **)&sweeps->quiet_since, &sweeps->quiet_capacity, pairs, sizeof *sweeps->quiet_since) &&
+           array_reserve((void **)&sweeps->changed_at, &sweeps->changed_capacity, bodies, sizeof *sweeps->changed_at) &&
            array_reserve((void **)&sweeps->ends, &sweeps->ends_capacity, pairs, sizeof *sweeps->ends) &&
            array_reserve((void **)&sweeps->scheduled, &sweeps->scheduled_capacity, pairs, sizeof *sweeps->scheduled);
 }
@@ -55,11 +60,6 @@ static bool is_negative_zero(float x) { return x == 0.0f && signbit(x); }
 static bool moves(const ProblemBody *body) {
     return body->inv_mass != 0.0f || body->inv_inertia != 0.0f || is_negative_zero(body->velocity.x) ||
            is_negative_zero(body->velocity.y) || is_negative_zero(body->angular_velocity);
-}
-
-static SweepPoint point_of(const ContactPoint *contact, float extra) {
-    return (SweepPoint){contact->arm_a,        contact->arm_b, contact->mass_normal,
-                        contact->mass_tangent, contact->bias,  extra};
 }
 
 /* Can both be points of one SweepPair? */
@@ -85,22 +85,31 @@ static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
     return (SweepEnds){moves_a ? a : ~a, sweeps->moves[b] ? b : ~b};
 }
 
+/* Member by member: a record is written once and not copied. */
+static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra) {
+    SweepPoint *point = &pair->points[k];
+    pair->sums[k].normal = contact->warm_normal;
+    pair->sums[k].tangent = contact->warm_tangent;
+    point->arm_a = contact->arm_a;
+    point->arm_b = contact->arm_b;
+    point->mass_normal = contact->mass_normal;
+    point->mass_tangent = contact->mass_tangent;
+    point->bias = contact->bias;
+    point->extra = extra;
+}
+
 static void load_pairs(Sweeps *sweeps, const ContactProblem *problem) {
+    static const ContactPoint none = {0};
     sweeps->pair_count = 0;
     for (int i = 0; i < problem->contact_count;) {
         const ContactPoint *contact = &problem->contacts[i], *next = contact + 1;
-        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
         bool two = i + 1 < problem->contact_count && share_surface(contact, next);
         SweepPair *pair = &sweeps->pairs[sweeps->pair_count];
-        *pair = (SweepPair){.sums = {{contact->warm_normal, contact->warm_tangent}},
-                            .normal = contact->normal,
-                            .friction = contact->friction,
-                            .inv_inertia_a = a->inv_inertia,
-                            .points = {point_of(contact, b->inv_inertia)}};
-        if (two) {
-            pair->sums[1] = (ContactImpulse){next->warm_normal, next->warm_tangent};
-            pair->points[1] = point_of(next, -1.0f);
-        }
+        pair->normal = contact->normal;
+        pair->friction = contact->friction;
+        pair->inv_inertia_a = problem->bodies[contact->a].inv_inertia;
+        load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia);
+        load_point(pair, 1, two ? next : &none, two ? -1.0f : 0.0f);
         sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
         i += two ? 2 : 1;
     }
@@ -163,12 +172,17 @@ static void run_schedule(Sweeps *sweeps, const SweepSchedule *schedule) {
 #endif
 }
 
+/* The number of sweeps in one schedule: equal parts of them all, if possible. */
+static int sweeps_at_once(int pair_count, int count) {
+    int most = VISITS_AT_ONCE / pair_count;
+    if (most > SWEEPS_AT_ONCE) most = SWEEPS_AT_ONCE;
+    if (most < 1) return 1;
+    return count / ((count + most - 1) / most);
+}
+
 bool sweeps_run(Sweeps *sweeps, int count) {
     if (sweeps->pair_count == 0) return true;
-    int at_once = VISITS_AT_ONCE / sweeps->pair_count;
-    if (at_once < 1) at_once = 1;
-    if (at_once > SWEEPS_AT_ONCE) at_once = SWEEPS_AT_ONCE;
-    if (at_once > count) at_once = count;
+    int at_once = sweeps_at_once(sweeps->pair_count, count);
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {

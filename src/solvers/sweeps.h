@@ -40,10 +40,14 @@ typedef struct SweepPair {
     SweepPoint points[2];
 } SweepPair;
 
-enum { LEVEL_WIDTH = 16 };
+enum {
+    LEVEL_WIDTH = 16,
+    PAIR_FLOATS = sizeof(SweepPair) / sizeof(float),
+    BODY_FLOATS = sizeof(SweepBody) / sizeof(float)
+};
 
-/* Visits that commute, at most as many as the widest vector has lanes. Slots without a visit hold the indices of
-   the spare body and pair, which are all zeros. */
+/* Visits that commute: where their records begin, in floats. Slots without a visit have the spare body and pair,
+   which are all zeros. */
 typedef struct SweepLevel {
     int32_t pair[LEVEL_WIDTH], a[LEVEL_WIDTH], b[LEVEL_WIDTH];
 } SweepLevel;
@@ -73,7 +77,10 @@ typedef struct Sweeps {
     int scheduled_count, scheduled_bodies;
     SweepSchedule whole, rest; /* of as many sweeps as fit, run again and again, and of those left over */
     bool *moves;               /* [body_count] can an impulse change the body's velocity? */
-    int32_t *ready;            /* [body_count] while scheduling: the first level that may visit the body */
+    int64_t *quiet_since; /* [pair_count] one by one: number of the visit since which nothing changes; 0: of none */
+    int64_t *changed_at;  /* [body_count] one by one: number of the visit that last changed the body */
+    int32_t *ready;       /* [body_count] while scheduling: the first level that may visit the body */
+    size_t quiet_capacity, changed_capacity;
     size_t body_capacity, pair_capacity, ends_capacity, scheduled_capacity, moves_capacity, ready_capacity;
 } Sweeps;
 

@@ -44,18 +44,16 @@ TARGET static inline void transpose(Lanes out[4], const Lanes in[4]) {
     out[3] = _mm256_shuffle_ps(high01, high23, 0xee);
 }
 
-TARGET static inline void load_rows(Lanes out[4], const float *base, size_t stride, const int32_t *index) {
+TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets) {
     Lanes rows[4];
-    for (int i = 0; i < 4; i++)
-        rows[i] = load_two(base + (size_t)index[i] * stride, base + (size_t)index[i + 4] * stride);
+    for (int i = 0; i < 4; i++) rows[i] = load_two(base + offsets[i], base + offsets[i + 4]);
     transpose(out, rows);
 }
 
-TARGET static inline void store_rows(float *base, size_t stride, const int32_t *index, const Lanes in[4]) {
+TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]) {
     Lanes rows[4];
     transpose(rows, in);
-    for (int i = 0; i < 4; i++)
-        store_two(base + (size_t)index[i] * stride, base + (size_t)index[i + 4] * stride, rows[i]);
+    for (int i = 0; i < 4; i++) store_two(base + offsets[i], base + offsets[i + 4], rows[i]);
 }
 
 TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) { run_levels(sweeps, schedule); }

@@ -64,20 +64,20 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
     apply(a, b, arm_a, arm_b, (LaneVec){lanes_mul(tangent, t.x), lanes_mul(tangent, t.y)});
 }
 
-/* `base` is a row of four floats in the record of index 0, `stride` is from record to record, in floats; out[k] gets
-   the k-th float of each record. */
-TARGET static inline void load_rows(Lanes out[4], const float *base, size_t stride, const int32_t *index);
-TARGET static inline void store_rows(float *base, size_t stride, const int32_t *index, const Lanes in[4]);
+/* `base` is a row of four floats in the first record, offsets tell how many floats behind it those of the lanes are;
+   out[k] gets the k-th float of each. */
+TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
+TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
-TARGET static inline Side load_side(const Sweeps *sweeps, const int32_t *index, Lanes inv_inertia) {
+TARGET static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
     Lanes rows[4];
-    load_rows(rows, &sweeps->bodies->x, sizeof(SweepBody) / sizeof(float), index);
+    load_rows(rows, &sweeps->bodies->x, offsets);
     return (Side){rows[0], rows[1], rows[2], rows[3], inv_inertia};
 }
 
-TARGET static inline void store_side(Sweeps *sweeps, const int32_t *index, const Side *side) {
+TARGET static inline void store_side(Sweeps *sweeps, const int32_t *offsets, const Side *side) {
     const Lanes rows[4] = {side->x, side->y, side->spin, side->inv_mass};
-    store_rows(&sweeps->bodies->x, sizeof(SweepBody) / sizeof(float), index, rows);
+    store_rows(&sweeps->bodies->x, offsets, rows);
 }
 
 /* The velocities that the pairs with a second point have after it, and the others have before. */
@@ -87,31 +87,30 @@ TARGET static inline void keep_where_single(Side *after, const Side *before, Lan
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
 
-TARGET static inline void solve_pairs(Sweeps *sweeps, const int32_t *pair, const int32_t *index_a,
-                                      const int32_t *index_b) {
-    const size_t stride = sizeof(SweepPair) / sizeof(float);
+TARGET static inline void solve_pairs(Sweeps *sweeps, const int32_t *pair, const int32_t *offset_a,
+                                      const int32_t *offset_b) {
     SweepPair *records = sweeps->pairs;
     Lanes sums[4], shared[4], arms1[4], masses1[4], arms2[4], masses2[4];
-    load_rows(sums, &records->sums[0].normal, stride, pair);
-    load_rows(shared, &records->normal.x, stride, pair);
-    load_rows(arms1, &records->points[0].arm_a.x, stride, pair);
-    load_rows(masses1, &records->points[0].mass_normal, stride, pair);
-    load_rows(arms2, &records->points[1].arm_a.x, stride, pair);
-    load_rows(masses2, &records->points[1].mass_normal, stride, pair);
+    load_rows(sums, &records->sums[0].normal, pair);
+    load_rows(shared, &records->normal.x, pair);
+    load_rows(arms1, &records->points[0].arm_a.x, pair);
+    load_rows(masses1, &records->points[0].mass_normal, pair);
     const Surface surface = {{shared[0], shared[1]}, {shared[1], lanes_negate(shared[0])}, shared[2]};
-    Side a = load_side(sweeps, index_a, shared[3]), b = load_side(sweeps, index_b, masses1[3]);
+    Side a = load_side(sweeps, offset_a, shared[3]), b = load_side(sweeps, offset_b, masses1[3]);
 
     solve_point(&a, &b, &surface, arms1, masses1, &sums[0], &sums[1]);
     Side single_a = a, single_b = b;
+    load_rows(arms2, &records->points[1].arm_a.x, pair);
+    load_rows(masses2, &records->points[1].mass_normal, pair);
     solve_point(&a, &b, &surface, arms2, masses2, &sums[2], &sums[3]);
     if (lanes_any_positive(masses2[3])) {
         keep_where_single(&a, &single_a, masses2[3]);
         keep_where_single(&b, &single_b, masses2[3]);
     }
 
-    store_side(sweeps, index_a, &a);
-    store_side(sweeps, index_b, &b);
-    store_rows(&records->sums[0].normal, stride, pair, sums);
+    store_side(sweeps, offset_a, &a);
+    store_side(sweeps, offset_b, &b);
+    store_rows(&records->sums[0].normal, pair, sums);
 }
 
 TARGET static inline void run_levels(Sweeps *sweeps, const SweepSchedule *schedule) {

@@ -63,9 +63,12 @@ static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
     return changed;
 }
 
+/* The body of an end, whether it moves or not. */
+static int32_t body_at(int32_t end) { return end < 0 ? ~end : end; }
+
 /* Not 0 where the visit changed anything. */
-static uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
-    SweepBody *body_a = &bodies[ends.a < 0 ? ~ends.a : ends.a], *body_b = &bodies[ends.b < 0 ? ~ends.b : ends.b];
+static inline uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
+    SweepBody *body_a = &bodies[body_at(ends.a)], *body_b = &bodies[body_at(ends.b)];
     SweepBody a = *body_a, b = *body_b;
     uint32_t changed = 0;
     int points = pair->points[1].extra < 0.0f ? 2 : 1;
@@ -79,11 +82,31 @@ static uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
     return changed;
 }
 
+/* A pair whose last visit changed nothing rests until another visit changes one of its bodies. */
+static bool may_rest(const Sweeps *sweeps, int pair) {
+    int64_t quiet = sweeps->quiet_since[pair];
+    SweepEnds ends = sweeps->ends[pair];
+    return quiet > sweeps->changed_at[body_at(ends.a)] && quiet > sweeps->changed_at[body_at(ends.b)];
+}
+
+/* True where visit number `now` changed anything. */
+static bool visit_pair(Sweeps *sweeps, int pair, int64_t now) {
+    SweepEnds ends = sweeps->ends[pair];
+    bool changed = visit(sweeps->bodies, &sweeps->pairs[pair], ends) != 0;
+    sweeps->quiet_since[pair] = changed ? 0 : now;
+    if (changed && ends.a >= 0) sweeps->changed_at[ends.a] = now;
+    if (changed && ends.b >= 0) sweeps->changed_at[ends.b] = now;
+    return changed;
+}
+
 void sweeps_run_one_by_one(Sweeps *sweeps, int count) {
-    uint32_t changed = 1;
-    for (int sweep = 0; changed != 0 && sweep < count; sweep++) {
-        changed = 0;
+    memset(sweeps->quiet_since, 0, (size_t)sweeps->pair_count * sizeof *sweeps->quiet_since);
+    memset(sweeps->changed_at, 0, (size_t)sweeps->body_count * sizeof *sweeps->changed_at);
+    bool changed = true;
+    int64_t now = 0;
+    for (int sweep = 0; changed && sweep < count; sweep++) {
+        changed = false;
         for (int i = 0; i < sweeps->pair_count; i++)
-            changed |= visit(sweeps->bodies, &sweeps->pairs[i], sweeps->ends[i]);
+            if (!may_rest(sweeps, i)) changed |= visit_pair(sweeps, i, ++now);
     }
 }

@@ -16,8 +16,8 @@ static bool add_level(SweepSchedule *schedule, const Sweeps *sweeps) {
         return false;
     SweepLevel *level = &schedule->levels[schedule->level_count];
     for (int i = 0; i < LEVEL_WIDTH; i++) {
-        level->pair[i] = sweeps->pair_count;
-        level->a[i] = level->b[i] = sweeps->body_count;
+        level->pair[i] = sweeps->pair_count * PAIR_FLOATS;
+        level->a[i] = level->b[i] = sweeps->body_count * BODY_FLOATS;
     }
     schedule->filled[schedule->level_count] = 0;
     schedule->open[schedule->level_count] = schedule->level_count;
@@ -42,9 +42,9 @@ static int32_t place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair
     int32_t level = find_open(schedule, earliest);
     if (level == schedule->level_count && !add_level(schedule, sweeps)) return -1;
     int32_t slot = schedule->filled[level]++;
-    schedule->levels[level].pair[slot] = pair;
-    schedule->levels[level].a[slot] = a;
-    schedule->levels[level].b[slot] = b;
+    schedule->levels[level].pair[slot] = pair * PAIR_FLOATS;
+    schedule->levels[level].a[slot] = a * BODY_FLOATS;
+    schedule->levels[level].b[slot] = b * BODY_FLOATS;
     if (slot == LEVEL_WIDTH - 1) schedule->open[level] = level + 1;
     return level + 1;
 }

@@ -17,7 +17,7 @@ typedef struct RandomProblem {
 
 /* A zero of either sign now and then: sums and clamps must keep them apart. */
 static float any_number(uint32_t *seed, float size) {
-    float kind = uniform(seed, 0, 1);
+    float kind = uniform(seed, 0, size > 0 ? 1 : 0.2f);
     if (kind < 0.1f) return 0.0f;
     if (kind < 0.2f) return -0.0f;
     return uniform(seed, -size, size);
@@ -56,7 +56,7 @@ static void make_random(RandomProblem *random, uint32_t *seed, int bodies, float
     for (int a = 0; a < bodies; a++) {
         for (int b = a + 1; b < bodies && contacts + 3 <= CONTACTS_MAX; b++) {
             if (uniform(seed, 0, 1) > density) continue;
-            float angle = uniform(seed, -3, 3), friction = uniform(seed, 0, 1);
+            float angle = uniform(seed, -3, 3), friction = fabsf(any_number(seed, 1));
             int points = 1 + (int)uniform(seed, 0, 2.99f);
             for (int k = 0; k < points; k++)
                 random->contacts[contacts++] = random_point(seed, a, b, mat22_rotation(angle).column1, friction);
@@ -70,6 +70,19 @@ static void make_random(RandomProblem *random, uint32_t *seed, int bodies, float
                                        .contacts = random->contacts};
 }
 
+/* All at rest, and nothing but zeros of either sign to compute with. */
+static void calm_down(RandomProblem *random, uint32_t *seed) {
+    for (int i = 0; i < random->problem.body_count; i++) {
+        random->bodies[i].velocity = any_vector(seed, 0);
+        random->bodies[i].angular_velocity = any_number(seed, 0);
+    }
+    for (int i = 0; i < random->problem.contact_count; i++) {
+        random->contacts[i].bias = any_number(seed, 0);
+        random->contacts[i].warm_normal = any_number(seed, 0);
+        random->contacts[i].warm_tangent = any_number(seed, 0);
+    }
+}
+
 static void random_problems_have_the_bits_of_the_plain_text(void **state) {
     (void)state;
     static RandomProblem random;
@@ -78,13 +91,22 @@ static void random_problems_have_the_bits_of_the_plain_text(void **state) {
     const int iterations[] = {1, 2, 10, 16, 17, 40};
     for (int i = 0; i < 600; i++) {
         int bodies = 2 + i % (BODIES_MAX - 1);
-        make_random(&random, &seed, bodies, i % 3 == 0 ? 0.5f : 4.0f / (float)bodies, i % 4 == 0 ? 30.0f : 2.0f);
+        const float densities[] = {0.5f, 4.0f / (float)bodies, 0.7f / (float)bodies};
+        make_random(&random, &seed, bodies, densities[i % 3], i % 4 == 0 ? 30.0f : 2.0f);
+        if (i % 5 == 0) calm_down(&random, &seed);
         assert_kernels_agree(sweeps, &random.problem, iterations[i % 6]);
     }
     free_kernels(sweeps);
 }
 
-/* The same pairs again, with other numbers: the schedule of the last step is used again. */
+static int find_fixed(const RandomProblem *random) {
+    int body = 0;
+    while (random->bodies[body].inv_mass != 0) body++;
+    return body;
+}
+
+/* The same pairs again, with other numbers: the schedule of the last step is used again. Not so when a body begins to
+   move. */
 static void a_kept_schedule_serves_the_same_pairs(void **state) {
     (void)state;
     static RandomProblem random;
@@ -94,8 +116,9 @@ static void a_kept_schedule_serves_the_same_pairs(void **state) {
     assert_true(random.problem.contact_count > 150);
     for (int i = 0; i < 20; i++) {
         for (int k = 0; k < random.problem.contact_count; k++) random.contacts[k].bias = any_number(&seed, 1);
-        assert_kernels_agree(sweeps, &random.problem, 10 + i % 2);
-        if (i == 10) random.bodies[3].inv_mass = random.bodies[3].inv_inertia = 0;
+        assert_kernels_agree(sweeps, &random.problem, 10 + i / 10);
+        ProblemBody *fixed = &random.bodies[find_fixed(&random)];
+        if (i % 4 == 0) fixed->inv_mass = fixed->inv_inertia = 1;
     }
     free_kernels(sweeps);
 }
