@@ -30,11 +30,14 @@ double samples_quantile(const Samples *samples, double share) {
 
 double samples_median(const Samples *samples) { return samples_quantile(samples, 0.5); }
 
-double clock_seconds(void) {
+static double read_clock(clockid_t clock) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
+
+double clock_seconds(void) { return read_clock(CLOCK_MONOTONIC); }
+double processor_seconds(void) { return read_clock(CLOCK_PROCESS_CPUTIME_ID); }
 
 /* Chipmunk greets on standard output: the lines go to a copy of it, and what libraries print to standard error. */
 static FILE *lines;

@@ -14,8 +14,10 @@ void samples_add(Samples *samples, double value);
 double samples_quantile(const Samples *samples, double share);
 double samples_median(const Samples *samples);
 
-/* Seconds, from any start. */
+/* Seconds, from any start: of the clock, and of processor time, which on a busy machine does not count the pauses that
+   a long run meets more often than a short one. */
 double clock_seconds(void);
+double processor_seconds(void);
 
 void report_header(void);
 void report_line(const char *benchmark, const char *rival, const char *figure, const char *unit,
