@@ -33,12 +33,7 @@ void sweeps_free(Sweeps *sweeps) {
 }
 
 bool sweeps_can(SweepKernel kernel) {
-    switch (kernel) {
-#ifdef __x86_64__
-    case SWEEP_AVX2: return __builtin_cpu_supports("avx2");
-#endif
-    default: return kernel == SWEEP_ONE_BY_ONE;
-    }
+    return kernel == SWEEP_ONE_BY_ONE || (kernel == SWEEP_AVX2 && sweeps_have_avx2());
 }
 
 static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
@@ -116,37 +111,12 @@ static void load_pairs(Sweeps *sweeps, const ContactProblem *problem) {
     sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
 }
 
-static void warm_start_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k) {
-    const SweepPoint *point = &pair->points[k];
-    Vec2 impulse = vec2_add(vec2_scale(pair->sums[k].normal, pair->normal),
-                            vec2_scale(pair->sums[k].tangent, vec2_cross_scalar(pair->normal, 1.0f)));
-    a->x -= a->inv_mass * impulse.x;
-    a->y -= a->inv_mass * impulse.y;
-    a->spin -= pair->inv_inertia_a * vec2_cross(point->arm_a, impulse);
-    b->x += b->inv_mass * impulse.x;
-    b->y += b->inv_mass * impulse.y;
-    b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
-}
-
-static void warm_start(Sweeps *sweeps) {
-    for (int i = 0; i < sweeps->pair_count; i++) {
-        const SweepPair *pair = &sweeps->pairs[i];
-        SweepEnds ends = sweeps->ends[i];
-        SweepBody a = sweeps->bodies[ends.a < 0 ? ~ends.a : ends.a];
-        SweepBody b = sweeps->bodies[ends.b < 0 ? ~ends.b : ends.b];
-        warm_start_point(&a, &b, pair, 0);
-        if (pair->points[1].extra < 0.0f) warm_start_point(&a, &b, pair, 1);
-        if (ends.a >= 0) sweeps->bodies[ends.a] = a;
-        if (ends.b >= 0) sweeps->bodies[ends.b] = b;
-    }
-}
-
 bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
     if (!reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     load_bodies(sweeps, problem);
     load_pairs(sweeps, problem);
-    warm_start(sweeps);
+    sweeps_warm_start(sweeps);
     return true;
 }
 
@@ -166,12 +136,6 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest) {
     return true;
 }
 
-static void run_schedule(Sweeps *sweeps, const SweepSchedule *schedule) {
-#ifdef __x86_64__
-    sweeps_run_avx2(sweeps, schedule);
-#endif
-}
-
 /* The number of sweeps in one schedule: equal parts of them all, if possible. */
 static int sweeps_at_once(int pair_count, int count) {
     int most = VISITS_AT_ONCE / pair_count;
@@ -189,8 +153,8 @@ bool sweeps_run(Sweeps *sweeps, int count) {
         sweeps_run_one_by_one(sweeps, count);
         return true;
     }
-    for (int done = 0; done + at_once <= count; done += at_once) run_schedule(sweeps, &sweeps->whole);
-    run_schedule(sweeps, &sweeps->rest);
+    for (int done = 0; done + at_once <= count; done += at_once) sweeps_run_avx2(sweeps, &sweeps->whole);
+    sweeps_run_avx2(sweeps, &sweeps->rest);
     return true;
 }
 

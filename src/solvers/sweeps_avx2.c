@@ -56,6 +56,19 @@ TARGET static inline void store_rows(float *base, const int32_t *offsets, const 
     for (int i = 0; i < 4; i++) store_two(base + offsets[i], base + offsets[i + 4], rows[i]);
 }
 
+bool sweeps_have_avx2(void) { return __builtin_cpu_supports("avx2"); }
+
 TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) { run_levels(sweeps, schedule); }
+
+#else
+
+#include <assert.h>
+
+bool sweeps_have_avx2(void) { return false; }
+
+void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
+    (void)sweeps, (void)schedule;
+    assert(false);
+}
 
 #endif

@@ -4,6 +4,9 @@
 
 #include <string.h>
 
+/* The body of an end, whether it moves or not. */
+static int32_t body_at(int32_t end) { return end < 0 ? ~end : end; }
+
 static Vec2 relative_velocity(const SweepBody *a, const SweepBody *b, const SweepPoint *point) {
     return vec2(((b->x - b->spin * point->arm_b.y) - a->x) + a->spin * point->arm_a.y,
                 ((b->y + b->spin * point->arm_b.x) - a->y) - a->spin * point->arm_a.x);
@@ -16,6 +19,24 @@ static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const Sweep
     b->x += b->inv_mass * impulse.x;
     b->y += b->inv_mass * impulse.y;
     b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
+}
+
+static void warm_start_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k) {
+    Vec2 along_tangent = vec2_scale(pair->sums[k].tangent, vec2_cross_scalar(pair->normal, 1.0f));
+    Vec2 impulse = vec2_add(vec2_scale(pair->sums[k].normal, pair->normal), along_tangent);
+    apply(a, b, pair, &pair->points[k], impulse);
+}
+
+void sweeps_warm_start(Sweeps *sweeps) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepPair *pair = &sweeps->pairs[i];
+        SweepEnds ends = sweeps->ends[i];
+        SweepBody a = sweeps->bodies[body_at(ends.a)], b = sweeps->bodies[body_at(ends.b)];
+        warm_start_point(&a, &b, pair, 0);
+        if (pair->points[1].extra < 0.0f) warm_start_point(&a, &b, pair, 1);
+        if (ends.a >= 0) sweeps->bodies[ends.a] = a;
+        if (ends.b >= 0) sweeps->bodies[ends.b] = b;
+    }
 }
 
 static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point,
@@ -62,9 +83,6 @@ static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
     sum->tangent = after.tangent;
     return changed;
 }
-
-/* The body of an end, whether it moves or not. */
-static int32_t body_at(int32_t end) { return end < 0 ? ~end : end; }
 
 /* Not 0 where the visit changed anything. */
 static inline uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
