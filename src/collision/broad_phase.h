@@ -30,5 +30,26 @@ typedef struct PairList {
 } PairList;
 
 /* Fills the list with all pairs of overlapping bounds, not both fixed, rising by (a, b): the order in which
-   sequential impulses visits them. False when memory is short. */
+   sequential impulses visits them. Looks at every pair: the text to read, and the fast way for few bodies. False when
+   memory is short. */
 bool broad_phase_find(PairList *list, const Bounds *bounds, const bool *fixed, int count);
+
+typedef struct SweptBounds SweptBounds;
+
+/* The same pairs in the same order by sort and sweep (Baraff 1992): bounds sorted by where they begin along an axis
+   need looking at only until one begins behind the end. The order persists and changes little from step to step. Across
+   the axis the plane is cut into strips, each swept by itself, so that a wide world costs no more a body than a small
+   one. Zero-initialise. */
+typedef struct SortAndSweep {
+    bool along_y;
+    int count, strip_count;
+    float strips_begin, strips_per_metre;
+    SweptBounds *sorted;   /* [count] along the axis */
+    SweptBounds *in_strip; /* strip by strip, in the same order; a body may be in several */
+    int *starts;           /* scratch: of strips in in_strip, then of bodies in the list of pairs */
+    PairList found;        /* strip by strip */
+    size_t sorted_capacity, in_strip_capacity, starts_capacity;
+} SortAndSweep;
+
+void sort_and_sweep_free(SortAndSweep *sweep);
+bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count);

@@ -54,12 +54,12 @@ static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b)
 }
 
 /* Where edge `edge` ends, going round counter-clockwise. */
-static ClipVertex edge_end(const Box *box, Edge edge) {
-    Vec2 h = box->half;
-    const Vec2 ends[] = {
-        [EDGE_TOP] = {-h.x, h.y}, [EDGE_LEFT] = {-h.x, -h.y}, [EDGE_BOTTOM] = {h.x, -h.y}, [EDGE_RIGHT] = {h.x, h.y}};
+static inline ClipVertex edge_end(const Box *box, Edge edge) {
+    static const Vec2 corners[] = {
+        [EDGE_TOP] = {-1, 1}, [EDGE_LEFT] = {-1, -1}, [EDGE_BOTTOM] = {1, -1}, [EDGE_RIGHT] = {1, 1}};
+    Vec2 end = vec2(corners[edge].x * box->half.x, corners[edge].y * box->half.y);
     Edge next = edge == EDGE_RIGHT ? EDGE_TOP : edge + 1;
-    Vec2 position = vec2_add(box->position, mat22_multiply(box->rotation, ends[edge]));
+    Vec2 position = vec2_add(box->position, mat22_multiply(box->rotation, end));
     return (ClipVertex){position, NO_EDGE, NO_EDGE, (uint8_t)edge, (uint8_t)next};
 }
 
@@ -78,7 +78,7 @@ static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 referenc
 
 /* Keeps what lies behind the line normal . x = offset; `clip_edge` is the reference edge on that line. False
    where fewer than two points are left. */
-static bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
+static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
     int count = 0;
     float distance0 = vec2_dot(normal, in[0].position) - offset;
     float distance1 = vec2_dot(normal, in[1].position) - offset;

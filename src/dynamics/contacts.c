@@ -14,31 +14,36 @@ void contact_set_free(ContactSet *set) {
     *set = (ContactSet){0};
 }
 
-static bool reserve(ContactSet *set) {
-    size_t arbiters = (size_t)set->arbiter_count + 1, contacts = (size_t)set->contact_count + 2;
-    return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, arbiters, sizeof *set->arbiters) &&
-           array_reserve((void **)&set->contacts, &set->contact_capacity, contacts, sizeof *set->contacts) &&
-           array_reserve((void **)&set->impulses, &set->impulse_capacity, contacts, sizeof *set->impulses);
+/* Room for every candidate to touch in two points. */
+static bool reserve(ContactSet *set, size_t pairs) {
+    return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
+           array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
+           array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses);
+}
+
+static void add_arbiter(ContactSet *set, BodyPair pair, const Manifold *manifold) {
+    set->arbiters[set->arbiter_count++] = (Arbiter){pair.a, pair.b, set->contact_count, manifold->count};
+    for (int k = 0; k < manifold->count; k++) {
+        const ManifoldPoint *point = &manifold->points[k];
+        ContactPoint *contact = &set->contacts[set->contact_count++];
+        contact->a = pair.a;
+        contact->b = pair.b;
+        contact->position = point->position;
+        contact->normal = manifold->normal;
+        contact->separation = point->separation;
+        contact->feature = point->feature;
+        contact->warm_normal = contact->warm_tangent = 0;
+    }
 }
 
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes) {
     set->arbiter_count = set->contact_count = 0;
+    if (!reserve(set, pairs->count)) return false;
     for (size_t i = 0; i < pairs->count; i++) {
         BodyPair pair = pairs->pairs[i];
         Manifold manifold;
         manifold_compute(&manifold, &boxes[pair.a], &boxes[pair.b]);
-        if (manifold.count == 0) continue;
-        if (!reserve(set)) return false;
-        set->arbiters[set->arbiter_count++] = (Arbiter){pair.a, pair.b, set->contact_count, manifold.count};
-        for (int k = 0; k < manifold.count; k++) {
-            const ManifoldPoint *point = &manifold.points[k];
-            set->contacts[set->contact_count++] = (ContactPoint){.a = pair.a,
-                                                                 .b = pair.b,
-                                                                 .position = point->position,
-                                                                 .normal = manifold.normal,
-                                                                 .separation = point->separation,
-                                                                 .feature = point->feature};
-        }
+        if (manifold.count > 0) add_arbiter(set, pair, &manifold);
     }
     return true;
 }

@@ -13,6 +13,7 @@
 struct World {
     WorldDef def;
     int body_count, bomb;
+    int posed; /* bodies with boxes and bounds: of the pose in `moved`, and after a step that failed in `bodies` */
     size_t body_capacity;
     Body *bodies, *moved; /* now, and after the step in progress */
     bool *fixed;
@@ -21,6 +22,7 @@ struct World {
     Bounds *bounds;
     ProblemBody *problem_bodies;
     BodyVelocity *velocities;
+    SortAndSweep broad_phase;
     PairList pairs;
     ContactSet last, next;
     ContactProblem problem;
@@ -48,6 +50,7 @@ void world_destroy(World *world) {
     free(world->bounds);
     free(world->problem_bodies);
     free(world->velocities);
+    sort_and_sweep_free(&world->broad_phase);
     free(world->pairs.pairs);
     contact_set_free(&world->last);
     contact_set_free(&world->next);
@@ -96,13 +99,19 @@ const Body *world_bodies(const World *world) { return world->bodies; }
 const ContactProblem *world_problem(const World *world) { return &world->problem; }
 const ContactSolution *world_solution(const World *world) { return &world->solution; }
 
+static bool same_pose(const Body *x, const Body *y) {
+    return memcmp(&x->position, &y->position, sizeof x->position) == 0 &&
+           memcmp(&x->angle, &y->angle, sizeof x->angle) == 0;
+}
+
 static bool collide(World *world) {
     for (int i = 0; i < world->body_count; i++) {
         const Body *body = &world->bodies[i];
+        if (i < world->posed && same_pose(body, &world->moved[i])) continue;
         world->boxes[i] = box_make(body->position, body->size, body->angle);
         world->bounds[i] = bounds_of_box(&world->boxes[i]);
     }
-    return broad_phase_find(&world->pairs, world->bounds, world->fixed, world->body_count) &&
+    return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
            contact_set_collide(&world->next, &world->pairs, world->boxes);
 }
 
@@ -161,6 +170,7 @@ static void commit(World *world) {
     Body *bodies = world->bodies;
     world->bodies = world->moved;
     world->moved = bodies;
+    world->posed = world->body_count;
     ContactSet last = world->last;
     world->last = world->next;
     world->next = last;

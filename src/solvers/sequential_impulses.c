@@ -11,14 +11,20 @@
    (2005); "Fast and Simple Physics using Sequential Impulses" (GDC 2006). Fails slowly: an impulse travels one
    contact a sweep against the order, so high stacks and heavy boxes on light ones stay soft.
 
-   Bit-exact: the order of every float operation is fixed. */
+   Bit-exact: the order of every float operation is fixed. This is the plain text; with accumulation the engine runs
+   its fast equal, sweeps.h. */
+#include "solvers/sequential_impulses.h"
+
 #include "solvers/solvers.h"
+#include "solvers/sweeps.h"
 
 #include <stdlib.h>
 
 typedef struct SequentialImpulses {
     int iterations;
     bool accumulate;
+    SweepKernel kernel;
+    Sweeps sweeps;
 } SequentialImpulses;
 
 static const SettingSpec settings[] = {{"iterations", "sweeps over all contacts a step (the scene's own: 10)"},
@@ -26,7 +32,8 @@ static const SettingSpec settings[] = {{"iterations", "sweeps over all contacts 
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
-    SequentialImpulses options = {10, true};
+    SequentialImpulses options = {.iterations = 10, .accumulate = true};
+    options.kernel = sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE;
     if (!settings_int(chosen, "iterations", 1, 1000000, &options.iterations, error) ||
         !settings_bool(chosen, "accumulate", &options.accumulate, error))
         return NULL;
@@ -94,19 +101,35 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
     apply(a, b, contact, bodies, vec2_scale(tangent, direction));
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    (void)error;
-    const SequentialImpulses *solver = state;
+void sequential_impulses_solve(const ContactProblem *problem, int iterations, bool accumulate,
+                               ContactSolution *solution) {
     for (int i = 0; i < problem->body_count; i++)
         solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-    if (solver->accumulate) warm_start(problem, solution);
-    for (int sweep = 0; sweep < solver->iterations; sweep++)
+    if (accumulate) warm_start(problem, solution);
+    for (int sweep = 0; sweep < iterations; sweep++)
         for (int i = 0; i < problem->contact_count; i++)
             solve_contact(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i],
-                          solver->accumulate);
+                          accumulate);
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    SequentialImpulses *solver = state;
+    if (solver->accumulate) {
+        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem) || !sweeps_run(&solver->sweeps, solver->iterations))
+            return error_memory(error, "engine");
+        if (sweeps_end(&solver->sweeps, solution)) return true;
+    }
+    sequential_impulses_solve(problem, solver->iterations, solver->accumulate, solution);
     return true;
 }
 
+static void destroy(void *state) {
+    SequentialImpulses *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}
+
 const ContactSolverKind solver_sequential_impulses = {
-    "engine", "sequential impulses with warm starting: the physics engine", settings, create, solve, free};
+    "engine", "sequential impulses with warm starting: the physics engine", settings, create, solve, destroy};

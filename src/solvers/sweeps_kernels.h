@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parts that sweeps.c is put together from. */
+#pragma once
+#include "solvers/sweeps.h"
+
+/* Makes the schedule of that many sweeps over the pairs. False when memory is short. */
+bool sweeps_schedule(SweepSchedule *schedule, Sweeps *sweeps, int count);
+
+bool sweeps_have_avx2(void);
+
+/* Solves the levels one after the other, eight pairs at a time. */
+void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule);
+
+/* Applies the impulses that the sums begin with. */
+void sweeps_warm_start(Sweeps *sweeps);
+
+/* Sweeps pair by pair until nothing changes any more: every later sweep would change nothing either. */
+void sweeps_run_one_by_one(Sweeps *sweeps, int count);

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fast sweeps have the bits of the plain text, frame by frame of the scenes. */
+#include "testing.h"
+
+#include "simulate/simulate.h"
+#include "solvers/kernels.h"
+
+static bool agree(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
+                  Error *error) {
+    (void)frame, (void)solution, (void)error;
+    assert_kernels_agree(context, problem, 10);
+    return true;
+}
+
+static void run_scene(const char *name, float bomb_x) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    scene->bomb.body.position.x = bomb_x;
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    Sweeps sweeps[SWEEP_KERNELS] = {{0}};
+    assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, sweeps}, &error), error);
+    for (int i = 0; i < SWEEP_KERNELS; i++) sweeps_free(&sweeps[i]);
+    scene_destroy(scene);
+}
+
+static void every_frame_has_the_bits_of_the_plain_text(void **state) {
+    (void)state;
+    const char *const names[] = {"single", "stack", "pyramid", "pyramid_settled"};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 5; k++) run_scene(names[i], -5 + 2.35f * (float)k);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_has_the_bits_of_the_plain_text)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

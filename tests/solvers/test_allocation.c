@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step allocates nothing once the world has warmed up. The linker hands every call of malloc, calloc and realloc
+   in this program to the functions below (tests/CMakeLists.txt). */
+#include "worlds.h"
+
+static int allocations;
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *block, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+
+void *__wrap_malloc(size_t size) {
+    allocations++;
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size) {
+    allocations++;
+    return __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *block, size_t size) {
+    allocations++;
+    return __real_realloc(block, size);
+}
+
+static void a_settled_pyramid_steps_without_allocating(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int row = 0; row < 11; row++)
+        for (int i = row; i < 11; i++) {
+            float x = 1.125f * ((float)i - 0.5f * (float)row);
+            add_body(world,
+                     &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.5f + (float)row}});
+        }
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 60);
+    assert_true(allocations > 10);
+    allocations = 0;
+    run(world, &engine, 60);
+    assert_int_equal(allocations, 0);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
