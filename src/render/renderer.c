@@ -69,14 +69,15 @@ bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
 }
 
 bool renderer_draw_next(Renderer *renderer, int frame, Image *image, const bool **changed, Error *error) {
-    Drawing before = renderer->drawing;
+    const Drawing nothing = {0}, before = renderer->drawing;
+    bool follows = renderer->follows;
+    renderer->follows = false; /* until all has gone well */
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
     if (!compose(renderer, frame, error)) return false;
-    const Drawing nothing = {0};
-    bool part = damage_find(renderer->follows ? &renderer->before : &nothing, &renderer->drawing, image->height,
-                            renderer->changed);
+    bool part =
+        damage_find(follows ? &renderer->before : &nothing, &renderer->drawing, image->height, renderer->changed);
     renderer->follows = paint(renderer, part ? renderer->changed : NULL, image, error);
     return renderer->follows;
 }

@@ -69,7 +69,10 @@ static void draw_panel(cairo_t *cairo, const Picture *picture, int panel, int fr
                         rect.top + camera->top - camera->scale * (double)run->position[i].y);
         cairo_rotate(cairo, -(double)run->angle[i]);
         draw_body(cairo, camera->scale * (double)run->size[body].x, camera->scale * (double)run->size[body].y,
-                  run->fixed[body], run->fixed[body] ? ground : body == run->bomb ? bomb : boxes[panel]);
+                  run->fixed[body],
+                  run->fixed[body]    ? ground
+                  : body == run->bomb ? bomb
+                                      : boxes[panel]);
         cairo_restore(cairo);
     }
     cairo_restore(cairo);

@@ -12,11 +12,8 @@
 int main(int argc, char **argv) {
     Job job = job_read(argc - 1, argv);
     Error error = {0};
-    RenderOptions options = {.width = job.width,
-                             .height = job.height,
-                             .last = -1,
-                             .jobs = atoi(argv[argc - 1]),
-                             .directory = job.directory};
+    RenderOptions options = {
+        .width = job.width, .height = job.height, .last = -1, .jobs = atoi(argv[argc - 1]), .directory = job.directory};
     const Trajectory *const panels[PANELS] = {job.runs[0], job.runs[1]};
     double start = clock_seconds();
     if (!render_sequence(panels, PANELS, &options, NULL, &error)) {
