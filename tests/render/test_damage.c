@@ -127,6 +127,7 @@ static void other_calls_may_come_between(void **state) {
     Error error = {0};
     Trajectory *run = run_make("engine", 6);
     const Trajectory *const panels[] = {run};
+    for (int frame = 0; frame < 6; frame++) run_position(run, frame, FIRST_BOX)->y += 1.6F * (float)frame;
     Twins twins;
     open_twins(&twins, panels, 1);
     for (int frame = 0; frame < 6; frame++) {
