@@ -11,13 +11,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SIZE = 256, FRAMES, VIDEO, JOBS, CONTEXT };
+enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
     {"size", SIZE, "WxH", 0, "Size of a frame in pixels (default: 1920x1080)", 0},
     {"frames", FRAMES, "A:B", 0, "Draw these frames only (default: all)", 0},
     {"video", VIDEO, "FILE.mp4", 0, "Encode the frames too (ffmpeg, H.264)", 0},
+    {"png", PNG, "fast|small", 0, "How hard to compress (default: fast); the pictures are the same", 0},
     {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
     {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
     {0}};
@@ -25,7 +26,7 @@ static const struct argp_option option_table[] = {
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count;
-    const char *output, *size, *frames, *video, *jobs, *context;
+    const char *output, *size, *frames, *video, *png, *jobs, *context;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -35,6 +36,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case SIZE: options->size = value; break;
     case FRAMES: options->frames = value; break;
     case VIDEO: options->video = value; break;
+    case PNG: options->png = value; break;
     case JOBS: options->jobs = value; break;
     case CONTEXT: options->context = value; break;
     case ARGP_KEY_ARG:
@@ -72,6 +74,12 @@ static bool choose_context(const char *name, RenderContext *context, Error *erro
     return true;
 }
 
+static bool choose_png(const char *name, bool *small, Error *error) {
+    if (name == NULL) return true;
+    *small = strcmp(name, "small") == 0;
+    return *small || strcmp(name, "fast") == 0 || error_input(error, "--png", "'%s' is neither fast nor small", name);
+}
+
 static bool read_options(const Options *options, RenderOptions *render, Error *error) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     *render = (RenderOptions){.width = 1920,
@@ -83,6 +91,7 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
                                                                 : (int)cores,
                               .directory = options->output};
     return choose_context(options->context, &render->context, error) &&
+           choose_png(options->png, &render->small, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||

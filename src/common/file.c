@@ -103,18 +103,23 @@ static int create_beside(const char *path, char *name, size_t name_size) {
     }
 }
 
-/* The new name itself must survive a power cut. A folder that may not be read or synced cannot do better. */
-static bool sync_folder(const char *path) {
-    char folder[PATH_MAX];
-    int length = (int)file_folder_length(path);
-    snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
-    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+/* What may not be read or synced cannot do better. */
+static bool sync_entry(const char *path) {
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return true;
     bool done = fsync(file) == 0 || errno == EINVAL;
     int cause = errno;
     close(file);
     errno = cause;
     return done;
+}
+
+/* The new name itself must survive a power cut. */
+static bool sync_folder(const char *path) {
+    char folder[PATH_MAX];
+    int length = (int)file_folder_length(path);
+    snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
+    return sync_entry(folder);
 }
 
 /* Closes even after a failure, and keeps errno of what failed first. */
@@ -125,12 +130,12 @@ static bool close_after(int file, bool done) {
     return done;
 }
 
-static bool replace(const char *path, const void *data, size_t size) {
+static bool replace(const char *path, const void *data, size_t size, bool wait) {
     char name[PATH_MAX];
     int file = create_beside(path, name, sizeof name);
     if (file < 0) return false;
-    bool done = close_after(file, write_all(file, data, size) && fsync(file) == 0);
-    if (done && rename(name, path) == 0) return sync_folder(path);
+    bool done = close_after(file, write_all(file, data, size) && (!wait || fsync(file) == 0));
+    if (done && rename(name, path) == 0) return !wait || sync_folder(path);
     int cause = errno;
     unlink(name);
     errno = cause;
@@ -147,20 +152,28 @@ static bool write_into(int file, const void *data, size_t size) {
     return file >= 0 && close_after(file, write_all(file, data, size));
 }
 
-static bool put(const char *path, const void *data, size_t size) {
+static bool put(const char *path, const void *data, size_t size, bool wait) {
     struct stat status;
-    if (lstat(path, &status) != 0) return replace(path, data, size);
+    if (lstat(path, &status) != 0) return replace(path, data, size, wait);
     bool is_link = S_ISLNK(status.st_mode);
     if (is_link && stat(path, &status) != 0) return false;
     if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), data, size);
     if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), data, size);
-    if (!is_link) return replace(path, data, size);
+    if (!is_link) return replace(path, data, size, wait);
     char target[PATH_MAX];
-    return realpath(path, target) != NULL && replace(target, data, size);
+    return realpath(path, target) != NULL && replace(target, data, size, wait);
 }
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
-    return put(path, data, size) || error_system(error, path, "cannot write: %s", strerror(errno));
+    return put(path, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
+    return put(path, data, size, false) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+bool file_sync(const char *path, Error *error) {
+    return sync_entry(path) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
 static bool is_directory(const char *path) {

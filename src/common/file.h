@@ -13,6 +13,14 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error);
    or the new one, never a part. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
+/* file_write() for one of many files, without waiting for the disk: still whole or not there, whatever becomes of the
+   program, but after a power cut only once file_sync() has returned. Waiting for each file apart takes longer than
+   all else that a small frame needs. */
+bool file_write_soon(const char *path, const void *data, size_t size, Error *error);
+
+/* Waits until a file, or the names in a directory, are on the disk. */
+bool file_sync(const char *path, Error *error);
+
 /* Makes the directory and those above it where missing. */
 bool file_make_directory(const char *path, Error *error);
 

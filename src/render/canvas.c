@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Three instanced draw calls a frame: all rectangles, all shapes, all glyphs. Row 0 of the framebuffer is the
-   top row of the picture, so that nothing has to be turned over. */
+/* What keeps still is painted once, into a layer of its own. A frame is the layer's rows that change, copied, and two
+   instanced draw calls: the parts of shapes in these rows, and of glyphs. Row 0 of a framebuffer is the top row of the
+   picture, so that nothing has to be turned over. */
 #include "render/canvas.h"
 
 #include "render/font_atlas.h"
@@ -14,21 +15,27 @@ typedef struct Batch {
     GLuint program, vertices, buffer;
 } Batch;
 
+typedef struct Target {
+    GLuint framebuffer, color;
+} Target;
+
 struct Canvas {
     const GlFunctions *gl;
     int width, height;
-    GLuint framebuffer, color, font_buffer, font_texture;
+    Target still, picture;
+    GLuint font_buffer, font_texture;
     Batch rects, shapes, glyphs;
+    Drawing parts; /* what a frame paints over the layer */
 };
 
-static bool create_framebuffer(Canvas *canvas, Error *error) {
+static bool create_target(Canvas *canvas, Target *target, Error *error) {
     const GlFunctions *gl = canvas->gl;
-    gl->GenRenderbuffers(1, &canvas->color);
-    gl->BindRenderbuffer(GL_RENDERBUFFER, canvas->color);
+    gl->GenRenderbuffers(1, &target->color);
+    gl->BindRenderbuffer(GL_RENDERBUFFER, target->color);
     gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, canvas->width, canvas->height);
-    gl->GenFramebuffers(1, &canvas->framebuffer);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->framebuffer);
-    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, canvas->color);
+    gl->GenFramebuffers(1, &target->framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
     return error_system(error, "render", "OpenGL makes no framebuffer of %d x %d pixels", canvas->width,
                         canvas->height);
@@ -67,7 +74,7 @@ static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const c
 static bool set_up(Canvas *canvas, Error *error) {
     static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 2, 0};
     const GlFunctions *gl = canvas->gl;
-    if (!create_framebuffer(canvas, error) ||
+    if (!create_target(canvas, &canvas->still, error) || !create_target(canvas, &canvas->picture, error) ||
         !create_batch(canvas, &canvas->rects, "shaders/rect", shader_rect_vert, shader_rect_frag, rect,
                       sizeof(RectInstance), error) ||
         !create_batch(canvas, &canvas->shapes, "shaders/shape", shader_shape_vert, shader_shape_frag, shape,
@@ -104,6 +111,11 @@ static void destroy_batch(const GlFunctions *gl, Batch *batch) {
     gl->DeleteBuffers(1, &batch->buffer);
 }
 
+static void destroy_target(const GlFunctions *gl, Target *target) {
+    gl->DeleteFramebuffers(1, &target->framebuffer);
+    gl->DeleteRenderbuffers(1, &target->color);
+}
+
 void canvas_destroy(Canvas *canvas) {
     if (canvas == NULL) return;
     const GlFunctions *gl = canvas->gl;
@@ -112,8 +124,9 @@ void canvas_destroy(Canvas *canvas) {
     destroy_batch(gl, &canvas->glyphs);
     gl->DeleteTextures(1, &canvas->font_texture);
     gl->DeleteBuffers(1, &canvas->font_buffer);
-    gl->DeleteFramebuffers(1, &canvas->framebuffer);
-    gl->DeleteRenderbuffers(1, &canvas->color);
+    destroy_target(gl, &canvas->still);
+    destroy_target(gl, &canvas->picture);
+    drawing_free(&canvas->parts);
     free(canvas);
 }
 
@@ -126,18 +139,63 @@ static void draw(const GlFunctions *gl, const Batch *batch, const void *instance
     gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
 }
 
-bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, Image *image, Error *error) {
+static void paint_still(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
     const GlFunctions *gl = canvas->gl;
-    if (drawing->failed) return error_memory(error, "render");
+    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->still.framebuffer);
     gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
                    (float)(background & 255) / 255, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->Disable(GL_BLEND);
     draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
     gl->Enable(GL_BLEND);
-    draw(gl, &canvas->shapes, drawing->shapes, drawing->shape_count, sizeof *drawing->shapes);
-    draw(gl, &canvas->glyphs, drawing->glyphs, drawing->glyph_count, sizeof *drawing->glyphs);
-    gl->ReadPixels(0, 0, canvas->width, canvas->height, GL_RGBA, GL_UNSIGNED_BYTE, image->pixels);
-    GLenum problem = gl->GetError();
+    draw(gl, &canvas->shapes, drawing->shapes, drawing->still_shapes, sizeof *drawing->shapes);
+}
+
+/* Rows to paint that follow each other. */
+typedef struct Band {
+    int top, bottom;
+} Band;
+
+/* The first band at or below row y; empty below the last. */
+static Band next_band(const Canvas *canvas, const bool *changed, int y) {
+    if (changed == NULL) return (Band){y, canvas->height};
+    while (y < canvas->height && !changed[y]) y++;
+    Band band = {y, y};
+    while (band.bottom < canvas->height && changed[band.bottom]) band.bottom++;
+    return band;
+}
+
+/* One copy a band, but one draw call a kind for all bands: calls cost more than instances. */
+static void paint_moving(Canvas *canvas, const Drawing *drawing, const bool *changed) {
+    const GlFunctions *gl = canvas->gl;
+    Drawing *parts = &canvas->parts;
+    drawing_clear(parts);
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->still.framebuffer);
+    gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
+        gl->BlitFramebuffer(0, b.top, canvas->width, b.bottom, 0, b.top, canvas->width, b.bottom, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
+        drawing_add_rows(parts, drawing, b.top, b.bottom);
+    }
+    draw(gl, &canvas->shapes, parts->shapes, parts->shape_count, sizeof *parts->shapes);
+    draw(gl, &canvas->glyphs, parts->glyphs, parts->glyph_count, sizeof *parts->glyphs);
+}
+
+static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
+    const GlFunctions *gl = canvas->gl;
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom))
+        gl->ReadPixels(0, b.top, canvas->width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       image->pixels + (size_t)b.top * (size_t)canvas->width * 4);
+}
+
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+                  Error *error) {
+    if (drawing->failed) return error_memory(error, "render");
+    if (changed == NULL) paint_still(canvas, drawing, background);
+    paint_moving(canvas, drawing, changed);
+    if (canvas->parts.failed) return error_memory(error, "render");
+    read_back(canvas, changed, image);
+    GLenum problem = canvas->gl->GetError();
     return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x", problem);
 }

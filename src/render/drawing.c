@@ -14,7 +14,7 @@ static const double LARGEST_HALF = 8192.0; /* pixels; larger boxes are cut down,
 static const double FARTHEST = 1e9;        /* pixels; beyond it no body can be seen */
 
 void drawing_clear(Drawing *drawing) {
-    drawing->rect_count = drawing->shape_count = drawing->glyph_count = 0;
+    drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->still_shapes = 0;
     drawing->failed = false;
 }
 
@@ -117,4 +117,35 @@ void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
         drawing->glyphs[drawing->glyph_count++] = *glyph;
     else
         drawing->failed = true;
+}
+
+/* A lower first row moves the local position that belongs to it by whole steps of the shader. */
+static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top, int bottom) {
+    ShapeInstance *part = from->bounds[1] < bottom && from->bounds[3] > top ? next_shape(drawing) : NULL;
+    if (part == NULL) return;
+    *part = *from;
+    if (bottom < part->bounds[3]) part->bounds[3] = bottom;
+    if (top > part->bounds[1]) {
+        int64_t rows = top - part->bounds[1];
+        part->bounds[1] = top;
+        part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
+        part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
+    }
+    drawing->shape_count++;
+}
+
+static void add_glyph_rows(Drawing *drawing, const GlyphInstance *from, int top, int bottom) {
+    GlyphInstance part = *from;
+    int skipped = top > part.box[1] ? top - part.box[1] : 0;
+    part.box[1] += skipped;
+    part.box[3] -= skipped;
+    part.bitmap += (uint32_t)(skipped * part.box[2]);
+    if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
+    if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
+}
+
+void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
+    for (size_t i = from->still_shapes; i < from->shape_count; i++)
+        add_shape_rows(drawing, &from->shapes[i], top, bottom);
+    for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
 }

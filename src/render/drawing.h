@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a frame consists of, before OpenGL sees it: rectangles, above them shapes, above these glyphs, each in
-   the order they were added. Pixels, y down, (0, 0) the upper left corner of the picture; colours
+   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the upper left corner of the picture; colours
    0xRRGGBB. */
 #pragma once
 #include <stdbool.h>
@@ -49,7 +49,8 @@ typedef struct Drawing {
     ShapeInstance *shapes;
     GlyphInstance *glyphs;
     size_t rect_count, rect_capacity, shape_count, shape_capacity, glyph_count, glyph_capacity;
-    bool failed; /* memory was short: something is missing */
+    size_t still_shapes; /* the first of the shapes: like the rectangles, the same in almost every frame */
+    bool failed;         /* memory was short: something is missing */
 } Drawing;
 
 /* Removes everything, keeps the memory. */
@@ -62,3 +63,6 @@ void drawing_add_shape(Drawing *drawing, const Shape *shape, const Rect *clip);
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color);
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph);
+
+/* Adds to a drawing what another shows, but for what keeps still, in the rows top <= y < bottom. */
+void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);

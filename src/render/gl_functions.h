@@ -13,6 +13,7 @@
     X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
     X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                 \
     X(PFNGLBUFFERDATAPROC, BufferData)                           \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
     X(PFNGLCLEARPROC, Clear)                                     \

@@ -81,15 +81,11 @@ static void draw_body(const Picture *picture, int panel, int frame, int body, Dr
     if (bomb) draw_target(&shape, TARGET * fmin(width, height), clip, drawing);
 }
 
-/* Static bodies lie behind all others, the bomb before them. */
-static void draw_bodies(const Picture *picture, int panel, int frame, Drawing *drawing) {
+static void draw_bodies(const Picture *picture, int panel, int frame, bool fixed, Drawing *drawing) {
     const Trajectory *trajectory = picture->panels[panel];
-    int shown = picture_panel_frame(picture, panel, frame);
-    for (int fixed = 1; fixed >= 0; fixed--)
-        for (int body = 0; body < trajectory->bodies; body++)
-            if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
-                draw_body(picture, panel, shown, body, drawing);
-    if (trajectory->bomb >= 0) draw_body(picture, panel, shown, trajectory->bomb, drawing);
+    for (int body = 0; body < trajectory->bodies; body++)
+        if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
+            draw_body(picture, panel, picture_panel_frame(picture, panel, frame), body, drawing);
 }
 
 static void draw_frame(const Rect *r, int thickness, Drawing *drawing) {
@@ -100,13 +96,19 @@ static void draw_frame(const Rect *r, int thickness, Drawing *drawing) {
     drawing_add_rect(drawing, (Rect){r->right, r->top, right, r->bottom}, FRAME);
 }
 
-void panel_draw(const Picture *picture, int panel, int frame, Drawing *drawing) {
+void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *drawing) {
     const Rect *rect = &picture->layout.panels[panel];
     drawing_add_rect(drawing, *rect, PANEL);
     grid_draw_lines(picture, panel, drawing);
-    draw_bodies(picture, panel, frame, drawing);
+    draw_bodies(picture, panel, frame, true, drawing);
     draw_frame(rect, picture->layout.hairline, drawing);
     grid_draw_axes(picture, panel, drawing);
+}
+
+void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing) {
+    int bomb = picture->panels[panel]->bomb;
+    draw_bodies(picture, panel, frame, false, drawing);
+    if (bomb >= 0) draw_body(picture, panel, picture_panel_frame(picture, panel, frame), bomb, drawing);
 }
 
 int panel_count_unseen(const Picture *picture, int panel, int frame) {

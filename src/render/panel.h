@@ -3,7 +3,11 @@
 #pragma once
 #include "render/picture.h"
 
-void panel_draw(const Picture *picture, int panel, int frame, Drawing *drawing);
+/* What keeps still: grid, static bodies, axes. Shapes of it lie behind all others. */
+void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *drawing);
+
+/* The bodies that move, and the bomb before them. */
+void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing);
 
 /* How many dynamic bodies that are there lie with their centre outside the panel. */
 int panel_count_unseen(const Picture *picture, int panel, int frame);

@@ -60,9 +60,11 @@ double picture_apart(const Picture *picture, int frame) {
 }
 
 void picture_draw(const Picture *picture, int frame, Drawing *drawing) {
+    for (int i = 0; i < picture->count; i++) panel_draw_still(picture, i, frame, drawing);
+    drawing->still_shapes = drawing->shape_count;
     caption_header(picture, frame, drawing);
     for (int i = 0; i < picture->count; i++) {
-        panel_draw(picture, i, frame, drawing);
         caption_panel(picture, i, frame, drawing);
+        panel_draw_moving(picture, i, frame, drawing);
     }
 }

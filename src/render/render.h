@@ -16,6 +16,7 @@ typedef struct RenderOptions {
     int first, last;       /* frames, both included; last -1: to the end */
     int jobs;              /* processes that draw, 1 .. RENDER_JOBS_MAX */
     const char *directory; /* made where it is missing */
+    bool small;            /* files as small as libpng can make them, which takes long */
 } RenderOptions;
 
 /* Writes directory/frame_000000.png and on: all frames of the longest of 1 to 6 panels, or the range asked

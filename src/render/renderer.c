@@ -4,6 +4,7 @@
 
 #include "render/canvas.h"
 #include "render/context.h"
+#include "render/damage.h"
 #include "render/style.h"
 
 #include <stdlib.h>
@@ -13,10 +14,14 @@ struct Renderer {
     Context context;
     GlFunctions gl;
     Canvas *canvas;
-    Drawing drawing;
+    Drawing drawing, before; /* of this frame and of the one before */
+    bool follows;            /* the canvas and the caller's image hold `drawing` */
+    bool *changed;           /* [height] */
 };
 
 static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
+    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
+    if (renderer->changed == NULL) return error_memory(error, "render");
     if (!context_create(&renderer->context, options->context, error)) return false;
     const Context *context = &renderer->context;
     if (!gl_load(&renderer->gl, context->kind->find, context->state, error)) return false;
@@ -43,14 +48,38 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
     return renderer_create_planned(&picture, options, error);
 }
 
-bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
+/* `changed` is NULL where everything is to be painted. */
+static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
+    return context_make_current(&renderer->context, error) &&
+           canvas_paint(renderer->canvas, &renderer->drawing, PAGE, changed, image, error);
+}
+
+static bool compose(Renderer *renderer, int frame, Error *error) {
     if (frame < 0 || frame >= renderer->picture.frames)
         return error_input(error, "render", "frame %d asked for; the frames are 0 to %d", frame,
                            renderer->picture.frames - 1);
     drawing_clear(&renderer->drawing);
     picture_draw(&renderer->picture, frame, &renderer->drawing);
-    return context_make_current(&renderer->context, error) &&
-           canvas_paint(renderer->canvas, &renderer->drawing, PAGE, image, error);
+    return true;
+}
+
+bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
+    renderer->follows = false;
+    return compose(renderer, frame, error) && paint(renderer, NULL, image, error);
+}
+
+bool renderer_draw_next(Renderer *renderer, int frame, Image *image, const bool **changed, Error *error) {
+    const Drawing nothing = {0}, before = renderer->drawing;
+    bool follows = renderer->follows;
+    renderer->follows = false; /* until all has gone well */
+    renderer->drawing = renderer->before;
+    renderer->before = before;
+    *changed = renderer->changed;
+    if (!compose(renderer, frame, error)) return false;
+    bool part =
+        damage_find(follows ? &renderer->before : &nothing, &renderer->drawing, image->height, renderer->changed);
+    renderer->follows = paint(renderer, part ? renderer->changed : NULL, image, error);
+    return renderer->follows;
 }
 
 void renderer_destroy(Renderer *renderer) {
@@ -60,5 +89,7 @@ void renderer_destroy(Renderer *renderer) {
         canvas_destroy(renderer->canvas);
     if (renderer->context.kind != NULL) context_destroy(&renderer->context);
     drawing_free(&renderer->drawing);
+    drawing_free(&renderer->before);
+    free(renderer->changed);
     free(renderer);
 }

@@ -144,6 +144,6 @@ bool render_sequence(const Trajectory *const *panels, int panel_count, const Ren
         return false;
     int frames = last - first + 1;
     Sequence sequence = {.jobs = options->jobs < frames ? options->jobs : frames, .total = frames};
-    WorkerJob job = {.picture = &picture, .options = options, .sink = sink_png(options->directory)};
+    WorkerJob job = {.picture = &picture, .options = options};
     return draw_all(&sequence, &job, first, progress, error);
 }

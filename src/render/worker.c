@@ -2,6 +2,7 @@
 #include "render/worker.h"
 
 #include "render/renderer.h"
+#include "render/sink.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -44,12 +45,14 @@ static void fill_texts(FrameTexts *texts, const Picture *picture, int frame) {
 
 static bool report(int pipe, const Error *error) { return write(pipe, error, sizeof *error) == sizeof *error; }
 
-static bool draw_frames(const WorkerJob *job, Renderer *renderer, Image *image, int pipe, Error *error) {
+static bool draw_frames(const WorkerJob *job, Renderer *renderer, const FrameSink *sink, Image *image, int pipe,
+                        Error *error) {
     FrameTexts texts;
+    const bool *changed;
     for (int frame = job->first; frame <= job->last; frame++) {
         fill_texts(&texts, job->picture, frame);
-        if (!renderer_draw(renderer, frame, image, error) ||
-            !job->sink.write(job->sink.context, frame, image, texts.entries, TEXTS, error))
+        if (!renderer_draw_next(renderer, frame, image, &changed, error) ||
+            !sink->write(sink->context, frame, image, changed, texts.entries, TEXTS, error))
             return false;
         if (!report(pipe, error)) return false; /* the parent has gone, or wants no more */
     }
@@ -63,12 +66,22 @@ static void prepare_process(void) {
     signal(SIGPIPE, SIG_IGN);
 }
 
+static bool draw_to_sink(const WorkerJob *job, Renderer *renderer, Image *image, int pipe, Error *error) {
+    const RenderOptions *options = job->options;
+    FrameSink sink;
+    if (!sink_open_png(&sink, options->directory, options->width, options->height,
+                       options->small ? PNG_SMALL : PNG_FAST, error))
+        return false;
+    bool drawn = draw_frames(job, renderer, &sink, image, pipe, error);
+    return sink.close(sink.context, error) && drawn;
+}
+
 bool worker_run(const WorkerJob *job, int pipe) {
     Error error = {0};
     prepare_process();
     Renderer *renderer = renderer_create_planned(job->picture, job->options, &error);
     Image *image = renderer == NULL ? NULL : image_create(job->options->width, job->options->height, &error);
-    bool ok = image != NULL && draw_frames(job, renderer, image, pipe, &error);
+    bool ok = image != NULL && draw_to_sink(job, renderer, image, pipe, &error);
     if (error.kind != ERROR_NONE) report(pipe, &error);
     image_destroy(image);
     renderer_destroy(renderer);

@@ -3,12 +3,10 @@
    not threads share the work. */
 #pragma once
 #include "render/picture.h"
-#include "render/sink.h"
 
 typedef struct WorkerJob {
     const Picture *picture;
     const RenderOptions *options;
-    FrameSink sink;
     int first, last; /* frames, both included */
 } WorkerJob;
 

@@ -32,6 +32,15 @@ run 0 compare pictures one
 run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o three --size 192x108 --jobs 3 --context egl
 run 0 compare pictures three
 
+# Smaller files of the same pictures, also the same from any number of jobs.
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o small --size 192x108 --jobs 2 --png small
+run 0 compare pictures small
+[ "$(cat small/*.png | wc -c)" -lt "$(cat pictures/*.png | wc -c)" ] || fail "--png small is not smaller"
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o fast --size 192x108 --jobs 1 --png fast
+for frame in pictures/frame_*.png; do
+    cmp -s "$frame" "fast/${frame#*/}" || fail "$frame is not the same file"
+done
+
 # A part of it; then a shorter run, whose frames are all there is.
 run 0 render one/single-engine.npz -o part --size 192x108 --frames 2:4
 equal "frames of a part" "$(ls part | tr '\n' ' ')" "frame_000002.png frame_000003.png frame_000004.png single-engine.npz "
@@ -46,6 +55,8 @@ run 2 render single.yaml -o x --frames 5:99
 complains "beyond the last frame, 7"
 run 2 render single.yaml -o x --frames 5:2
 run 2 render single.yaml -o x --jobs 0
+run 2 render single.yaml -o x --png tiny
+complains "'tiny' is neither fast nor small"
 run 2 render single.yaml -o x --context vulkan
 complains "neither osmesa nor egl"
 run 2 render single.yaml -o x --size 193x108 --video odd.mp4

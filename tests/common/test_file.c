@@ -253,6 +253,23 @@ static void folders_end_with_their_slash(void **state) {
     assert_int_equal(file_folder_length("a/b/"), 4);
 }
 
+static void many_files_wait_for_the_disk_once(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    const char *path = temporary_path("soon");
+    assert_ok(file_write_soon(path, "old and long", 12, &error), error);
+    assert_ok(file_write_soon(path, "new", 3, &error), error);
+    assert_ok(file_sync(path, &error), error);
+    assert_ok(file_sync(temporary_folder, &error), error);
+    char *data = file_read(path, 100, &size, &error);
+    assert_ok(data != NULL, error);
+    assert_string_equal(data, "new");
+    free(data);
+    assert_false(file_write_soon(temporary_path("no/such/folder"), "new", 3, &error));
+    assert_error(error, ERROR_SYSTEM, "no/such/folder");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(written_is_read),
@@ -267,6 +284,7 @@ int main(void) {
         cmocka_unit_test(bad_inputs_are_refused),
         cmocka_unit_test(directories_are_made_with_those_above),
         cmocka_unit_test(folders_end_with_their_slash),
+        cmocka_unit_test(many_files_wait_for_the_disk_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,7 @@ static inline const Image *painted(void) {
     for (int i = 0; i < SCREENS; i++) {
         Error error = {0};
         assert_ok(context_make_current(&screens[i].context, &error), error);
-        assert_ok(canvas_paint(screens[i].canvas, &drawing, BLACK, screens[i].image, &error), error);
+        assert_ok(canvas_paint(screens[i].canvas, &drawing, BLACK, NULL, screens[i].image, &error), error);
     }
     ImageDifference difference;
     image_compare(screens[0].image, screens[1].image, &difference);

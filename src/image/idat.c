@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each row goes through the Up filter, so that what equals the row above becomes zero; then each run of equal pixels is
+   one pixel and matches that repeat it. The bits of a row are kept: a row is compressed again only where it, or the
+   one above, has changed. So is what the row adds to the checksum, which is found by runs and not by bytes. */
+#include "image/idat.h"
+
+#include "common/array.h"
+#include "image/deflate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FILTER_UP = 2, CHANNELS = 3, WORD_BITS = 32 };
+static const uint64_t ADLER_MODULUS = 65521;
+
+/* The bits, and the row's part of Adler-32: the sum of its bytes, and the sum of each times its distance from the
+   row's end. */
+typedef struct Row {
+    uint8_t *bits;
+    size_t capacity, count;
+    uint64_t sum, weighted;
+} Row;
+
+struct Idat {
+    int width, height;
+    DeflateCodes codes;
+    uint32_t *differences; /* [width] of a row to the one above, RGBA */
+    uint8_t *edges;        /* [width + 1] where runs begin */
+    uint8_t *scratch;      /* room for the longest row */
+    uint8_t *blank;        /* the row above the first */
+    Row *rows;             /* [height] */
+    uint8_t *data;
+    size_t capacity;
+};
+
+static size_t longest_row(int width) { return ((size_t)width * CHANNELS + 1) * DEFLATE_LONGEST / 8 + 1 + BITS_MARGIN; }
+
+Idat *idat_create(int width, int height, Error *error) {
+    Idat *idat = calloc(1, sizeof *idat);
+    if (idat != NULL) {
+        *idat = (Idat){.width = width, .height = height};
+        idat->differences = malloc((size_t)width * sizeof *idat->differences);
+        idat->edges = malloc((size_t)width + 1);
+        idat->scratch = malloc(longest_row(width));
+        idat->blank = calloc((size_t)width, 4);
+        idat->rows = calloc((size_t)height, sizeof *idat->rows);
+        deflate_make_codes(&idat->codes);
+    }
+    if (idat != NULL && idat->differences != NULL && idat->edges != NULL && idat->scratch != NULL &&
+        idat->blank != NULL && idat->rows != NULL)
+        return idat;
+    idat_destroy(idat);
+    error_memory(error, "image");
+    return NULL;
+}
+
+void idat_destroy(Idat *idat) {
+    if (idat == NULL) return;
+    for (int y = 0; idat->rows != NULL && y < idat->height; y++) free(idat->rows[y].bits);
+    free(idat->differences);
+    free(idat->edges);
+    free(idat->scratch);
+    free(idat->blank);
+    free(idat->rows);
+    free(idat->data);
+    free(idat);
+}
+
+/* Byte by byte modulo 256; this loop and the next are such as compilers turn into vectors. */
+static void subtract(uint8_t *differences, const uint8_t *row, const uint8_t *above, int width) {
+    for (int i = 0; i < 4 * width; i++) differences[i] = (uint8_t)(row[i] - above[i]);
+}
+
+/* Marks each pixel that is not like the one before, and the end of the row. */
+static void find_edges(uint8_t *edges, const uint32_t *pixels, int width) {
+    static const uint8_t without_alpha[4] = {255, 255, 255, 0};
+    uint32_t mask;
+    memcpy(&mask, without_alpha, sizeof mask);
+    for (int i = 1; i < width; i++) edges[i] = ((pixels[i] ^ pixels[i - 1]) & mask) != 0;
+    edges[width] = 1;
+}
+
+static int run_length(const uint8_t *edges, int behind) {
+    if (edges[1]) return 1; /* most runs are */
+    return (int)((const uint8_t *)memchr(edges + 1, 1, (size_t)behind) - edges);
+}
+
+static void put_code(BitWriter *writer, DeflateCode code) { bits_put(writer, code.bits, code.count); }
+
+static void put_run(BitWriter *writer, const DeflateCodes *codes, const uint8_t pixel[CHANNELS], int length) {
+    DeflateCode a = codes->literals[pixel[0]], b = codes->literals[pixel[1]], c = codes->literals[pixel[2]];
+    bits_put(writer, a.bits | (uint64_t)b.bits << a.count | (uint64_t)c.bits << (a.count + b.count),
+             a.count + b.count + c.count);
+    for (length--; length > DEFLATE_RUN; length -= DEFLATE_RUN) put_code(writer, codes->runs[DEFLATE_RUN]);
+    put_code(writer, codes->runs[length]);
+}
+
+/* `behind`: pixels from the run's first to the row's end. The first bytes of its pixels stand 3 * behind, then
+   3 * (behind - 1) and so on before the end; the second and third bytes one and two nearer. */
+static void add_run(Row *row, const uint8_t pixel[CHANNELS], int length, int behind) {
+    uint64_t n = (uint64_t)length, bytes = (uint64_t)pixel[0] + pixel[1] + pixel[2];
+    uint64_t places = CHANNELS * (n * (uint64_t)behind - n * (n - 1) / 2);
+    row->sum += n * bytes;
+    row->weighted += bytes * places - n * (pixel[1] + 2u * pixel[2]);
+}
+
+static bool keep_bits(Row *row, const uint8_t *bits, const BitWriter *end, Error *error) {
+    BitWriter writer = *end;
+    size_t count = (size_t)(writer.next - bits) * 8 + writer.count;
+    bits_end(&writer);
+    size_t bytes = (size_t)(writer.next - bits);
+    /* Read back in words. */
+    if (!array_reserve((void **)&row->bits, &row->capacity, bytes + WORD_BITS / 8, 1))
+        return error_memory(error, "image");
+    memcpy(row->bits, bits, bytes);
+    row->count = count;
+    return true;
+}
+
+static bool encode_row(Idat *idat, const uint8_t *pixels, const uint8_t *above, Row *row, Error *error) {
+    BitWriter writer = {.next = idat->scratch};
+    put_code(&writer, idat->codes.literals[FILTER_UP]);
+    row->sum = FILTER_UP;
+    row->weighted = FILTER_UP * ((uint64_t)idat->width * CHANNELS + 1);
+    if (memcmp(pixels, above, 4 * (size_t)idat->width) == 0) {
+        put_run(&writer, &idat->codes, idat->blank, idat->width);
+        return keep_bits(row, idat->scratch, &writer, error);
+    }
+    uint8_t *differences = (uint8_t *)idat->differences;
+    subtract(differences, pixels, above, idat->width);
+    find_edges(idat->edges, idat->differences, idat->width);
+    for (int x = 0, length; x < idat->width; x += length) {
+        length = run_length(idat->edges + x, idat->width - x);
+        put_run(&writer, &idat->codes, differences + 4 * x, length);
+        add_run(row, differences + 4 * x, length, idat->width - x);
+    }
+    return keep_bits(row, idat->scratch, &writer, error);
+}
+
+static bool encode_rows(Idat *idat, const Image *image, const bool *changed, Error *error) {
+    size_t stride = (size_t)idat->width * 4;
+    const uint8_t *pixels = image->pixels, *above = idat->blank;
+    for (int y = 0; y < idat->height; y++, above = pixels, pixels += stride) {
+        bool kept = changed != NULL && !changed[y] && (y == 0 || !changed[y - 1]);
+        if (!kept && !encode_row(idat, pixels, above, &idat->rows[y], error)) return false;
+    }
+    return true;
+}
+
+static void put_row(BitWriter *writer, const Row *row) {
+    size_t at = 0;
+    for (; at + WORD_BITS <= row->count; at += WORD_BITS) {
+        const uint8_t *b = row->bits + at / 8;
+        bits_put(writer, (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24, WORD_BITS);
+    }
+    for (; at < row->count; at += 8) {
+        unsigned count = row->count - at < 8 ? (unsigned)(row->count - at) : 8;
+        bits_put(writer, row->bits[at / 8] & ((1u << count) - 1), count);
+    }
+}
+
+/* Adler-32 (RFC 1950): after a row, b has grown by the old a once for each byte. */
+static uint32_t checksum(const Idat *idat) {
+    uint64_t a = 1, b = 0, bytes = (uint64_t)idat->width * CHANNELS + 1;
+    for (int y = 0; y < idat->height; y++) {
+        const Row *row = &idat->rows[y];
+        b = (b + bytes * a + row->weighted) % ADLER_MODULUS;
+        a = (a + row->sum) % ADLER_MODULUS;
+    }
+    return (uint32_t)(b << 16 | a);
+}
+
+static size_t joined_size(const Idat *idat) {
+    size_t bits = 0;
+    for (int y = 0; y < idat->height; y++) bits += idat->rows[y].count;
+    return DEFLATE_HEADER_BYTES + bits / 8 + BITS_MARGIN + 16; /* the block's end and the checksum */
+}
+
+bool idat_encode(Idat *idat, const Image *image, const bool *changed, const uint8_t **data, size_t *size,
+                 Error *error) {
+    if (!encode_rows(idat, image, changed, error)) return false;
+    if (!array_reserve((void **)&idat->data, &idat->capacity, joined_size(idat), 1))
+        return error_memory(error, "image");
+    BitWriter writer = {.next = idat->data};
+    deflate_begin(&writer);
+    for (int y = 0; y < idat->height; y++) put_row(&writer, &idat->rows[y]);
+    put_code(&writer, idat->codes.end);
+    bits_end(&writer);
+    uint32_t sum = checksum(idat);
+    for (int shift = 24; shift >= 0; shift -= 8) *writer.next++ = (uint8_t)(sum >> shift);
+    *data = idat->data;
+    *size = (size_t)(writer.next - idat->data);
+    return true;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writing PNG files: libpng makes the file; the pixels inside are compressed by it, or by idat.c. */
+#include "image/png_encoder.h"
+
+#include "common/array.h"
+#include "common/file.h"
+#include "image/idat.h"
+
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { IDAT_PART = 1 << 15 }; /* bytes */
+
+/* All that an encoding changes lies here and not in locals, which longjmp would clobber. */
+struct PngEncoder {
+    int width, height;
+    Idat *idat; /* NULL where libpng compresses */
+    png_structp png;
+    png_infop info;
+    uint8_t *data;
+    size_t size, capacity;
+    char problem[256];
+};
+
+PngEncoder *png_encoder_create(int width, int height, PngEffort effort, Error *error) {
+    PngEncoder *encoder = calloc(1, sizeof *encoder);
+    if (encoder == NULL) {
+        error_memory(error, "image");
+        return NULL;
+    }
+    *encoder = (PngEncoder){.width = width, .height = height};
+    if (effort == PNG_SMALL || (encoder->idat = idat_create(width, height, error)) != NULL) return encoder;
+    png_encoder_destroy(encoder);
+    return NULL;
+}
+
+void png_encoder_destroy(PngEncoder *encoder) {
+    if (encoder == NULL) return;
+    idat_destroy(encoder->idat);
+    free(encoder->data);
+    free(encoder);
+}
+
+static void append(png_structp png, png_bytep data, size_t size) {
+    PngEncoder *encoder = png_get_io_ptr(png);
+    if (!array_reserve((void **)&encoder->data, &encoder->capacity, encoder->size + size, 1))
+        png_error(png, "out of memory");
+    memcpy(encoder->data + encoder->size, data, size);
+    encoder->size += size;
+}
+
+static void flush(png_structp png) { (void)png; }
+
+static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
+    PngEncoder *encoder = png_get_error_ptr(png);
+    snprintf(encoder->problem, sizeof encoder->problem, "%s", message);
+    png_longjmp(png, 1);
+}
+
+static void ignore_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
+
+static void set_texts(PngEncoder *encoder, const ImageText *texts, int count) {
+    for (int i = 0; i < count; i++) {
+        png_text text = {.compression = PNG_ITXT_COMPRESSION_NONE,
+                         .key = (png_charp)texts[i].key,
+                         .text = (png_charp)texts[i].value};
+        png_set_text(encoder->png, encoder->info, &text, 1);
+    }
+}
+
+static void write_rows(png_structp png, const Image *image) {
+    png_set_filler(png, 0, PNG_FILLER_AFTER);
+    for (int y = 0; y < image->height; y++) png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
+    png_write_end(png, NULL);
+}
+
+/* In parts, since decoders refuse a chunk that is larger than the picture, as that of noise is. */
+static void write_chunks(png_structp png, const uint8_t *pixels, size_t size) {
+    for (size_t at = 0; at < size; at += IDAT_PART)
+        png_write_chunk(png, (png_const_bytep) "IDAT", pixels + at, size - at < IDAT_PART ? size - at : IDAT_PART);
+    png_write_chunk(png, (png_const_bytep) "IEND", NULL, 0);
+}
+
+/* Without `pixels`, libpng compresses the image. */
+static bool write_file(PngEncoder *encoder, const Image *image, const ImageText *texts, int count,
+                       const uint8_t *pixels, size_t pixels_size) {
+    if (setjmp(png_jmpbuf(encoder->png)) != 0) return false;
+    png_structp png = encoder->png;
+    png_set_write_fn(png, encoder, append, flush);
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_compression_level(png, 9);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
+    png_set_IHDR(png, encoder->info, (png_uint_32)image->width, (png_uint_32)image->height, 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    set_texts(encoder, texts, count);
+    png_write_info(png, encoder->info);
+    if (pixels == NULL)
+        write_rows(png, image);
+    else
+        write_chunks(png, pixels, pixels_size);
+    return true;
+}
+
+bool png_encode(PngEncoder *encoder, const Image *image, const bool *changed, const ImageText *texts, int count,
+                const uint8_t **data, size_t *size, Error *error) {
+    const uint8_t *pixels = NULL;
+    size_t pixels_size = 0;
+    if (encoder->idat != NULL && !idat_encode(encoder->idat, image, changed, &pixels, &pixels_size, error))
+        return false;
+    encoder->size = 0;
+    encoder->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, encoder, fail, ignore_warning);
+    encoder->info = encoder->png == NULL ? NULL : png_create_info_struct(encoder->png);
+    bool ok = encoder->info != NULL || error_memory(error, "image");
+    if (ok && !write_file(encoder, image, texts, count, pixels, pixels_size))
+        ok = error_system(error, "image", "%s", encoder->problem);
+    png_destroy_write_struct(&encoder->png, &encoder->info);
+    *data = encoder->data;
+    *size = encoder->size;
+    return ok;
+}
+
+bool image_write_png(const Image *image, const char *path, const ImageText *texts, int count, Error *error) {
+    const uint8_t *data;
+    size_t size;
+    PngEncoder *encoder = png_encoder_create(image->width, image->height, PNG_FAST, error);
+    bool ok = encoder != NULL && png_encode(encoder, image, NULL, texts, count, &data, &size, error) &&
+              file_write(path, data, size, error);
+    png_encoder_destroy(encoder);
+    return ok;
+}
