@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILTER_UP = 2, CHANNELS = 3, WORD_BITS = 32 };
+enum { FILTER_UP = 2, CHANNELS = 3, WORD_BYTES = 8, PUT_BITS = 56 };
 static const uint64_t ADLER_MODULUS = 65521;
 
 /* The bits, and the row's part of Adler-32: the sum of its bytes, and the sum of each times its distance from the
@@ -25,7 +25,7 @@ struct Idat {
     int width, height;
     DeflateCodes codes;
     uint32_t *differences; /* [width] of a row to the one above, RGBA */
-    uint8_t *edges;        /* [width + 1] where runs begin */
+    uint8_t *edges;        /* [width + 1] where runs begin, and a word behind it */
     uint8_t *scratch;      /* room for the longest row */
     uint8_t *blank;        /* the row above the first */
     Row *rows;             /* [height] */
@@ -40,7 +40,7 @@ Idat *idat_create(int width, int height, Error *error) {
     if (idat != NULL) {
         *idat = (Idat){.width = width, .height = height};
         idat->differences = malloc((size_t)width * sizeof *idat->differences);
-        idat->edges = malloc((size_t)width + 1);
+        idat->edges = calloc((size_t)width + 1 + WORD_BYTES, 1);
         idat->scratch = malloc(longest_row(width));
         idat->blank = calloc((size_t)width, 4);
         idat->rows = calloc((size_t)height, sizeof *idat->rows);
@@ -66,22 +66,54 @@ void idat_destroy(Idat *idat) {
     free(idat);
 }
 
-/* Byte by byte modulo 256; this loop and the next are such as compilers turn into vectors. */
-static void subtract(uint8_t *differences, const uint8_t *row, const uint8_t *above, int width) {
+/* Of a row to the one above, byte by byte modulo 256; and each pixel that is not like the one before. Plain loops that
+   compilers turn into vectors: here into those that every processor of the kind has, below into wider ones. */
+static inline void subtract(uint8_t *differences, const uint8_t *row, const uint8_t *above, int width) {
     for (int i = 0; i < 4 * width; i++) differences[i] = (uint8_t)(row[i] - above[i]);
 }
 
-/* Marks each pixel that is not like the one before, and the end of the row. */
-static void find_edges(uint8_t *edges, const uint32_t *pixels, int width) {
+static inline void find_edges(uint8_t *edges, const uint32_t *pixels, int width) {
     static const uint8_t without_alpha[4] = {255, 255, 255, 0};
     uint32_t mask;
     memcpy(&mask, without_alpha, sizeof mask);
     for (int i = 1; i < width; i++) edges[i] = ((pixels[i] ^ pixels[i - 1]) & mask) != 0;
-    edges[width] = 1;
 }
 
+static void compare_rows_plain(Idat *idat, const uint8_t *row, const uint8_t *above) {
+    subtract((uint8_t *)idat->differences, row, above, idat->width);
+    find_edges(idat->edges, idat->differences, idat->width);
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"), flatten)) static void compare_rows_avx2(Idat *idat, const uint8_t *row,
+                                                                       const uint8_t *above) {
+    subtract((uint8_t *)idat->differences, row, above, idat->width);
+    find_edges(idat->edges, idat->differences, idat->width);
+}
+#endif
+
+static void compare_rows(Idat *idat, const uint8_t *row, const uint8_t *above) {
+    idat->edges[idat->width] = 1; /* a run ends with the row */
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        compare_rows_avx2(idat, row, above);
+        return;
+    }
+#endif
+    compare_rows_plain(idat, row, above);
+}
+
+/* Compilers make it one load. */
+static uint64_t load_word(const uint8_t *bytes) {
+    uint64_t word = 0;
+    for (int i = 0; i < WORD_BYTES; i++) word |= (uint64_t)bytes[i] << (8 * i);
+    return word;
+}
+
+/* Most runs are short: the first eight edges are looked at in one word. */
 static int run_length(const uint8_t *edges, int behind) {
-    if (edges[1]) return 1; /* most runs are */
+    uint64_t word = load_word(edges + 1);
+    if (word != 0) return 1 + __builtin_ctzll(word) / 8;
     return (int)((const uint8_t *)memchr(edges + 1, 1, (size_t)behind) - edges);
 }
 
@@ -110,8 +142,7 @@ static bool keep_bits(Row *row, const uint8_t *bits, const BitWriter *end, Error
     bits_end(&writer);
     size_t bytes = (size_t)(writer.next - bits);
     /* Read back in words. */
-    if (!array_reserve((void **)&row->bits, &row->capacity, bytes + WORD_BITS / 8, 1))
-        return error_memory(error, "image");
+    if (!array_reserve((void **)&row->bits, &row->capacity, bytes + WORD_BYTES, 1)) return error_memory(error, "image");
     memcpy(row->bits, bits, bytes);
     row->count = count;
     return true;
@@ -126,9 +157,8 @@ static bool encode_row(Idat *idat, const uint8_t *pixels, const uint8_t *above, 
         put_run(&writer, &idat->codes, idat->blank, idat->width);
         return keep_bits(row, idat->scratch, &writer, error);
     }
-    uint8_t *differences = (uint8_t *)idat->differences;
-    subtract(differences, pixels, above, idat->width);
-    find_edges(idat->edges, idat->differences, idat->width);
+    compare_rows(idat, pixels, above);
+    const uint8_t *differences = (const uint8_t *)idat->differences;
     for (int x = 0, length; x < idat->width; x += length) {
         length = run_length(idat->edges + x, idat->width - x);
         put_run(&writer, &idat->codes, differences + 4 * x, length);
@@ -149,14 +179,10 @@ static bool encode_rows(Idat *idat, const Image *image, const bool *changed, Err
 
 static void put_row(BitWriter *writer, const Row *row) {
     size_t at = 0;
-    for (; at + WORD_BITS <= row->count; at += WORD_BITS) {
-        const uint8_t *b = row->bits + at / 8;
-        bits_put(writer, (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24, WORD_BITS);
-    }
-    for (; at < row->count; at += 8) {
-        unsigned count = row->count - at < 8 ? (unsigned)(row->count - at) : 8;
-        bits_put(writer, row->bits[at / 8] & ((1u << count) - 1), count);
-    }
+    for (; at + PUT_BITS <= row->count; at += PUT_BITS)
+        bits_put(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << PUT_BITS) - 1), PUT_BITS);
+    unsigned left = (unsigned)(row->count - at);
+    bits_put(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << left) - 1), left);
 }
 
 /* Adler-32 (RFC 1950): after a row, b has grown by the old a once for each byte. */
