@@ -15,7 +15,7 @@ static const struct argp argp = {
     parse,
     "",
     "List the methods and their settings.\v"
-    "Example: twinbox simulate scenes/stack.yaml --method engine:iterations=50 -o stack50.npz",
+    "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz",
     NULL,
     NULL,
     NULL};

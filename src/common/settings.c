@@ -86,6 +86,18 @@ bool settings_int(const Settings *settings, const char *key, int minimum, int ma
     return true;
 }
 
+bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value,
+                    Error *error) {
+    const char *text = settings_get(settings, key);
+    if (text == NULL) return true;
+    float number;
+    if (!parse_float(text, &number) || number < minimum || number > maximum)
+        return error_input(error, key, "a number of %g to %g is needed (got '%.64s')", (double)minimum,
+                           (double)maximum, text);
+    *value = number;
+    return true;
+}
+
 bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error) {
     const char *text = settings_get(settings, key);
     if (text == NULL) return true;

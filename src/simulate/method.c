@@ -41,7 +41,7 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
     snprintf(iterations, sizeof iterations, "%d", scene->iterations);
     const struct {
         const char *key, *value;
-    } scene_settings[] = {{"iterations", iterations},
+    } scene_settings[] = {{"k", iterations},
                           {"accumulate", scene->accumulate_impulses ? "on" : "off"},
                           {"network", scene_network(scene, method->solver->name)}};
     for (size_t i = 0; i < sizeof scene_settings / sizeof scene_settings[0]; i++) {

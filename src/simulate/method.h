@@ -8,7 +8,7 @@
 enum { METHOD_TEXT_SIZE = 128 };
 
 typedef struct Method {
-    char text[METHOD_TEXT_SIZE]; /* as given: "engine:iterations=20" */
+    char text[METHOD_TEXT_SIZE]; /* as given: "engine:k=20" */
     const ContactSolverKind *solver;
     Settings settings;
 } Method;

@@ -27,14 +27,14 @@ typedef struct SequentialImpulses {
     Sweeps sweeps;
 } SequentialImpulses;
 
-static const SettingSpec settings[] = {{"iterations", "sweeps over all contacts a step (the scene's own: 10)"},
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
                                        {"accumulate", "on|off: clamp the sum of impulses, not each one"},
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     SequentialImpulses options = {.iterations = 10, .accumulate = true};
     options.kernel = sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE;
-    if (!settings_int(chosen, "iterations", 1, 1000000, &options.iterations, error) ||
+    if (!settings_int(chosen, "k", 1, 1000000, &options.iterations, error) ||
         !settings_bool(chosen, "accumulate", &options.accumulate, error))
         return NULL;
     SequentialImpulses *solver = malloc(sizeof *solver);

@@ -25,13 +25,13 @@ cmp -s dt1_60.hash dt.hash && fail "--dt has no effect"
 
 # Each switch changes the run.
 for option in --no-bomb --no-warm-starting --no-accumulate --no-position-correction "--iterations 4" \
-    "--method engine:iterations=4" "--bomb-x 1.25" "--bomb-frame 30"; do
+    "--method engine:k=4" "--bomb-x 1.25" "--bomb-frame 30"; do
     run 0 simulate "$scenes/stack.yaml" --frames 100 $option --hash other.hash
     cmp -s dt1_60.hash other.hash && fail "$option has no effect"
 done
 run 0 simulate "$scenes/stack.yaml" --frames 100 --iterations 4 --hash four.hash
-run 0 simulate "$scenes/stack.yaml" --frames 100 --method engine:iterations=4 --hash other.hash
-cmp -s four.hash other.hash || fail "--iterations 4 and engine:iterations=4 differ"
+run 0 simulate "$scenes/stack.yaml" --frames 100 --method engine:k=4 --hash other.hash
+cmp -s four.hash other.hash || fail "--iterations 4 and engine:k=4 differ"
 
 # A trajectory that stands in the way is replaced whole; a second run gives the same bytes.
 run 0 simulate "$scenes/stack.yaml" --frames 30 -o a.npz
@@ -65,7 +65,7 @@ run 2 simulate "$scenes/single.yaml" --method magic
 complains "no such method; there are engine, pair-net"
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
 complains "unknown setting 'sweeps'"
-run 2 simulate "$scenes/single.yaml" --method engine:iterations=none
+run 2 simulate "$scenes/single.yaml" --method engine:k=none
 complains "iterations"
 for value in nan 1e9999 1/0 0 -1/60 60x; do
     run 2 simulate "$scenes/single.yaml" --dt=$value

@@ -41,6 +41,19 @@ static void missing_keys_leave_the_value(void **state) {
     assert_true(warm);
 }
 
+static void a_number_is_read_in_its_range(void **state) {
+    (void)state;
+    Settings settings = parsed("iterations=1.25");
+    float value = 0;
+    Error error = {0};
+    assert_ok(settings_float(&settings, "iterations", 1, 2, &value, &error), error);
+    assert_true(value == 1.25f);
+    assert_ok(settings_float(&settings, "warm", 1, 2, &value, &error), error);
+    assert_true(value == 1.25f);
+    assert_false(settings_float(&settings, "iterations", 0, 1, &value, &error));
+    assert_error(error, ERROR_INPUT, "iterations: error: a number of 0 to 1 is needed (got '1.25')");
+}
+
 static void defaults_do_not_replace(void **state) {
     (void)state;
     Settings settings = parsed("warm=on");
@@ -113,7 +126,8 @@ static void bad_values_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_are_found_by_key), cmocka_unit_test(missing_keys_leave_the_value),
-        cmocka_unit_test(defaults_do_not_replace), cmocka_unit_test(bad_settings_are_refused),
+        cmocka_unit_test(a_number_is_read_in_its_range),
+                                       cmocka_unit_test(defaults_do_not_replace), cmocka_unit_test(bad_settings_are_refused),
         cmocka_unit_test(bad_values_are_refused),  cmocka_unit_test(too_many_settings_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,9 +24,9 @@ static void a_trajectory_says_what_it_is(void **state) {
     (void)state;
     Scene *scene = read_single();
     scene->frames = 60;
-    Trajectory *trajectory = run(scene, "engine:iterations=3");
+    Trajectory *trajectory = run(scene, "engine:k=3");
     assert_string_equal(trajectory->scene, "single");
-    assert_string_equal(trajectory->method, "engine:iterations=3");
+    assert_string_equal(trajectory->method, "engine:k=3");
     assert_true(trajectory->scene_hash == scene_hash(scene));
     assert_int_equal(trajectory->frames, 61);
     assert_int_equal(trajectory->bodies, 3);

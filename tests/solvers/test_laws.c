@@ -103,7 +103,7 @@ static void a_resting_stacks_impulses_carry_its_weight(void **state) {
     add_ground(world, 0.2f);
     for (int i = 0; i < BOXES; i++)
         add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    ContactSolver engine = make_engine("iterations=30");
+    ContactSolver engine = make_engine("k=30");
     run(world, &engine, 1200);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -139,7 +139,7 @@ static void friction_stays_in_its_cone(void **state) {
     add_ground(world, 0.5f);
     add_body(world,
              &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
-    ContactSolver engine = make_engine("iterations=200");
+    ContactSolver engine = make_engine("k=200");
     run(world, &engine, 1);
     assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);
     const ContactProblem *problem = world_problem(world);
@@ -170,9 +170,9 @@ static void iterations_out_of_range_are_refused(void **state) {
     (void)state;
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, "iterations=0", solver_sequential_impulses.settings, "engine", &error), error);
+    assert_ok(settings_parse(&settings, "k=0", solver_sequential_impulses.settings, "engine", &error), error);
     assert_null(solver_sequential_impulses.create(&settings, &error));
-    assert_error(error, ERROR_INPUT, "iterations");
+    assert_error(error, ERROR_INPUT, "k");
     error = (Error){0};
     assert_false(settings_parse(&settings, "sweeps=3", solver_sequential_impulses.settings, "engine", &error));
     assert_error(error, ERROR_INPUT, "sweeps");

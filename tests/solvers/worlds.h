@@ -8,7 +8,7 @@
 
 static const float world_dt = 1.0f / 60.0f;
 
-/* The engine with these settings ("iterations=10"). */
+/* The engine with these settings ("k=10"). */
 static inline ContactSolver make_engine(const char *text) {
     Error error = {0};
     Settings settings;
