@@ -5,28 +5,30 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A run in progress: the world, and who solves its contacts. */
+/* A run in progress: the world, and what steps it. */
 typedef struct Run {
     const Scene *scene;
     World *world;
-    ContactSolver solver;
+    Stepper *stepper;
 } Run;
 
 static void run_end(Run *run) {
-    if (run->solver.state != NULL) run->solver.kind->destroy(run->solver.state);
+    stepper_destroy(run->stepper);
     world_destroy(run->world);
 }
 
 static bool run_begin(Run *run, const Scene *scene, const Method *method, Error *error) {
     *run = (Run){.scene = scene, .world = scene_world(scene, error)};
-    if (run->world != NULL && method_create_solver(method, scene, &run->solver, error)) return true;
+    if (run->world != NULL) run->stepper = stepper_create(method, scene, error);
+    if (run->stepper != NULL) return true;
     run_end(run);
     return false;
 }
 
 /* One step; the bomb comes after the step it is told to. */
 static bool run_step(Run *run, int frame, Error *error) {
-    if (!world_step(run->world, &run->solver, run->scene->dt, error)) {
+    const Step step = {.scene = run->scene, .frame = frame};
+    if (!stepper_step(run->stepper, run->world, &step, error)) {
         size_t length = strlen(error->message);
         snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", frame,
                  run->scene->name);
