@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const SteppingKind *const stepping_kinds[] = {&stepping_substepping, NULL};
+static const SteppingKind *const stepping_kinds[] = {&stepping_substepping, &stepping_playback, NULL};
 
 bool method_info(int i, MethodInfo *info) {
     int solvers = 0, others = 0;
@@ -66,6 +66,7 @@ static bool has_setting(const ContactSolverKind *kind, const char *key) {
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
     if (method->solver == NULL)
         return error_input(error, method->text, "no contact solver, but another way of stepping");
+    const ContactSolverKind *kind = method->solver;
     Settings settings = method->settings;
     char iterations[16];
     snprintf(iterations, sizeof iterations, "%d", scene->iterations);
@@ -73,14 +74,14 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         const char *key, *value;
     } scene_settings[] = {{"k", iterations},
                           {"accumulate", scene->accumulate_impulses ? "on" : "off"},
-                          {"network", scene_network(scene, method->solver->name)}};
+                          {"network", scene_network(scene, kind->name)}};
     for (size_t i = 0; i < sizeof scene_settings / sizeof scene_settings[0]; i++) {
-        if (scene_settings[i].value == NULL || !has_setting(method->solver, scene_settings[i].key)) continue;
+        if (scene_settings[i].value == NULL || !has_setting(kind, scene_settings[i].key)) continue;
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
-    solver->kind = method->solver;
-    solver->state = method->solver->create(&settings, error);
+    solver->kind = kind;
+    solver->state = kind->create(&settings, error);
     return solver->state != NULL;
 }
 

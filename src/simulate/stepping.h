@@ -39,3 +39,4 @@ typedef struct SteppingKind {
 } SteppingKind;
 
 extern const SteppingKind stepping_substepping;
+extern const SteppingKind stepping_playback;

@@ -5,6 +5,7 @@
 
 extern const ContactSolverKind solver_sequential_impulses;
 extern const ContactSolverKind solver_pair_net;
+extern const ContactSolverKind solver_constant;
 extern const ContactSolverKind solver_reference;
 
 /* All kinds, ended by NULL. */
