@@ -25,17 +25,19 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
     return false;
 }
 
-/* One step; the bomb comes after the step it is told to. */
+/* The bomb comes after the step it is told to. */
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    const SceneBomb *bomb = &step->scene->bomb;
+    if (stepper_step(stepper, world, step, error))
+        return !bomb->present || bomb->frame != step->frame || scene_add_bomb(step->scene, world, error);
+    size_t length = strlen(error->message);
+    snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", step->frame,
+             step->scene->name);
+    return false;
+}
+
 static bool run_step(Run *run, int frame, Error *error) {
-    const Step step = {.scene = run->scene, .frame = frame};
-    if (!stepper_step(run->stepper, run->world, &step, error)) {
-        size_t length = strlen(error->message);
-        snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", frame,
-                 run->scene->name);
-        return false;
-    }
-    bool bomb_comes = run->scene->bomb.present && run->scene->bomb.frame == frame;
-    return !bomb_comes || scene_add_bomb(run->scene, run->world, error);
+    return simulate_step(run->stepper, run->world, &(Step){.scene = run->scene, .frame = frame}, error);
 }
 
 bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error) {
@@ -44,7 +46,7 @@ bool simulate_observed(const Scene *scene, const Method *method, const StepObser
     bool ok = true;
     for (int frame = 1; ok && frame <= scene->frames; frame++)
         ok = run_step(&run, frame, error) &&
-             observer->observe(observer->context, frame, world_problem(run.world), world_solution(run.world), error);
+             observer->observe(observer->context, frame, run.world, error);
     run_end(&run);
     return ok;
 }

@@ -64,9 +64,8 @@ static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
     scene_destroy(scene);
 }
 
-static bool count_step(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                       Error *error) {
-    (void)solution, (void)error;
+static bool count_step(void *context, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
     int *steps = context;
     assert_int_equal(frame, ++*steps);
     assert_int_equal(problem->body_count, 3);

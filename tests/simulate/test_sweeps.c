@@ -5,9 +5,9 @@
 #include "simulate/simulate.h"
 #include "solvers/kernels.h"
 
-static bool agree(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                  Error *error) {
-    (void)frame, (void)solution, (void)error;
+static bool agree(void *context, int frame, const World *world, Error *error) {
+    (void)frame, (void)error;
+    const ContactProblem *problem = world_problem(world);
     static const float factors[19] = {0, 0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f, 0.9f,
                                       0.9f, 0.9f, 0, 0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
     Sweeps(*sweeps)[SWEEP_KERNELS] = context;
