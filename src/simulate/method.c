@@ -85,6 +85,11 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
     return solver->state != NULL;
 }
 
+bool method_lacks_network(const Method *method, const Scene *scene) {
+    return method->solver != NULL && has_setting(method->solver, "network") &&
+           settings_get(&method->settings, "network") == NULL && scene_network(scene, method->solver->name) == NULL;
+}
+
 struct Stepper {
     ContactSolver solver;         /* in the standard step, */
     const SteppingKind *stepping; /* or another way of stepping */

@@ -30,6 +30,9 @@ bool method_info(int i, MethodInfo *info);
    accumulated impulses, its network). ERROR_INPUT where the method is none. */
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error);
 
+/* True where the method needs a network, and neither its settings nor the scene name one. */
+bool method_lacks_network(const Method *method, const Scene *scene);
+
 /* A method in use: steps worlds of one scene, whatever the launch, one after the other. */
 typedef struct Stepper Stepper;
 
