@@ -239,3 +239,13 @@ bool reference_solve(Reference *reference, const ContactProblem *problem, double
     apply_all(reference, problem);
     return true;
 }
+
+bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,
+                        double *residual, Error *error) {
+    if (!reserve(reference, problem)) return error_memory(error, "reference");
+    load(reference, problem);
+    start_from(reference, problem, impulses);
+    *residual = sweep(reference);
+    take_back(reference);
+    return true;
+}
