@@ -204,14 +204,15 @@ static void iterate(Reference *r, double tolerance, int max_sweeps) {
     memset(r->velocity_direction, 0, (size_t)r->body_count * sizeof *r->velocity_direction);
     for (;;) {
         double change = sweep(r);
-        bool at_end = !(change > tolerance) || r->sweeps + 1 >= max_sweeps;
-        if (from_sweep && at_end) {
+        bool converged = !(change > tolerance);
+        if (from_sweep && (converged || r->sweeps >= max_sweeps)) {
             r->residual = change;
             take_back(r);
             return;
         }
+        bool last_is_next = converged || r->sweeps + 1 >= max_sweeps;
         Step step = measure_step(r);
-        double beta = at_end || !(step.along > 0) ? 0 : step.squared < before ? step.squared / before : 1;
+        double beta = last_is_next || !(step.along > 0) ? 0 : step.squared < before ? step.squared / before : 1;
         extrapolate(r, beta);
         from_sweep = beta == 0;
         before = step.squared;
@@ -236,5 +237,15 @@ bool reference_solve(Reference *reference, const ContactProblem *problem, double
     reference->sweeps = 0;
     iterate(reference, tolerance, max_sweeps);
     apply_all(reference, problem);
+    return true;
+}
+
+bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,
+                        double *residual, Error *error) {
+    if (!reserve(reference, problem)) return error_memory(error, "reference");
+    load(reference, problem);
+    start_from(reference, problem, impulses);
+    *residual = sweep(reference);
+    take_back(reference);
     return true;
 }

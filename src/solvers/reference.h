@@ -46,3 +46,7 @@ void reference_free(Reference *reference);
    far it got. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, double tolerance, int max_sweeps,
                      const ContactImpulse *start, Error *error);
+
+/* The residual of a method's own impulses [contact_count], whatever velocities it found. False when memory is short. */
+bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,
+                        double *residual, Error *error);

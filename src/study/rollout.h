@@ -4,6 +4,7 @@
 #pragma once
 #include "common/error.h"
 #include "simulate/method.h"
+#include "solvers/reference.h"
 #include "study/run_log.h"
 
 /* Of the steps scored. Zero-initialise; freed by step_scores_free. */

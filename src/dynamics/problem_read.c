@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contact problems from files, which may hold anything. */
+#include "common/npz.h"
+#include "dynamics/problem_fields.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error) {
+    void *data = npz_read(file, name, type, 0, NULL, error);
+    if (data != NULL) memcpy(value, data, size);
+    free(data);
+    return data != NULL;
+}
+
+static bool check_version(NpzFile *file, const char *path, Error *error) {
+    char kind[32] = "";
+    int32_t version = 0;
+    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) ||
+        strcmp(kind, PROBLEM_KIND) != 0)
+        return error_input(error, path, "holds no contact problem");
+    if (!read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
+    return version == PROBLEM_VERSION ||
+           error_input(error, path, "contact problem of version %d; this program reads %d", (int)version,
+                       PROBLEM_VERSION);
+}
+
+static bool read_head(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
+    int32_t frame, bomb;
+    float dt;
+    if (!check_version(file, path, error) ||
+        !npz_read_text(file, "scene", stored->scene, sizeof stored->scene, error) ||
+        !read_scalar(file, "frame", NPZ_INT32, &frame, sizeof frame, error) ||
+        !read_scalar(file, "dt", NPZ_FLOAT32, &dt, sizeof dt, error) ||
+        !read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
+        return false;
+    for (const char *c = stored->scene; *c != '\0'; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            return error_input(error, path, "the name of the scene holds control characters");
+    if (frame < 1) return error_input(error, path, "frame is %d; 1 is the first", (int)frame);
+    if (!isfinite(dt) || !(dt > 0))
+        return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)dt);
+    stored->frame = frame;
+    stored->problem.dt = dt;
+    stored->problem.bomb = bomb;
+    return true;
+}
+
+static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
+    int64_t bodies, contacts[2];
+    if (!npz_shape(file, "angle", NPZ_FLOAT32, 1, &bodies, error) ||
+        !npz_shape(file, "contact_bodies", NPZ_INT32, 2, contacts, error))
+        return false;
+    if (bodies < 1 || bodies > PROBLEM_MAX_BODIES)
+        return error_input(error, path, "%lld bodies; 1 to %d are possible", (long long)bodies, PROBLEM_MAX_BODIES);
+    if (contacts[0] > PROBLEM_MAX_CONTACTS)
+        return error_input(error, path, "%lld contacts; at most %d are possible", (long long)contacts[0],
+                           PROBLEM_MAX_CONTACTS);
+    ContactProblem *problem = &stored->problem;
+    problem->body_count = (int)bodies;
+    problem->contact_count = (int)contacts[0];
+    if (problem->bomb < -1 || problem->bomb >= problem->body_count)
+        return error_input(error, path, "the bomb is body %d of %d", problem->bomb, problem->body_count);
+    problem->bodies = stored->bodies = calloc((size_t)bodies, sizeof *stored->bodies);
+    problem->contacts = stored->contacts = calloc((size_t)contacts[0] + 1, sizeof *stored->contacts);
+    return (stored->bodies != NULL && stored->contacts != NULL) || error_memory(error, path);
+}
+
+/* Reads one array of floats into the records. */
+static bool read_field(NpzFile *file, const char *path, const ProblemField *field, void *records, size_t record_size,
+                       int count, Error *error) {
+    const int64_t shape[] = {count, field->count};
+    float *numbers = npz_read(file, field->name, NPZ_FLOAT32, field->count > 1 ? 2 : 1, shape, error);
+    if (numbers == NULL) return false;
+    int bad = -1;
+    for (int i = count - 1; i >= 0; i--) {
+        const float *from = numbers + (size_t)i * (size_t)field->count;
+        for (int k = 0; k < field->count; k++)
+            if (!isfinite(from[k])) bad = i;
+        memcpy((char *)records + (size_t)i * record_size + field->offset, from, (size_t)field->count * sizeof *from);
+    }
+    free(numbers);
+    return bad < 0 || error_input(error, path, "%s[%d] is not finite", field->name, bad);
+}
+
+static bool read_fields(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
+    for (int f = 0; f < BODY_FIELDS; f++)
+        if (!read_field(file, path, &body_fields[f], stored->bodies, sizeof *stored->bodies, stored->problem.body_count,
+                        error))
+            return false;
+    for (int f = 0; f < CONTACT_FIELDS; f++)
+        if (!read_field(file, path, &contact_fields[f], stored->contacts, sizeof *stored->contacts,
+                        stored->problem.contact_count, error))
+            return false;
+    return true;
+}
+
+static bool read_contact_heads(StoredProblem *stored, NpzFile *file, Error *error) {
+    const int64_t shape[] = {stored->problem.contact_count, 2};
+    int32_t(*pairs)[2] = npz_read(file, "contact_bodies", NPZ_INT32, 2, shape, error);
+    uint32_t *features = pairs != NULL ? npz_read(file, "contact_feature", NPZ_UINT32, 1, shape, error) : NULL;
+    for (int i = 0; features != NULL && i < stored->problem.contact_count; i++) {
+        stored->contacts[i].a = pairs[i][0];
+        stored->contacts[i].b = pairs[i][1];
+        stored->contacts[i].feature = features[i];
+    }
+    free(pairs);
+    bool done = features != NULL;
+    free(features);
+    return done;
+}
+
+static bool check_body(const StoredProblem *stored, int i, const char *path, Error *error) {
+    const ProblemBody *body = &stored->bodies[i];
+    if (!(body->size.x > 0) || !(body->size.y > 0))
+        return error_input(error, path, "body %d: its size must be greater than 0 (got %g x %g)", i,
+                           (double)body->size.x, (double)body->size.y);
+    if (body->inv_mass < 0 || body->inv_inertia < 0 || (body->inv_mass > 0) != (body->inv_inertia > 0))
+        return error_input(error, path, "body %d: inverse mass and inertia must both be greater than 0, or both 0", i);
+    return true;
+}
+
+static bool check_pair(const StoredProblem *stored, int i, const char *path, Error *error) {
+    const ContactPoint *contact = &stored->contacts[i];
+    if (contact->a < 0 || contact->a >= contact->b || contact->b >= stored->problem.body_count)
+        return error_input(error, path, "contact %d: no pair of bodies (%d and %d)", i, contact->a, contact->b);
+    if (stored->bodies[contact->a].inv_mass + stored->bodies[contact->b].inv_mass == 0.0f)
+        return error_input(error, path, "contact %d: bodies %d and %d are both static", i, contact->a, contact->b);
+    const ContactPoint *last = contact - 1;
+    if (i > 0 && (contact->a < last->a || (contact->a == last->a && contact->b < last->b)))
+        return error_input(error, path, "contact %d: pairs do not rise", i);
+    return true;
+}
+
+static bool check_contact(const StoredProblem *stored, int i, const char *path, Error *error) {
+    const ContactPoint *contact = &stored->contacts[i];
+    const float unit_tolerance = 1e-3f; /* far above what float rounding does to a rotation's column */
+    if (!check_pair(stored, i, path, error)) return false;
+    if (!(fabsf(vec2_dot(contact->normal, contact->normal) - 1.0f) <= unit_tolerance))
+        return error_input(error, path, "contact %d: its normal is not of unit length", i);
+    if (!(contact->mass_normal > 0) || !(contact->mass_tangent > 0))
+        return error_input(error, path, "contact %d: its effective masses must be greater than 0", i);
+    if (contact->friction < 0) return error_input(error, path, "contact %d: friction must not be negative", i);
+    return true;
+}
+
+static bool check(const StoredProblem *stored, const char *path, Error *error) {
+    for (int i = 0; i < stored->problem.body_count; i++)
+        if (!check_body(stored, i, path, error)) return false;
+    for (int i = 0; i < stored->problem.contact_count; i++)
+        if (!check_contact(stored, i, path, error)) return false;
+    return true;
+}
+
+void problem_destroy(StoredProblem *stored) {
+    if (stored == NULL) return;
+    free(stored->bodies);
+    free(stored->contacts);
+    free(stored);
+}
+
+StoredProblem *problem_read(const char *path, Error *error) {
+    NpzFile *file = npz_open(path, error);
+    if (file == NULL) return NULL;
+    StoredProblem *stored = calloc(1, sizeof *stored);
+    bool done = stored != NULL || error_memory(error, path);
+    done = done && read_head(stored, file, path, error) && read_counts(stored, file, path, error) &&
+           read_fields(stored, file, path, error) && read_contact_heads(stored, file, error) &&
+           check(stored, path, error);
+    npz_close(file);
+    if (done) return stored;
+    problem_destroy(stored);
+    return NULL;
+}

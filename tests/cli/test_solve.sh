@@ -1,0 +1,94 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One contact problem, written and solved.
+. "$(dirname "$0")/checks.sh"
+
+run 0 problem "$scenes/stack.yaml" --frame 41 -o impact.npz
+says "stack, step 41: 12 bodies, 19 contacts -> impact.npz"
+run 0 problem "$scenes/stack.yaml" --frame 41 -o again.npz
+cmp -s impact.npz again.npz || fail "the same problem has other bytes"
+run 0 problem "$scenes/stack.yaml" --frame 41 --bomb-x 2 -o other.npz
+cmp -s impact.npz other.npz && fail "the bomb comes from elsewhere, the problem is the same"
+run 0 problem "$scenes/stack.yaml" --frame 41 --method engine:k=3 -o soft.npz
+cmp -s impact.npz soft.npz && fail "another method ran the scene, the problem is the same"
+run 0 problem "$scenes/stack.yaml" --frame 1 -o first.npz
+says "step 1: 12 bodies"
+
+# The state after the step is the problem's, solved by the same method and moved on by dt.
+run 0 simulate "$scenes/stack.yaml" --frames 41 -o run.npz
+/usr/bin/python3 - <<'PYTHON' || fail "the problem is not that of the run's step 41"
+import numpy
+problem, run = numpy.load("impact.npz"), numpy.load("run.npz")
+assert numpy.array_equal(problem["position"], run["position"][40])
+assert numpy.array_equal(problem["angle"], run["angle"][40])
+assert numpy.array_equal(problem["contact_bodies"], run["contact_bodies"][run["contact_start"][41]:])
+assert problem["frame"] == 41 and problem["bomb"] == 11 and str(problem["scene"]) == "stack"
+fallen = run["velocity"][40] + numpy.float32(1 / 60) * numpy.array([0, -10], numpy.float32)
+assert numpy.abs(problem["velocity"][1:] - fallen[1:]).max() < 1e-5
+PYTHON
+
+# value METHOD COLUMN: a figure of the last table.
+value() { awk -v method="$1" -v column="$2" '$1 == method { print $column }' out; }
+# less WHAT A B
+less() {
+    checks=$((checks + 1))
+    awk -v a="$2" -v b="$3" 'BEGIN { exit !(a < b) }' || fail "$1: $2 is not less than $3"
+}
+run 0 solve impact.npz -m engine:k=1 -m engine:k=10 --method engine:k=100 -m engine:k=1000 -m reference
+says "stack, step 41: 12 bodies, 19 contacts; reference: residual"
+equal "lines" "$(wc -l <out)" 7
+for column in 2 4; do
+    less "column $column" "$(value engine:k=10 $column)" "$(value engine:k=1 $column)"
+    less "column $column" "$(value engine:k=100 $column)" "$(value engine:k=10 $column)"
+    less "column $column" "$(value engine:k=1000 $column)" "$(value engine:k=100 $column)"
+    less "column $column" "$(value reference $column)" 1e-4
+done
+equal "bodies right by the reference" "$(value reference 3)" 11/11
+run 0 solve impact.npz -m "pair-net:network=$scenes/networks/pair-net.npz"
+
+run 2 problem "$scenes/stack.yaml" -o none.npz
+complains "--frame N is needed"
+run 2 problem "$scenes/stack.yaml" --frame 0 -o none.npz
+complains "--frame"
+run 2 problem "$scenes/stack.yaml" --frame 3 --bomb-x here -o none.npz
+complains "--bomb-x"
+run 2 problem "$scenes/stack.yaml" --frame 3 --method none -o none.npz
+complains "no such method"
+run 2 problem nowhere.yaml --frame 3 -o none.npz
+complains "nowhere.yaml"
+run 3 problem "$scenes/stack.yaml" --frame 3 -o no/where.npz
+complains "no/where.npz"
+[ -e none.npz ] && fail "a problem was written all the same"
+
+run 2 solve impact.npz
+complains "--method NAME is needed"
+run 2 solve impact.npz -m none
+complains "no such method"
+run 2 solve impact.npz -m pair-net
+complains "network"
+run 2 solve run.npz -m engine
+complains "run.npz: error: holds no contact problem"
+head -c 1000 impact.npz >cut.npz
+run 2 solve cut.npz -m engine
+complains "cut.npz: error:"
+
+# hostile FIELD CHANGE: a problem with one array changed must be refused, naming it.
+hostile() {
+    /usr/bin/python3 - "$2" <<'PYTHON'
+import sys, numpy
+p = dict(numpy.load("impact.npz", allow_pickle=False))
+exec(sys.argv[1])
+numpy.savez("hostile.npz", **p)
+PYTHON
+    run 2 solve hostile.npz -m engine
+    complains "hostile.npz: error:"
+    complains "$1"
+}
+hostile size 'p["size"] = p["size"][:5]'
+hostile velocity 'p["velocity"] = p["velocity"].astype(numpy.float64)'
+hostile contact_warm 'del p["contact_warm"]'
+hostile contact_bodies 'p["contact_bodies"] = p["contact_bodies"].reshape(-1)'
+hostile contact_feature 'p["contact_feature"] = p["contact_feature"][1:]'
+hostile version 'p["version"] = numpy.int32(2)'
+hostile bodies 'p["contact_bodies"][0, 1] = 1 << 30'
+finish
