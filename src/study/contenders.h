@@ -5,9 +5,9 @@
 #include "study/chart_csv.h"
 
 typedef struct Contender {
-    char name[CHART_NAME_SIZE];      /* "engine" */
+    char name[CHART_NAME_SIZE];       /* "engine" */
     char setting[CHART_SETTING_SIZE]; /* "k=10,warm=off"; may be empty */
-    Method method;                   /* both, parsed */
+    Method method;                    /* both, parsed */
 } Contender;
 
 typedef struct ContenderList {

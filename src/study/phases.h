@@ -5,7 +5,7 @@
 #include "dynamics/contact_problem.h"
 #include "study/chart_csv.h"
 
-enum { PHASES = PHASE_REST + 1, AFTER_FRAMES = 60 };
+enum { PHASES = PHASE_REST + 1, PROTOCOLS = PROTOCOL_CLOSED + 1, AFTER_FRAMES = 60 };
 
 typedef struct PhaseTracker {
     int impact_frames; /* the scene's */
