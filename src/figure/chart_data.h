@@ -40,11 +40,11 @@ typedef struct Chart {
     double us_least, us_most, error_least, error_most; /* of the marks */
 } Chart;
 
-/* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts are
-   plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
+/* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts
+   are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
    gnuplot. Left out and counted: rows without a time, or without an error above 0, or with one below a
-   hundred-thousandth of the largest, which a logarithmic axis cannot show. False with error set where nothing is left, or
-   more than CHART_MAX_LINES lines. */
+   hundred-thousandth of the largest, which a logarithmic axis cannot show. False with error set where nothing is
+   left, or more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 

@@ -23,3 +23,14 @@ ChartStyle chart_style(int i) {
     int filled = symbol < 4 ? 0 : symbol | 1;
     return (ChartStyle){symbol, filled, colours[i % COLOURS].colour, colours[i % COLOURS].ink, dashes[i % DASHES]};
 }
+
+void chart_put_line(FILE *script, char data, int number, const ChartStyle *style) {
+    fprintf(script, ", $%c%d with lines lc rgb '%s' dt %s lw 1.6", data, number, style->colour, style->dashes);
+}
+
+/* Marks upon white ones, a little larger, so that they stand out from the lines and marks that they cover. */
+void chart_put_marks(FILE *script, char data, int number, const ChartStyle *style) {
+    if (style->filled != 0)
+        fprintf(script, ", $%c%d with points pt %d ps 1.1 lc rgb 'white'", data, number, style->filled);
+    fprintf(script, ", $%c%d with points pt %d ps 0.8 lw 1.6 lc rgb '%s'", data, number, style->symbol, style->colour);
+}

@@ -25,7 +25,8 @@ typedef struct LabelField {
 void label_add_box(LabelField *field, Box box);
 void label_add_segment(LabelField *field, Segment segment);
 
-/* The box for a label of this size near (x, y), at least `distance` from it: the nearest that covers no box and crosses no
-   line. False where there is none; with `must`, the one that crosses the fewest lines. Adds the box to the field. */
+/* The box for a label of this size near (x, y), at least `distance` from it: the nearest that covers no box and
+   crosses no line. False where there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
+   field. */
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  Box *place);

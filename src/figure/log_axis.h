@@ -14,6 +14,6 @@ LogAxis log_axis(double least, double most);
 
 double log_axis_place(const LogAxis *axis, double value);
 
-/* Writes gnuplot's `set xtics` (or y): each decade, and 2 and 5 in between where the axis is short; minor ones without a
-   label. */
+/* Writes gnuplot's `set xtics` (or y): each decade, and 2 and 5 in between where the axis is short; minor ones
+   without a label. */
 void log_axis_put_tics(const LogAxis *axis, char letter, bool labelled, FILE *script);
