@@ -10,7 +10,7 @@ static const double padding = 0.07;
 static const double long_axis = 2.3;
 
 LogAxis log_axis(double least, double most) {
-    double low = log10(least), high = log10(most), room = fmax((high - low) * padding, (0.5 - (high - low)) / 2);
+    double low = log10(least), high = log10(most), room = fmax((high - low) * padding, (1 - (high - low)) / 2);
     return (LogAxis){pow(10, low - room), pow(10, high + room), 0, 1};
 }
 

@@ -9,7 +9,8 @@ typedef struct LogAxis {
     double from, to;  /* where they lie on the page, mm */
 } LogAxis;
 
-/* Ends for values of [least, most], both above 0: some room on either side, and half a decade at least. */
+/* Ends for values of [least, most], both above 0: some room on either side, and a decade
+   at least, so that it has tics. */
 LogAxis log_axis(double least, double most);
 
 double log_axis_place(const LogAxis *axis, double value);
