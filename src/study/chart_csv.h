@@ -37,8 +37,8 @@ typedef struct ChartTable {
    are infinite, as neither could be read again. */
 bool chart_csv_write(const char *path, const ChartRow *rows, int count, Error *error);
 
-/* Reads what chart_csv_write wrote: exactly its header, 1 to CHART_MAX_ROWS rows, no row twice, every figure within what
-   it can be (no negative time, quartiles around their median, ...). On failure error is "path:line:column: error:
-   reason" and nothing is to be freed. */
+/* Reads what chart_csv_write wrote: exactly its header, 1 to CHART_MAX_ROWS rows, no row twice, every figure within
+   what it can be (no negative time, quartiles around their median, ...). On failure error is "path:line:column:
+   error: reason" and nothing is to be freed. */
 bool chart_csv_read(ChartTable *table, const char *path, Error *error);
 void chart_csv_free(ChartTable *table);

@@ -24,8 +24,8 @@ static void fields_are_found_and_unquoted(void **state) {
     static const char *const texts[] = {
         "a,b\n\"x,\"\"y\"\"\",\n\"\",\"c\"\n",
         "a,b\r\n\"x,\"\"y\"\"\",\r\n\"\",\"c\"",
-        "\xef\xbb\xbf"
-        "a,b\n\"x,\"\"y\"\"\",\n,\"c\"",
+        ("\xef\xbb\xbf"
+         "a,b\n\"x,\"\"y\"\"\",\n,\"c\""),
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Csv csv = read_good(texts[i]);
