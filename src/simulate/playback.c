@@ -18,7 +18,7 @@
 /* Velocities that one playback may hold: 600 MB. */
 enum { PLAYBACK_MAX_STATES = 50000000 };
 
-static const char recorder[] = "engine:k=100";
+static const char recorder[] = "momentum:k=100";
 
 typedef struct Playback {
     int launch_count, bodies;         /* with the bomb */

@@ -5,7 +5,8 @@
    Contact points stay fixed on the bodies for the whole step: normals, lever arms and effective masses are those of
    the collision pass, and a separation changes by the velocity along its normal. The velocity that pushes an overlap
    apart is that of the whole step, so that the step ends with the velocities that a converged solve of the whole step
-   has. The impulses handed on, and stored, are those of the last small step.
+   has. The impulses handed on, and stored, are those of the last small step times n, as if
+   the whole step had been like it.
 
    Fails like k sweeps of a step n times as short: what it gains is that errors of one small step are seen by the next.
    Where a single impact has to travel through a stack it is about as good as n k sweeps, and dearer. */
@@ -15,7 +16,6 @@
 #include "solvers/solvers.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct Substepping {
     int substeps;
@@ -70,7 +70,12 @@ static bool begin(Substepping *stepping, const World *world, const ContactProble
         stepping->bodies[i].velocity = now[i].velocity;
         stepping->bodies[i].angular_velocity = now[i].angular_velocity;
     }
-    if (contacts > 0) memcpy(stepping->contacts, problem->contacts, contacts * sizeof *stepping->contacts);
+    float share = 1.0f / (float)stepping->substeps;
+    for (size_t i = 0; i < contacts; i++) {
+        stepping->contacts[i] = problem->contacts[i];
+        stepping->contacts[i].warm_normal *= share;
+        stepping->contacts[i].warm_tangent *= share;
+    }
     return true;
 }
 
@@ -121,6 +126,10 @@ static bool solve_small_steps(Substepping *stepping, const Scene *scene, const C
         if (!stepping->solver.kind->solve(stepping->solver.state, &problem, solution, error)) return false;
         integrate(stepping, &problem, solution);
         carry_contacts(stepping, &problem, solution, scene->position_correction ? whole->dt : 0);
+    }
+    for (int i = 0; i < problem.contact_count; i++) {
+        solution->impulses[i].normal *= (float)stepping->substeps;
+        solution->impulses[i].tangent *= (float)stepping->substeps;
     }
     return true;
 }

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/part_file.h"
+
+#include "common/file.h"
+#include "common/hash.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PROGRAM_MAX_SIZE = 1 << 28 };
+
+bool part_file_open(PartFile *part, const char *folder, uint64_t key, Error *error) {
+    *part = (PartFile){0};
+    if (snprintf(part->path, sizeof part->path, "%s/chart-%016" PRIx64 ".part.csv", folder, key) >=
+        (int)sizeof part->path)
+        return error_input(error, folder, "the name is too long");
+    return access(part->path, F_OK) != 0 || chart_csv_read(&part->done, part->path, error);
+}
+
+void part_file_close(PartFile *part) { chart_csv_free(&part->done); }
+
+bool part_file_find(const PartFile *part, ChartRow *rows, int count) {
+    for (int i = 0; i + count <= part->done.count; i += count) {
+        const ChartRow *found = &part->done.rows[i];
+        if (strcmp(found->scene, rows->scene) != 0 || strcmp(found->method, rows->method) != 0 ||
+            strcmp(found->setting, rows->setting) != 0)
+            continue;
+        memcpy(rows, found, (size_t)count * sizeof *rows);
+        return true;
+    }
+    return false;
+}
+
+bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Error *error) {
+    return count == 0 || chart_csv_write(part->path, rows, count, error);
+}
+
+void part_file_remove(const PartFile *part) { unlink(part->path); }
+
+bool program_hash(uint64_t *hash, Error *error) {
+    size_t size;
+    char *program = file_read("/proc/self/exe", PROGRAM_MAX_SIZE, &size, error);
+    if (program == NULL) return false;
+    *hash = hash_xxh3(program, size);
+    free(program);
+    return true;
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/speed_accuracy.h"
+
+#include "common/file.h"
+#include "common/hash.h"
+#include "common/parallel.h"
+#include "study/part_file.h"
+#include "study/scene_study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The whole study of three scenes takes some minutes on two cores, the quick one less than one. */
+static const StudySize whole_size = {.launches = 40,
+                                     .closed = {.after = 6, .rest = 30},
+                                     .frozen = {.after = 6, .rest = 60},
+                                     .timed_launches = 2,
+                                     .repetitions = 9};
+static const StudySize quick_size = {.launches = 5,
+                                     .closed = {.after = 20, .rest = 120},
+                                     .frozen = {.after = 20, .rest = 120},
+                                     .timed_launches = 1,
+                                     .repetitions = 3};
+
+/* The study in progress. */
+typedef struct Run {
+    const SpeedAccuracyOptions *options;
+    const StageProgress *progress;
+    ContenderList contenders;
+    PartFile part;
+    ChartRow *rows; /* of all scenes done, and behind them of the scene in hand */
+    int row_count;  /* of the scenes done */
+    SceneStudy study;
+    bool *scored; /* [contenders] of the scene in hand */
+} Run;
+
+static const Progress *begin_stage(const Run *run, const char *what) {
+    if (run->progress == NULL) return NULL;
+    char title[CHART_NAME_SIZE + 64];
+    snprintf(title, sizeof title, "%s: %s", run->study.scene->name, what);
+    return run->progress->begin(run->progress->context, title);
+}
+
+static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run->row_count + contender * ROWS_EACH; }
+
+/* All that is done: rows of the scenes before, and of the contenders scored in this one. */
+static bool keep_part(const Run *run, Error *error) {
+    int count = run->row_count;
+    size_t most = (size_t)(run->row_count + run->study.contender_count * ROWS_EACH);
+    ChartRow *done = malloc((most + 1) * sizeof *done);
+    if (done == NULL) return error_memory(error, "study");
+    if (count > 0) memcpy(done, run->rows, (size_t)count * sizeof *done);
+    for (int i = 0; i < run->study.contender_count; i++) {
+        if (!run->scored[i]) continue;
+        memcpy(done + count, rows_of(run, i), ROWS_EACH * sizeof *done);
+        count += ROWS_EACH;
+    }
+    bool ok = part_file_write(&run->part, done, count, error);
+    free(done);
+    return ok;
+}
+
+static bool score(void *context, int i, Error *error) {
+    Run *run = context;
+    bool ok = true;
+    if (run->scored[i]) return true;
+    if (!scene_study_score(&run->study, i, rows_of(run, i), error)) return false;
+#pragma omp critical(study_part)
+    {
+        run->scored[i] = true;
+        ok = keep_part(run, error);
+    }
+    return ok;
+}
+
+/* Takes over what an earlier run scored. True where it also has all costs. */
+static bool take_over(Run *run) {
+    bool timed = true;
+    for (int i = 0; i < run->study.contender_count; i++) {
+        ChartRow *rows = rows_of(run, i);
+        *rows = (ChartRow){0};
+        snprintf(rows->scene, sizeof rows->scene, "%s", run->study.scene->name);
+        snprintf(rows->method, sizeof rows->method, "%s", run->study.contenders[i]->name);
+        snprintf(rows->setting, sizeof rows->setting, "%s", run->study.contenders[i]->setting);
+        run->scored[i] = part_file_find(&run->part, rows, ROWS_EACH);
+        timed &= run->scored[i] && !isnan(rows[PROTOCOL_CLOSED * PHASES + PHASE_REST].us_solver);
+    }
+    return timed;
+}
+
+static bool measure_scene(Run *run, Error *error) {
+    SceneStudy *study = &run->study;
+    if (take_over(run)) return true;
+    const ParallelWork work = {score, run};
+    return scene_study_prepare(study, begin_stage(run, "converged runs"), error) &&
+           parallel_for(&work, study->contender_count, study->scene->name, begin_stage(run, "scores"), error) &&
+           scene_study_time(study, rows_of(run, 0), begin_stage(run, "times"), error) && keep_part(run, error);
+}
+
+static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, Error *error) {
+    const StudySize *size = run->options->quick ? &quick_size : &whole_size;
+    if (!scene_study_begin(&run->study, path, &run->contenders, run->options->launches, size, error)) return false;
+    for (int i = 0; i < run->row_count; i++)
+        if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
+            scene_study_end(&run->study);
+            return error_input(error, path, "there is a scene of that name already");
+        }
+    int count = run->study.contender_count;
+    size_t rows = (size_t)(run->row_count + count * ROWS_EACH);
+    ChartRow *grown = realloc(run->rows, (rows + 1) * sizeof *grown);
+    if (grown != NULL) run->rows = grown;
+    run->scored = calloc((size_t)count + 1, sizeof *run->scored);
+    bool ok = grown != NULL && run->scored != NULL;
+    if (!ok) error_memory(error, "study");
+    ok = ok && measure_scene(run, error);
+    if (ok) {
+        *summary = (SpeedAccuracyScene){
+            .contenders = count, .launches = run->study.launch_count, .residual = run->study.residual};
+        snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
+        run->row_count = (int)rows;
+    }
+    free(run->scored);
+    run->scored = NULL;
+    scene_study_end(&run->study);
+    return ok;
+}
+
+static void fold(uint64_t *key, const void *data, size_t size) {
+    uint64_t words[2] = {*key, hash_xxh3(data, size)};
+    *key = hash_xxh3(words, sizeof words);
+}
+
+static bool fold_file(uint64_t *key, const char *path, Error *error) {
+    enum { MAX_SIZE = 1 << 26 };
+    size_t size;
+    char *data = file_read(path, MAX_SIZE, &size, error);
+    if (data == NULL) return false;
+    fold(key, data, size);
+    free(data);
+    return true;
+}
+
+/* A network that is not there matters only to the method that asks for it. */
+static bool fold_scene(uint64_t *key, const char *path, Error *error) {
+    Scene *scene = scene_read(path, error);
+    if (scene == NULL) return false;
+    for (int i = 0; i < scene->network_count; i++) fold_file(key, scene->networks[i].path, &(Error){0});
+    scene_destroy(scene);
+    return fold_file(key, path, error);
+}
+
+/* Of everything that decides the result: the program, every option and every file. */
+static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
+    if (!program_hash(key, error)) return false;
+    fold(key, &options->quick, sizeof options->quick);
+    if (options->methods != NULL) fold(key, options->methods, strlen(options->methods));
+    if (options->launches != NULL && !fold_file(key, options->launches, error)) return false;
+    for (int i = 0; i < options->scene_count; i++)
+        if (!fold_scene(key, options->scenes[i], error)) return false;
+    return true;
+}
+
+static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
+    char path[STUDY_PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/chart.csv", run->options->folder) >= (int)sizeof path)
+        return error_input(error, run->options->folder, "the name is too long");
+    for (int i = 0; i < run->options->scene_count; i++)
+        if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
+    if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;
+    part_file_remove(&run->part);
+    return true;
+}
+
+bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,
+                        Error *error) {
+    Run run = {.options = options, .progress = progress};
+    uint64_t key;
+    if (!contenders_parse(&run.contenders, options->methods, options->quick, error)) return false;
+    bool ok = study_key(options, &key, error) && file_make_directory(options->folder, error) &&
+              part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
+    part_file_close(&run.part);
+    contenders_free(&run.contenders);
+    free(run.rows);
+    return ok;
+}
