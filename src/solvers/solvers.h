@@ -4,6 +4,7 @@
 #include "dynamics/contact_solver.h"
 
 extern const ContactSolverKind solver_sequential_impulses;
+extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_pair_net;
 
 /* All kinds, ended by NULL. */
