@@ -96,21 +96,24 @@ static float squared_step(const Nncg *solver) {
 }
 
 /* One row: p = p' + beta d and d = beta d - g; p is what the next sweep begins from. */
-static void extrapolate_row(float values[4], NncgRow *before, NncgRow *direction, float beta) {
+static void extrapolate_row(void *row, NncgRow *before, NncgRow *direction, float beta) {
+    NncgRow now;
+    memcpy(&now, row, sizeof now);
     for (int k = 0; k < 4; k++) {
-        float step = values[k] - before->values[k], carried = beta * direction->values[k];
-        values[k] += carried;
-        before->values[k] = values[k];
+        float step = now.values[k] - before->values[k], carried = beta * direction->values[k];
+        now.values[k] += carried;
         direction->values[k] = carried + step;
     }
+    *before = now;
+    memcpy(row, &now, sizeof now);
 }
 
 static void extrapolate(Nncg *solver, float beta) {
     Sweeps *sweeps = &solver->sweeps;
     for (int i = 0; i < sweeps->pair_count; i++)
-        extrapolate_row(&sweeps->pairs[i].sums[0].normal, &solver->pair_before[i], &solver->pair_direction[i], beta);
+        extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i], beta);
     for (int i = 0; i < sweeps->body_count; i++)
-        extrapolate_row(&sweeps->bodies[i].x, &solver->body_before[i], &solver->body_direction[i], beta);
+        extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i], beta);
 }
 
 /* False when memory is short. */

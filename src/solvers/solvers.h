@@ -6,6 +6,7 @@
 extern const ContactSolverKind solver_sequential_impulses;
 extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_pair_net;
+extern const ContactSolverKind solver_reference;
 
 /* All kinds, ended by NULL. */
 extern const ContactSolverKind *const solver_kinds[];

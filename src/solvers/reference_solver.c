@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference (reference.h) as a contact solver: whole runs by converged steps. Slow; where a step does not
+   converge, as far as its sweeps reach. */
+#include "solvers/reference.h"
+#include "solvers/solvers.h"
+
+#include <stdlib.h>
+
+static const SettingSpec settings[] = {{NULL, NULL}};
+
+static void *create(const Settings *chosen, Error *error) {
+    (void)chosen;
+    Reference *reference = calloc(1, sizeof *reference);
+    if (reference == NULL) error_memory(error, "reference");
+    return reference;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    Reference *reference = state;
+    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_SWEEPS, NULL, error)) return false;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ReferenceVelocity *velocity = &reference->velocities[i];
+        solution->velocities[i] = (BodyVelocity){vec2((float)velocity->x, (float)velocity->y), (float)velocity->spin};
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        solution->impulses[i] =
+            (ContactImpulse){(float)reference->impulses[i].normal, (float)reference->impulses[i].tangent};
+    return true;
+}
+
+static void destroy(void *state) {
+    Reference *reference = state;
+    if (reference == NULL) return;
+    reference_free(reference);
+    free(reference);
+}
+
+const ContactSolverKind solver_reference = {
+    "reference", "converged in double by NNCG: the measure of the others, slow", settings, create, solve, destroy};
