@@ -36,8 +36,8 @@ typedef struct Reference {
 } Reference;
 
 /* The residual at which a solve stops, and the most sweeps it may take to get there. */
-#define REFERENCE_TOLERANCE 1e-9 /* m/s */
-enum { REFERENCE_MAX_SWEEPS = 20000 };
+#define REFERENCE_TOLERANCE 1e-5 /* m/s */
+enum { REFERENCE_MAX_SWEEPS = 10000 };
 
 void reference_free(Reference *reference);
 

@@ -4,7 +4,11 @@
 #include "dynamics/contact_solver.h"
 
 extern const ContactSolverKind solver_sequential_impulses;
+extern const ContactSolverKind solver_over_relaxation;
+extern const ContactSolverKind solver_momentum;
+extern const ContactSolverKind solver_learned_momentum;
 extern const ContactSolverKind solver_nncg;
+extern const ContactSolverKind solver_reference;
 extern const ContactSolverKind solver_pair_net;
 extern const ContactSolverKind solver_reference;
 

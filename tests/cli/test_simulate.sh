@@ -62,7 +62,7 @@ complains "nowhere.yaml: error:"
 run 2 simulate "$scenes/single.yaml" -o run.txt
 complains "ends in .npz or .csv"
 run 2 simulate "$scenes/single.yaml" --method magic
-complains "no such method; there are engine, pair-net"
+complains "no such method; there are engine, over-relaxation, momentum, learned-momentum, reference, pair-net"
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
 complains "unknown setting 'sweeps'"
 run 2 simulate "$scenes/single.yaml" --method engine:k=none
