@@ -7,10 +7,10 @@ extern const ContactSolverKind solver_sequential_impulses;
 extern const ContactSolverKind solver_over_relaxation;
 extern const ContactSolverKind solver_momentum;
 extern const ContactSolverKind solver_learned_momentum;
+extern const ContactSolverKind solver_block;
 extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_reference;
 extern const ContactSolverKind solver_pair_net;
-extern const ContactSolverKind solver_reference;
 
 /* All kinds, ended by NULL. */
 extern const ContactSolverKind *const solver_kinds[];
