@@ -13,7 +13,7 @@
    coincide, are solved one by one (Box2D drops one of these points instead). Fails as sequential impulses do: between
    pairs an impulse travels no faster, so high stacks and heavy boxes on light ones stay soft.
 
-   Bit-exact: the order of every float operation is fixed. */
+   Bit-exact: the order of every float operation is fixed. This is the plain text; block_lanes.h is its fast equal. */
 #include "solvers/block.h"
 
 #include "solvers/contact_velocity.h"
@@ -123,6 +123,7 @@ void block_solve(const ContactProblem *problem, int count, ContactSolution *solu
 
 typedef struct BlockSolver {
     int sweep_count;
+    Sweeps sweeps;
 } BlockSolver;
 
 static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
@@ -139,12 +140,22 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    (void)error;
-    block_solve(problem, ((BlockSolver *)state)->sweep_count, solution);
+    BlockSolver *solver = state;
+    if (sweeps_can(SWEEP_AVX2)) {
+        if (!sweeps_begin_blocks(&solver->sweeps, problem) || !sweeps_run_blocks(&solver->sweeps, solver->sweep_count))
+            return error_memory(error, "block");
+        if (sweeps_end(&solver->sweeps, solution)) return true;
+    }
+    block_solve(problem, solver->sweep_count, solution);
     return true;
 }
 
-static void destroy(void *state) { free(state); }
+static void destroy(void *state) {
+    BlockSolver *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}
 
 const ContactSolverKind solver_block = {
     "block", "sequential impulses that solve two points of a pair at once", settings, create, solve, destroy};

@@ -22,8 +22,13 @@ TARGET static inline Lanes lanes_negate(Lanes a) { return _mm256_xor_ps(a, _mm25
 /* b where the sign of `by` is negative. */
 TARGET static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return _mm256_blendv_ps(a, b, by); }
 TARGET static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
+/* Negative where a >= b. */
+TARGET static inline Lanes lanes_at_least(Lanes a, Lanes b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
+TARGET static inline Lanes lanes_and(Lanes a, Lanes b) { return _mm256_and_ps(a, b); }
 
 #include "solvers/sweeps_lanes.h"
+
+#include "solvers/block_lanes.h"
 
 TARGET static inline Lanes load_two(const float *low, const float *high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
@@ -86,6 +91,10 @@ TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const
         run_levels_extrapolating(sweeps, schedule, factors);
 }
 
+TARGET void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
+    run_block_levels(sweeps, schedule);
+}
+
 #else
 
 #include <assert.h>
@@ -94,6 +103,11 @@ bool sweeps_have_avx2(void) { return false; }
 
 void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     (void)sweeps, (void)schedule, (void)factors;
+    assert(false);
+}
+
+void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
+    (void)sweeps, (void)schedule;
     assert(false);
 }
 
