@@ -3,9 +3,13 @@
 
 #include <string.h>
 
-const ContactSolverKind *const solver_kinds[] = {
-    &solver_sequential_impulses, &solver_over_relaxation, &solver_momentum, &solver_learned_momentum,
-    &solver_reference,           &solver_pair_net,        NULL};
+const ContactSolverKind *const solver_kinds[] = {&solver_sequential_impulses,
+                                                 &solver_over_relaxation,
+                                                 &solver_momentum,
+                                                 &solver_learned_momentum,
+                                                 &solver_reference,
+                                                 &solver_pair_net,
+                                                 NULL};
 
 const ContactSolverKind *solver_find(const char *name) {
     for (int i = 0; solver_kinds[i] != NULL; i++)
