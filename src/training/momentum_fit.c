@@ -125,10 +125,13 @@ static bool fit_schedule(Fit *fit, MomentumSchedules *schedules, const MomentumF
     float factors[SWEEPS_MOST], by_hand[SWEEPS_MOST], none[SWEEPS_MOST] = {0};
     factors_of(fit, knots, factors);
     for (int s = 0; s < fit->sweeps; s++) by_hand[s] = momentum_factor_by_hand(s, fit->sweeps);
+    double of_learned = mean_error(fit, factors), of_hand = mean_error(fit, by_hand);
+    /* A line through knots can miss those set by hand. */
+    bool better = of_learned < of_hand;
     if (options->on_schedule != NULL)
-        options->on_schedule(options->context, fit->sweeps, mean_error(fit, none), mean_error(fit, by_hand),
-                             mean_error(fit, factors));
-    return momentum_schedules_add(schedules, fit->sweeps, factors, error);
+        options->on_schedule(options->context, fit->sweeps, mean_error(fit, none), of_hand,
+                             better ? of_learned : of_hand);
+    return momentum_schedules_add(schedules, fit->sweeps, better ? factors : by_hand, error);
 }
 
 bool momentum_fit(MomentumSchedules *schedules, const Scene *scene, const MomentumFitOptions *options,
