@@ -24,7 +24,7 @@ int command_methods(int argc, char **argv, Error *error) {
     (void)error;
     if (!options_parse(&argp, argc, argv, NULL)) return STATUS_DIFFERENT;
     for (int i = 0; solver_kinds[i] != NULL; i++) {
-        printf("%-12s %s\n", solver_kinds[i]->name, solver_kinds[i]->summary);
+        printf("%-17s %s\n", solver_kinds[i]->name, solver_kinds[i]->summary);
         for (const SettingSpec *setting = solver_kinds[i]->settings; setting->key != NULL; setting++)
             printf("    %s: %s\n", setting->key, setting->summary);
     }

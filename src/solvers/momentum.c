@@ -48,6 +48,11 @@ void momentum_solve_plain(const ContactProblem *problem, const float *factors, i
     }
 }
 
+float momentum_factor_by_hand(int sweep, int count) {
+    float rising = (float)sweep / ((float)sweep + 1.4f), most = 1.0f - 7.0f / (15.0f + (float)count);
+    return rising < most ? rising : most;
+}
+
 void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->before.velocities);
@@ -98,7 +103,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    for (int s = 0; s < sweep_count; s++) solver->factors[s] = (float)s / ((float)s + 3.0f);
+    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_by_hand(s, sweep_count);
     return solver;
 }
 

@@ -205,11 +205,12 @@ static void one_by_one_works_everywhere(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
-        cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
-        cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
-        cmocka_unit_test(a_kept_schedule_serves_the_same_pairs), cmocka_unit_test(no_contacts_leave_the_velocities),
-        cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text), cmocka_unit_test(one_by_one_works_everywhere)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
+                                       cmocka_unit_test(a_kept_schedule_serves_the_same_pairs),
+                                       cmocka_unit_test(no_contacts_leave_the_velocities),
+                                       cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(one_by_one_works_everywhere)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
