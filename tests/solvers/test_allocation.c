@@ -55,6 +55,8 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_sequential_impulses);
     steps_allocate_nothing_by(&solver_over_relaxation);
     steps_allocate_nothing_by(&solver_momentum);
+    steps_allocate_nothing_by(&solver_block);
+    steps_allocate_nothing_by(&solver_nncg);
 }
 
 int main(void) {
