@@ -17,9 +17,10 @@
 
 #include <stdlib.h>
 
-/* Goes on from *now by factor times what changed since *before. A factor of 0 leaves even the sign of a zero. */
+/* Goes on from *now by factor times what changed since *before. + 0 makes 0 of -0, and x - 0 is x even where x is -0: a
+   factor or change of 0 leaves all bits. */
 static void extrapolate(float *now, float *before, float factor) {
-    float next = factor != 0.0f ? *now - factor * (*before - *now) : *now;
+    float next = *now - (factor * (*before - *now) + 0.0f);
     *before = *now;
     *now = next;
 }

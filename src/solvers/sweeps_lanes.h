@@ -78,14 +78,10 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
 TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
 TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
-/* A sweep's factor for extrapolation, for a whole row, and all bits set where it is not 0: a factor of 0 leaves even
-   the sign of a zero. */
-typedef struct Factor {
-    float value[4];
-    uint32_t mask[4];
-} Factor;
+/* A sweep's factor for extrapolation, for a whole row. */
+typedef float Factor[4];
 
-/* As load_rows, from now - factor * (before - now). */
+/* As load_rows, from now - (factor * (before - now) + 0). */
 TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
                                             const Factor *factors, const int32_t *sweep);
 /* Replaces the row of two sweeps before. */
@@ -153,12 +149,8 @@ TARGET static inline void run_levels(Sweeps *sweeps, const SweepSchedule *schedu
 TARGET static inline void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule,
                                                    const float *sweep_factors) {
     Factor factors[SWEEPS_AT_ONCE];
-    for (int sweep = 0; sweep < schedule->sweeps; sweep++) {
-        for (int i = 0; i < 4; i++) {
-            factors[sweep].value[i] = sweep_factors[sweep];
-            factors[sweep].mask[i] = sweep_factors[sweep] != 0.0f ? UINT32_MAX : 0;
-        }
-    }
+    for (int sweep = 0; sweep < schedule->sweeps; sweep++)
+        for (int i = 0; i < 4; i++) factors[sweep][i] = sweep_factors[sweep];
     for (int i = 0, turn = 0; i < schedule->level_count; i++) {
         for (; turn < schedule->turns_end[i]; turn++)
             extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);

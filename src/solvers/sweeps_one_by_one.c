@@ -118,7 +118,7 @@ static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
 
 /* Goes on from `now` by what changed since `before`; not 0 where that is not `now` itself. */
 static uint32_t extrapolate(float *before, float now, float factor) {
-    float next = factor != 0.0f ? now - factor * (*before - now) : now;
+    float next = now - (factor * (*before - now) + 0.0f);
     *before = next;
     return difference(next, now);
 }

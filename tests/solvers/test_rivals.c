@@ -23,7 +23,7 @@ static World *make_crash(void) {
                  &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0.1f * (float)i, (float)i}});
     add_body(
         world,
-        &(BodyDef){.size = {1, 1}, .mass = 20, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-3, -20}});
+        &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
     ContactSolver engine = make_engine("");
     run(world, &engine, 1);
     free_solver(&engine);
