@@ -128,7 +128,9 @@ static void methods_are_found_by_name(void **state) {
         assert_ptr_equal(method.solver, solver_kinds[i]);
     }
     assert_false(method_parse(&method, "engin", &error));
-    assert_error(error, ERROR_INPUT, "engin: error: no such method; there are engine, over-relaxation, momentum, learned-momentum, reference, pair-net");
+    assert_error(error, ERROR_INPUT,
+                 "engin: error: no such method; there are engine, over-relaxation, momentum, learned-momentum, block, "
+                 "nncg, reference, pair-net");
     error = (Error){0};
     char text[METHOD_TEXT_SIZE + 1];
     memset(text, 'x', METHOD_TEXT_SIZE);
