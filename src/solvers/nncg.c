@@ -9,9 +9,10 @@
    begun anew (p = p', d = 0) where the sweep goes against the direction, g . d > 0. Velocities are linear in the
    impulses, so they follow by the same recursion. A sweep comes last: what is handed out is in the friction cone.
    Source: Silcowitz, Niebuhr, Poulsen, Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive
-   Contact Force Problems" (2010). There it begins anew where |g| grows, which impacts do again and again without
-   harm; the test here is O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes" (2015), and
-   leaves half the error. Fails where few sweeps are allowed: up to some ten it may be worse than sweeps alone.
+   Contact Force Problems" (2010). There it begins anew where |g| grows, which at impacts it does again and again
+   without harm; the test here is that of O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes"
+   (2015), and on impacts leaves half to four fifths of the error. Fails where few sweeps are allowed: up to some ten
+   it may be worse than sweeps alone. A sweep costs two of the engine's, which overlap: here each waits for beta.
 
    Bit-exact: the sweeps are the engine's (sweeps.h), and products are summed in a fixed order. */
 #include "common/array.h"

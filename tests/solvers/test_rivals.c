@@ -21,9 +21,8 @@ static World *make_crash(void) {
     for (int i = 0; i < 4; i++)
         add_body(world,
                  &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0.1f * (float)i, (float)i}});
-    add_body(
-        world,
-        &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
     ContactSolver engine = make_engine("");
     run(world, &engine, 1);
     free_solver(&engine);
