@@ -25,7 +25,7 @@ int command_methods(int argc, char **argv, Error *error) {
     if (!options_parse(&argp, argc, argv, NULL)) return STATUS_DIFFERENT;
     MethodInfo info;
     for (int i = 0; method_info(i, &info); i++) {
-        printf("%-16s %s\n", info.name, info.summary);
+        printf("%-17s %s\n", info.name, info.summary);
         for (const SettingSpec *setting = info.settings; setting->key != NULL; setting++)
             printf("    %s: %s\n", setting->key, setting->summary);
     }

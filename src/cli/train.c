@@ -2,27 +2,31 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/train_momentum.h"
 #include "training/training.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM };
+enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM, KIND, BOMB_X };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NET.npz", 0, "Where the network goes", 0},
+    {"kind", KIND, "NAME", 0,
+     "pair-net (default): from a dataset; momentum-schedule: a SCENE's factors for learned-momentum, by CMA-ES", 0},
     {"layers", LAYERS, "WIDTHS", 0,
      "10-10-2 (default; change of relative velocity, min-max outputs, as in the paper's 3.2) or, with two hidden "
      "layers and all six changes, 10-8-8-6 (standardised, as in its 3.1)",
      0},
     {"optimizer", OPTIMIZER, "NAME", 0, "adam (default), bfgs or lm (Levenberg-Marquardt)", 0},
-    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000)", 0},
-    {"seed", SEED, "N", 0, "Of the initial weights (default: 1)", 0},
+    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (150)", 0},
+    {"seed", SEED, "N", 0, "Of the initial weights, or of the search (default: 1)", 0},
+    {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.25)", 0},
     {"from", FROM, "NET.npz", 0, "Go on from the weights of this network, such as one cut short by Ctrl-C", 0},
     {0}};
 
 typedef struct Options {
-    const char *data, *output, *layers, *optimizer, *iterations, *seed, *from;
+    const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -34,12 +38,14 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case ITERATIONS: options->iterations = value; break;
     case SEED: options->seed = value; break;
     case FROM: options->from = value; break;
+    case KIND: options->kind = value; break;
+    case BOMB_X: options->bomb_x = value; break;
     case ARGP_KEY_ARG:
-        if (options->data != NULL) argp_error(state, "one dataset at a time ('%s' is a second)", value);
+        if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
         options->data = value;
         break;
     case ARGP_KEY_END:
-        if (options->data == NULL) argp_error(state, "a dataset is needed");
+        if (options->data == NULL) argp_error(state, "a dataset (or scene) is needed");
         if (options->output == NULL) argp_error(state, "-o NET.npz is needed");
         break;
     default: return ARGP_ERR_UNKNOWN;
@@ -50,7 +56,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 static const struct argp argp = {
     option_table,
     parse,
-    "DATA.npz",
+    "DATA.npz\n--kind momentum-schedule SCENE",
     "Train a network on a dataset; print its mean squared error as the paper's Table 1 does, beside that of always "
     "predicting the mean. Ctrl-C stops and keeps the best network so far.\v"
     "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100",
@@ -101,7 +107,8 @@ static Network *train(const Dataset *dataset, TrainingOptions *training, Error *
 static void describe(Network *network, const Options *options) {
     snprintf(network->command, sizeof network->command,
              "twinbox train %s -o %s --layers %s --optimizer %s --iterations %s --seed %s%s%s", options->data,
-             options->output, options->layers, options->optimizer, options->iterations, options->seed,
+             options->output, options->layers, options->optimizer,
+             options->iterations != NULL ? options->iterations : "2000", options->seed,
              options->from != NULL ? " --from " : "", options->from != NULL ? options->from : "");
 }
 
@@ -119,20 +126,34 @@ static bool train_and_store(const Dataset *dataset, const Options *options, Trai
     return ok;
 }
 
-int command_train(int argc, char **argv, Error *error) {
-    Options options = {.layers = "10-10-2", .optimizer = "adam", .iterations = "2000", .seed = "1"};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
-    TrainingOptions training = {.optimizer = options.optimizer};
-    if (!parse_layers(options.layers, &training, error) ||
-        !option_int("--iterations", options.iterations, 0, 1000000, &training.iterations, error) ||
-        !option_seed("--seed", options.seed, &training.seed, error))
+static int train_pair_net(const Options *options, Error *error) {
+    TrainingOptions training = {.optimizer = options->optimizer};
+    const char *iterations = options->iterations != NULL ? options->iterations : "2000";
+    if (!parse_layers(options->layers, &training, error) ||
+        !option_int("--iterations", iterations, 0, 1000000, &training.iterations, error) ||
+        !option_seed("--seed", options->seed, &training.seed, error))
         return STATUS_DIFFERENT;
     Network *start = NULL;
-    if (options.from != NULL && (start = network_read(options.from, error)) == NULL) return STATUS_DIFFERENT;
+    if (options->from != NULL && (start = network_read(options->from, error)) == NULL) return STATUS_DIFFERENT;
     training.start = start;
-    Dataset *dataset = dataset_read(options.data, error);
-    bool ok = dataset != NULL && train_and_store(dataset, &options, &training, error);
+    Dataset *dataset = dataset_read(options->data, error);
+    bool ok = dataset != NULL && train_and_store(dataset, options, &training, error);
     dataset_destroy(dataset);
     network_destroy(start);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;
+}
+
+int command_train(int argc, char **argv, Error *error) {
+    Options options = {
+        .layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.25"};
+    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    if (strcmp(options.kind, "momentum-schedule") == 0) {
+        const TrainMomentum momentum = {options.data, options.output,
+                                        options.iterations != NULL ? options.iterations : "150", options.seed,
+                                        options.bomb_x};
+        return train_momentum(&momentum, error) ? STATUS_SAME : STATUS_DIFFERENT;
+    }
+    if (strcmp(options.kind, "pair-net") == 0) return train_pair_net(&options, error);
+    error_input(error, "--kind", "'%s' is no kind; there are pair-net and momentum-schedule", options.kind);
+    return STATUS_DIFFERENT;
 }

@@ -4,12 +4,7 @@
 #pragma once
 #include "common/error.h"
 
-enum {
-    MOMENTUM_VERSION = 1,
-    MOMENTUM_MAX_SCHEDULES = 16,
-    MOMENTUM_MAX_SWEEPS = 1000,
-    MOMENTUM_TEXT_SIZE = 512
-};
+enum { MOMENTUM_VERSION = 1, MOMENTUM_MAX_SCHEDULES = 16, MOMENTUM_MAX_SWEEPS = 1000, MOMENTUM_TEXT_SIZE = 512 };
 
 #define MOMENTUM_MAX_FACTOR 2.0f /* more would throw the impulses further ahead than two sweeps carried them */
 

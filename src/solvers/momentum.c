@@ -17,9 +17,10 @@
 
 #include <stdlib.h>
 
-/* Goes on from *now by factor times what changed since *before. A factor of 0 leaves even the sign of a zero. */
+/* Goes on from *now by factor times what changed since *before. + 0 makes 0 of -0, and x - 0 is x even where x is -0: a
+   factor or change of 0 leaves all bits. */
 static void extrapolate(float *now, float *before, float factor) {
-    float next = factor != 0.0f ? *now - factor * (*before - *now) : *now;
+    float next = *now - (factor * (*before - *now) + 0.0f);
     *before = *now;
     *now = next;
 }
@@ -46,6 +47,11 @@ void momentum_solve_plain(const ContactProblem *problem, const float *factors, i
         extrapolate_all(problem, factors[sweep], before, solution);
         sequential_impulses_sweep(problem, &options, solution);
     }
+}
+
+float momentum_factor_by_hand(int sweep, int count) {
+    float rising = (float)sweep / ((float)sweep + 1.4f), most = 1.0f - 7.0f / (15.0f + (float)count);
+    return rising < most ? rising : most;
 }
 
 void momentum_free(Momentum *momentum) {
@@ -98,7 +104,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    for (int s = 0; s < sweep_count; s++) solver->factors[s] = (float)s / ((float)s + 3.0f);
+    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_by_hand(s, sweep_count);
     return solver;
 }
 

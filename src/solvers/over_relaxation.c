@@ -20,11 +20,11 @@ typedef struct OverRelaxation {
 } OverRelaxation;
 
 static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
-                                       {"omega", "what each step is multiplied by, from 0.01 to 1.99 (1.3)"},
+                                       {"omega", "what each step is multiplied by, from 0.01 to 1.99 (1.5)"},
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
-    OverRelaxation values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.3f}};
+    OverRelaxation values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
         !settings_float(chosen, "omega", 0.01f, 1.99f, &values.options.relaxation, error))
         return NULL;

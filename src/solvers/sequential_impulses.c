@@ -5,7 +5,7 @@
    its bias, clamped so that the sum over the step only pushes; then the tangent impulse that would stop the
    sliding, clamped so that its sum stays in the friction cone |Pt| <= mu Pn:
 
-       Pn' = max(Pn + mass_n (bias - vn), 0),   Pt' = clamp(Pt - mass_t vt, -mu Pn', mu Pn')
+       Pn' = max(Pn + mass_n (bias - vn), 0),   Pt' = contact_clamp(Pt - mass_t vt, -mu Pn', mu Pn')
 
    The sums start from the last step's (warm start). Source: Catto, "Iterative Dynamics with Temporal Coherence"
    (2005); "Fast and Simple Physics using Sequential Impulses" (GDC 2006). Fails slowly: an impulse travels one
@@ -15,6 +15,7 @@
    its fast equal, sweeps.h. */
 #include "solvers/sequential_impulses.h"
 
+#include "solvers/contact_velocity.h"
 #include "solvers/solvers.h"
 #include "solvers/sweeps.h"
 
@@ -47,27 +48,6 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-/* Adds impulse to b and takes it from a. */
-static void apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact, const ProblemBody *bodies,
-                  Vec2 impulse) {
-    const ProblemBody *body_a = &bodies[contact->a], *body_b = &bodies[contact->b];
-    a->linear = vec2_sub(a->linear, vec2_scale(body_a->inv_mass, impulse));
-    a->angular -= body_a->inv_inertia * vec2_cross(contact->arm_a, impulse);
-    b->linear = vec2_add(b->linear, vec2_scale(body_b->inv_mass, impulse));
-    b->angular += body_b->inv_inertia * vec2_cross(contact->arm_b, impulse);
-}
-
-/* Velocity of b's point as seen from a's. */
-static Vec2 relative_velocity(const BodyVelocity *a, const BodyVelocity *b, const ContactPoint *contact) {
-    Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
-    return vec2_sub(vec2_sub(of_b, a->linear), scalar_cross_vec2(a->angular, contact->arm_a));
-}
-
-static float clamp(float value, float low, float high) {
-    float capped = value < high ? value : high;
-    return low > capped ? low : capped;
-}
-
 static void warm_start(const ContactProblem *problem, bool warm, ContactSolution *solution) {
     static const ContactImpulse cold = {0, 0};
     for (int i = 0; i < problem->contact_count; i++) {
@@ -76,7 +56,8 @@ static void warm_start(const ContactProblem *problem, bool warm, ContactSolution
         solution->impulses[i] = start;
         Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
         Vec2 impulse = vec2_add(vec2_scale(start.normal, contact->normal), vec2_scale(start.tangent, tangent));
-        apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies, impulse);
+        contact_apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies,
+                      impulse);
     }
 }
 
@@ -86,23 +67,23 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
     const bool accumulate = options->accumulate;
     BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
 
-    float normal_velocity = vec2_dot(relative_velocity(a, b, contact), contact->normal);
+    float normal_velocity = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
     float normal = options->relaxation * contact->mass_normal * (-normal_velocity + contact->bias);
     float pushed = accumulate ? sum->normal : 0.0f;
     float total = pushed + normal > 0.0f ? pushed + normal : 0.0f;
     normal = total - pushed;
     sum->normal = accumulate ? total : sum->normal + normal;
-    apply(a, b, contact, bodies, vec2_scale(normal, contact->normal));
+    contact_apply(a, b, contact, bodies, vec2_scale(normal, contact->normal));
 
     Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
-    float tangent_velocity = vec2_dot(relative_velocity(a, b, contact), direction);
+    float tangent_velocity = vec2_dot(contact_relative_velocity(a, b, contact), direction);
     float tangent = options->relaxation * contact->mass_tangent * -tangent_velocity;
     float limit = contact->friction * (accumulate ? sum->normal : normal);
     float dragged = accumulate ? sum->tangent : 0.0f;
-    total = clamp(dragged + tangent, -limit, limit);
+    total = contact_clamp(dragged + tangent, -limit, limit);
     tangent = total - dragged;
     sum->tangent = accumulate ? total : sum->tangent + tangent;
-    apply(a, b, contact, bodies, vec2_scale(tangent, direction));
+    contact_apply(a, b, contact, bodies, vec2_scale(tangent, direction));
 }
 
 void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,

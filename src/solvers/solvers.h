@@ -7,6 +7,8 @@ extern const ContactSolverKind solver_sequential_impulses;
 extern const ContactSolverKind solver_over_relaxation;
 extern const ContactSolverKind solver_momentum;
 extern const ContactSolverKind solver_learned_momentum;
+extern const ContactSolverKind solver_block;
+extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_pair_net;
 extern const ContactSolverKind solver_constant;
 extern const ContactSolverKind solver_reference;

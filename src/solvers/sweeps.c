@@ -45,7 +45,8 @@ SweepKernel sweeps_best_kernel(void) { return sweeps_can(SWEEP_AVX2) ? SWEEP_AVX
 
 static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
     size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
-    if (2 * bodies <= sweeps->body_capacity && bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity) return true;
+    if (2 * bodies <= sweeps->body_capacity && bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity)
+        return true;
     return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, 2 * bodies, sizeof *sweeps->bodies) &&
            array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
            array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
@@ -170,6 +171,27 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     for (; done + at_once <= count; done += at_once)
         sweeps_run_avx2(sweeps, &sweeps->whole, turns ? factors + done : NULL);
     sweeps_run_avx2(sweeps, &sweeps->rest, turns ? factors + done : NULL);
+    return true;
+}
+
+bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem) {
+    if (!sweeps_begin(sweeps, sweeps_best_kernel(), problem, true, 1.0f)) return false;
+    const ContactPoint *contact = problem->contacts;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        SweepPair *pair = &sweeps->pairs[i];
+        bool two = pair->points[1].extra < 0.0f;
+        pair->block = two ? block_make(contact, contact + 1, problem->bodies) : (Block){0};
+        contact += two ? 2 : 1;
+    }
+    return true;
+}
+
+bool sweeps_run_blocks(Sweeps *sweeps, int count) {
+    if (sweeps->pair_count == 0) return true;
+    int at_once = sweeps_at_once(sweeps->pair_count, count, false);
+    if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
+    for (int done = 0; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
+    sweeps_run_blocks_avx2(sweeps, &sweeps->rest);
     return true;
 }
 

@@ -9,6 +9,7 @@
    Exact as long as all numbers are finite; sweeps_end tells where they are not. */
 #pragma once
 #include "dynamics/contact_problem.h"
+#include "solvers/block.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -43,6 +44,7 @@ typedef struct SweepPair {
     Vec2 normal;
     float friction, inv_inertia_a;
     SweepPoint points[2];
+    Block block; /* only where blocks are solved */
 } SweepPair;
 
 enum {
@@ -123,6 +125,10 @@ bool sweeps_run(Sweeps *sweeps, int count);
 /* The same with an extrapolation before each sweep but the first, bit by bit the plain text of momentum.c: velocities
    and sums go on by factors[sweep] (>= 0) times what the sweep before changed, extrapolation included. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
+
+/* The same for sweeps over blocks, bit by bit the plain text of block.c. Only where the processor can sweep by lanes. */
+bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem);
+bool sweeps_run_blocks(Sweeps *sweeps, int count);
 
 /* Hands out what was found. False where a velocity is not finite: then the order of visits may have mattered. */
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution);

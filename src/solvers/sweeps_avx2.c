@@ -22,8 +22,13 @@ TARGET static inline Lanes lanes_negate(Lanes a) { return _mm256_xor_ps(a, _mm25
 /* b where the sign of `by` is negative. */
 TARGET static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return _mm256_blendv_ps(a, b, by); }
 TARGET static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
+/* Negative where a >= b. */
+TARGET static inline Lanes lanes_at_least(Lanes a, Lanes b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
+TARGET static inline Lanes lanes_and(Lanes a, Lanes b) { return _mm256_and_ps(a, b); }
 
 #include "solvers/sweeps_lanes.h"
+
+#include "solvers/block_lanes.h"
 
 TARGET static inline Lanes load_two(const float *low, const float *high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
@@ -56,25 +61,22 @@ TARGET static inline void store_rows(float *base, const int32_t *offsets, const 
     for (int i = 0; i < 4; i++) store_two(base + offsets[i], base + offsets[i + 4], rows[i]);
 }
 
-/* The mask: x - 0 is x, whereas x - (-0) takes the sign from a zero. */
 TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
                                             const Factor *factors, const int32_t *sweep) {
     Lanes rows[4];
     for (int i = 0; i < 4; i++) {
-        const Factor *low = &factors[sweep[i]], *high = &factors[sweep[i + 4]];
         Lanes from = load_two(base + now[i], base + now[i + 4]);
         Lanes change = lanes_sub(load_two(base + before[i], base + before[i + 4]), from);
-        Lanes step = lanes_mul(load_two(low->value, high->value), change);
-        rows[i] = lanes_sub(from, _mm256_and_ps(step, load_two((const float *)low->mask, (const float *)high->mask)));
+        Lanes step = lanes_mul(load_two(factors[sweep[i]], factors[sweep[i + 4]]), change);
+        rows[i] = lanes_sub(from, lanes_add(step, lanes_zero()));
     }
     transpose(out, rows);
 }
 
 TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors) {
-    const Factor *factor = &factors[turn->sweep];
     __m128 from = _mm_loadu_ps(base + turn->from);
-    __m128 step = _mm_mul_ps(_mm_loadu_ps(factor->value), _mm_sub_ps(_mm_loadu_ps(base + turn->to), from));
-    _mm_storeu_ps(base + turn->to, _mm_sub_ps(from, _mm_and_ps(step, _mm_loadu_ps((const float *)factor->mask))));
+    __m128 step = _mm_mul_ps(_mm_loadu_ps(factors[turn->sweep]), _mm_sub_ps(_mm_loadu_ps(base + turn->to), from));
+    _mm_storeu_ps(base + turn->to, _mm_sub_ps(from, _mm_add_ps(step, _mm_setzero_ps())));
 }
 
 bool sweeps_have_avx2(void) { return __builtin_cpu_supports("avx2"); }
@@ -86,6 +88,10 @@ TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const
         run_levels_extrapolating(sweeps, schedule, factors);
 }
 
+TARGET void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
+    run_block_levels(sweeps, schedule);
+}
+
 #else
 
 #include <assert.h>
@@ -94,6 +100,11 @@ bool sweeps_have_avx2(void) { return false; }
 
 void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     (void)sweeps, (void)schedule, (void)factors;
+    assert(false);
+}
+
+void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
+    (void)sweeps, (void)schedule;
     assert(false);
 }
 

@@ -14,6 +14,9 @@ bool sweeps_have_avx2(void);
    NULL without extrapolation. */
 void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
 
+/* The same with the normal impulses of a pair solved together. */
+void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule);
+
 /* Applies the impulses that the sums begin with. */
 void sweeps_warm_start(Sweeps *sweeps);
 

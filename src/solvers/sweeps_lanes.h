@@ -42,26 +42,35 @@ typedef struct Surface {
 } Surface;
 
 /* arms: of a and b, x and y; masses: normal, tangent, bias. */
-TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, const Lanes arms[4],
-                                      const Lanes masses[4], Lanes *sum_normal, Lanes *sum_tangent) {
-    LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]}, n = surface->normal, t = surface->tangent;
-
+TARGET static inline void solve_normal(Side *a, Side *b, const Surface *surface, const Lanes arms[4],
+                                       const Lanes masses[4], Lanes *sum) {
+    LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]}, n = surface->normal;
     LaneVec v = relative_velocity(a, b, arm_a, arm_b);
     Lanes along = lanes_add(lanes_mul(v.x, n.x), lanes_mul(v.y, n.y));
     Lanes normal = lanes_mul(masses[0], lanes_sub(masses[2], along));
-    Lanes total = lanes_max(lanes_add(*sum_normal, normal), lanes_zero());
-    normal = lanes_sub(total, *sum_normal);
-    *sum_normal = total;
+    Lanes total = lanes_max(lanes_add(*sum, normal), lanes_zero());
+    normal = lanes_sub(total, *sum);
+    *sum = total;
     apply(a, b, arm_a, arm_b, (LaneVec){lanes_mul(normal, n.x), lanes_mul(normal, n.y)});
+}
 
-    v = relative_velocity(a, b, arm_a, arm_b);
-    along = lanes_add(lanes_mul(v.x, t.x), lanes_mul(v.y, t.y));
-    Lanes limit = lanes_mul(surface->friction, *sum_normal);
-    total = lanes_min(lanes_sub(*sum_tangent, lanes_mul(masses[1], along)), limit);
+TARGET static inline void solve_friction(Side *a, Side *b, const Surface *surface, const Lanes arms[4],
+                                         const Lanes masses[4], Lanes sum_normal, Lanes *sum) {
+    LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]}, t = surface->tangent;
+    LaneVec v = relative_velocity(a, b, arm_a, arm_b);
+    Lanes along = lanes_add(lanes_mul(v.x, t.x), lanes_mul(v.y, t.y));
+    Lanes limit = lanes_mul(surface->friction, sum_normal);
+    Lanes total = lanes_min(lanes_sub(*sum, lanes_mul(masses[1], along)), limit);
     total = lanes_max(lanes_negate(limit), total);
-    Lanes tangent = lanes_sub(total, *sum_tangent);
-    *sum_tangent = total;
+    Lanes tangent = lanes_sub(total, *sum);
+    *sum = total;
     apply(a, b, arm_a, arm_b, (LaneVec){lanes_mul(tangent, t.x), lanes_mul(tangent, t.y)});
+}
+
+TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, const Lanes arms[4],
+                                      const Lanes masses[4], Lanes *sum_normal, Lanes *sum_tangent) {
+    solve_normal(a, b, surface, arms, masses, sum_normal);
+    solve_friction(a, b, surface, arms, masses, *sum_normal, sum_tangent);
 }
 
 /* `base` is a row of four floats in the first record, offsets tell how many floats behind it those of the lanes are;
@@ -69,14 +78,10 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
 TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
 TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
-/* A sweep's factor for extrapolation, for a whole row, and all bits set where it is not 0: a factor of 0 leaves even
-   the sign of a zero. */
-typedef struct Factor {
-    float value[4];
-    uint32_t mask[4];
-} Factor;
+/* A sweep's factor for extrapolation, for a whole row. */
+typedef float Factor[4];
 
-/* As load_rows, from now - factor * (before - now). */
+/* As load_rows, from now - (factor * (before - now) + 0). */
 TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
                                             const Factor *factors, const int32_t *sweep);
 /* Replaces the row of two sweeps before. */
@@ -144,12 +149,8 @@ TARGET static inline void run_levels(Sweeps *sweeps, const SweepSchedule *schedu
 TARGET static inline void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule,
                                                    const float *sweep_factors) {
     Factor factors[SWEEPS_AT_ONCE];
-    for (int sweep = 0; sweep < schedule->sweeps; sweep++) {
-        for (int i = 0; i < 4; i++) {
-            factors[sweep].value[i] = sweep_factors[sweep];
-            factors[sweep].mask[i] = sweep_factors[sweep] != 0.0f ? UINT32_MAX : 0;
-        }
-    }
+    for (int sweep = 0; sweep < schedule->sweeps; sweep++)
+        for (int i = 0; i < 4; i++) factors[sweep][i] = sweep_factors[sweep];
     for (int i = 0, turn = 0; i < schedule->level_count; i++) {
         for (; turn < schedule->turns_end[i]; turn++)
             extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);

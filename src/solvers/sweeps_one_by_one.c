@@ -118,7 +118,7 @@ static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
 
 /* Goes on from `now` by what changed since `before`; not 0 where that is not `now` itself. */
 static uint32_t extrapolate(float *before, float now, float factor) {
-    float next = factor != 0.0f ? now - factor * (*before - now) : now;
+    float next = now - (factor * (*before - now) + 0.0f);
     *before = next;
     return difference(next, now);
 }
@@ -139,8 +139,8 @@ static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *f
 static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from[2], float factor) {
     uint32_t changed = 0;
     for (int k = 0; k < 2; k++)
-        changed |= extrapolate(&to[k].normal, from[k].normal, factor) |
-                   extrapolate(&to[k].tangent, from[k].tangent, factor);
+        changed |=
+            extrapolate(&to[k].normal, from[k].normal, factor) | extrapolate(&to[k].tangent, from[k].tangent, factor);
     return changed;
 }
 
@@ -175,6 +175,6 @@ void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count) {
     bool changed = true;
     int64_t now = 0;
     for (int sweep = 0; changed && sweep < count; sweep++)
-        changed = factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors[sweep], &now)
-                                  : sweep_in_place(sweeps, &now);
+        changed =
+            factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors[sweep], &now) : sweep_in_place(sweeps, &now);
 }

@@ -95,8 +95,7 @@ static bool sort_body_turns(SweepSchedule *schedule) {
     memset(end, 0, (levels + 1) * sizeof *end);
     for (size_t i = 0; i < count; i++) end[schedule->unsorted[i].level + 1]++;
     for (size_t i = 0; i < levels; i++) end[i + 1] += end[i];
-    for (size_t i = 0; i < count; i++)
-        schedule->body_turns[end[schedule->unsorted[i].level]++] = schedule->unsorted[i];
+    for (size_t i = 0; i < count; i++) schedule->body_turns[end[schedule->unsorted[i].level]++] = schedule->unsorted[i];
     return true;
 }
 

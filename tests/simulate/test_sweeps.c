@@ -8,8 +8,8 @@
 static bool agree(void *context, int frame, const World *world, Error *error) {
     (void)frame, (void)error;
     const ContactProblem *problem = world_problem(world);
-    static const float factors[19] = {0, 0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f, 0.9f,
-                                      0.9f, 0.9f, 0, 0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
+    static const float factors[19] = {0,    0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f,
+                                      0.9f, 0.9f, 0.9f, 0,    0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
     Sweeps(*sweeps)[SWEEP_KERNELS] = context;
     assert_kernels_agree(sweeps[0], problem, &engine_options, 10);
     assert_momentum_kernels_agree(sweeps[1], problem, factors, 19);

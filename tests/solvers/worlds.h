@@ -8,15 +8,17 @@
 
 static const float world_dt = 1.0f / 60.0f;
 
-/* The engine with these settings ("k=10"). */
-static inline ContactSolver make_engine(const char *text) {
+/* A solver with these settings ("k=10"). */
+static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, solver_sequential_impulses.settings, "engine", &error), error);
-    ContactSolver solver = {&solver_sequential_impulses, solver_sequential_impulses.create(&settings, &error)};
+    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    ContactSolver solver = {kind, kind->create(&settings, &error)};
     assert_ok(solver.state != NULL, error);
     return solver;
 }
+
+static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_sequential_impulses, text); }
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
 

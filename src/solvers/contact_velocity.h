@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What an impulse at a contact does to the two bodies, and what the contact sees of them: for the plain texts. The
+   order of every float operation is part of the engine's result. */
+#pragma once
+#include "dynamics/contact_problem.h"
+
+/* Adds impulse to b and takes it from a. */
+static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
+                                 const ProblemBody *bodies, Vec2 impulse) {
+    const ProblemBody *body_a = &bodies[contact->a], *body_b = &bodies[contact->b];
+    a->linear = vec2_sub(a->linear, vec2_scale(body_a->inv_mass, impulse));
+    a->angular -= body_a->inv_inertia * vec2_cross(contact->arm_a, impulse);
+    b->linear = vec2_add(b->linear, vec2_scale(body_b->inv_mass, impulse));
+    b->angular += body_b->inv_inertia * vec2_cross(contact->arm_b, impulse);
+}
+
+/* Velocity of b's point as seen from a's. */
+static inline Vec2 contact_relative_velocity(const BodyVelocity *a, const BodyVelocity *b,
+                                             const ContactPoint *contact) {
+    Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
+    return vec2_sub(vec2_sub(of_b, a->linear), scalar_cross_vec2(a->angular, contact->arm_a));
+}
+
+static inline float contact_clamp(float value, float low, float high) {
+    float capped = value < high ? value : high;
+    return low > capped ? low : capped;
+}

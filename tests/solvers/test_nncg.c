@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NNCG: its bits against a plain text contact by contact, and a law. test_rivals.c has what all rivals must keep. */
+#include "kernels.h"
+
+#include "random_problem.h"
+#include "worlds.h"
+
+/* Velocities and impulses as one row of numbers. */
+enum { NUMBERS_MAX = 3 * BODIES_MAX + 2 * CONTACTS_MAX };
+
+static int to_numbers(const ContactProblem *problem, const ContactSolution *solution, float numbers[NUMBERS_MAX]) {
+    size_t bodies = (size_t)problem->body_count * 3, contacts = (size_t)problem->contact_count * 2;
+    memcpy(numbers, solution->velocities, bodies * sizeof *numbers);
+    memcpy(numbers + bodies, solution->impulses, contacts * sizeof *numbers);
+    return (int)(bodies + contacts);
+}
+
+static void from_numbers(const ContactProblem *problem, const float *numbers, ContactSolution *solution) {
+    size_t bodies = (size_t)problem->body_count * 3, contacts = (size_t)problem->contact_count * 2;
+    memcpy(solution->velocities, numbers, bodies * sizeof *numbers);
+    memcpy(solution->impulses, numbers + bodies, contacts * sizeof *numbers);
+}
+
+/* Sum of x * y over the impulses in the order that nncg.c promises. */
+static float multiply(const ContactProblem *problem, const float *x, const float *y) {
+    float partial[8] = {0};
+    for (int i = 0, pair = -1, point = 1; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        bool second = point == 0 && contact->a == contact[-1].a && contact->b == contact[-1].b;
+        point = second ? 1 : 0;
+        pair += second ? 0 : 1;
+        float *part = &partial[4 * (pair % 2) + 2 * point];
+        part[0] += x[2 * i] * y[2 * i];
+        part[1] += x[2 * i + 1] * y[2 * i + 1];
+    }
+    for (int k = 0; k < 4; k++) partial[k] += partial[k + 4];
+    return (partial[0] + partial[2]) + (partial[1] + partial[3]);
+}
+
+/* Returns how often it began anew. */
+static int solve_plainly(const ContactProblem *problem, int count, ContactSolution *solution) {
+    static float p[NUMBERS_MAX], after[NUMBERS_MAX], d[NUMBERS_MAX], step[NUMBERS_MAX];
+    sequential_impulses_begin(problem, &engine_options, solution);
+    int numbers = to_numbers(problem, solution, p), impulses = 3 * problem->body_count, begun_anew = 0;
+    float squared_before = 0;
+    memset(d, 0, sizeof d);
+    for (int sweep = 0; sweep < count; sweep++) {
+        sequential_impulses_sweep(problem, &engine_options, solution);
+        if (sweep == count - 1) break;
+        to_numbers(problem, solution, after);
+        for (int i = 0; i < numbers; i++) step[i] = after[i] - p[i];
+        float squared = multiply(problem, step + impulses, step + impulses);
+        float beta = squared < squared_before ? squared / squared_before : 1;
+        bool anew = multiply(problem, step + impulses, d + impulses) < 0;
+        for (int i = 0; i < numbers; i++) {
+            p[i] = anew ? after[i] : after[i] + beta * d[i];
+            d[i] = anew ? 0 : beta * d[i] + step[i];
+        }
+        from_numbers(problem, p, solution);
+        begun_anew += anew;
+        squared_before = squared;
+    }
+    return begun_anew;
+}
+
+static void random_problems_have_the_bits_of_the_plain_text(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 17;
+    const int counts[] = {1, 2, 3, 10, 25};
+    int begun_anew = 0;
+    for (int c = 0; c < 5; c++) {
+        char text[16];
+        snprintf(text, sizeof text, "k=%d", counts[c]);
+        ContactSolver nncg = make_solver(&solver_nncg, text);
+        for (int i = 0; i < 60; i++) {
+            int bodies = 2 + (7 * i) % (BODIES_MAX - 1);
+            make_random(&random, &seed, bodies, i % 2 == 0 ? 0.5f : 4.0f / (float)bodies, 2);
+            if (i % 5 == 0) calm_down(&random, &seed);
+            ContactSolution plain = make_solution(&random.problem), found = make_solution(&random.problem);
+            begun_anew += solve_plainly(&random.problem, counts[c], &plain);
+            Error error = {0};
+            assert_ok(solver_nncg.solve(nncg.state, &random.problem, &found, &error), error);
+            assert_same_bits(&random.problem, &found, &plain, text);
+            free_solution(&plain);
+            free_solution(&found);
+        }
+        free_solver(&nncg);
+    }
+    assert_true(begun_anew > 10);
+}
+
+/* A stack put down without a warm start: the impulses under box i must carry m g dt (n - i). Plain sweeps pass the
+   weight on from box to box. */
+static float missing_weight(const ContactSolverKind *kind) {
+    enum { BOXES = 10 };
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < BOXES; i++)
+        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    ContactSolver solver = make_solver(kind, "k=60");
+    run(world, &solver, 1);
+    const ContactProblem *problem = world_problem(world);
+    assert_int_equal(problem->contact_count, 2 * BOXES);
+    float missing = 0;
+    for (int i = 0; i < problem->contact_count; i += 2) {
+        const ContactImpulse *impulses = &world_solution(world)->impulses[i];
+        float weight = 2 * 10 * world_dt * (float)(BOXES - problem->contacts[i].a);
+        missing = fmaxf(missing, fabsf(impulses[0].normal + impulses[1].normal - weight) / weight);
+    }
+    free_solver(&solver);
+    world_destroy(world);
+    return missing;
+}
+
+static void a_stack_carries_its_weight_at_once(void **state) {
+    (void)state;
+    assert_true(missing_weight(&solver_nncg) < 0.01f);
+    assert_true(missing_weight(&solver_sequential_impulses) > 0.1f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(a_stack_carries_its_weight_at_once)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rivals without learning: what any solver of the same problem must keep, and what only they can be asked. */
+#include "kernels.h"
+
+#include "network/momentum_schedule.h"
+#include "worlds.h"
+
+#include <math.h>
+
+static void solve(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                  ContactSolution *solution) {
+    ContactSolver solver = make_solver(kind, text);
+    Error error = {0};
+    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
+    free_solver(&solver);
+}
+
+/* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
+static World *make_crash(void) {
+    World *world = make_world();
+    for (int i = 0; i < 4; i++)
+        add_body(world,
+                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0.1f * (float)i, (float)i}});
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 1);
+    free_solver(&engine);
+    assert_true(world_problem(world)->contact_count >= 6);
+    return world;
+}
+
+/* The chain's impulse needs many sweeps; then all must have found the same velocities. */
+static void all_meet_the_plain_sweeps(void **state) {
+    (void)state;
+    World *world = make_crash();
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution plain = make_solution(problem), found = make_solution(problem);
+    sequential_impulses_solve(problem, &engine_options, 100000, &plain);
+    const struct {
+        const ContactSolverKind *kind;
+        const char *text;
+    } rivals[] = {{&solver_momentum, "k=2000"},
+                  {&solver_over_relaxation, "k=5000"},
+                  {&solver_over_relaxation, "k=5000,omega=0.7"},
+                  {&solver_block, "k=2000"},
+                  {&solver_nncg, "k=200"},
+                  {&solver_sequential_impulses, "k=20000,warm=off"}};
+    solve(&solver_sequential_impulses, "k=10", problem, &found);
+    assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
+    for (int r = 0; r < 6; r++) {
+        solve(rivals[r].kind, rivals[r].text, problem, &found);
+        for (int i = 0; i < problem->body_count; i++) {
+            assert_near(found.velocities[i].linear.x, plain.velocities[i].linear.x, 5e-3);
+            assert_near(found.velocities[i].linear.y, plain.velocities[i].linear.y, 5e-3);
+            assert_near(found.velocities[i].angular, plain.velocities[i].angular, 5e-3);
+        }
+    }
+    free_solution(&plain);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+static void linear_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[2]) {
+    sum[0] = sum[1] = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        Vec2 v = after != NULL ? after[i].linear : problem->bodies[i].velocity;
+        sum[0] += (double)v.x / (double)problem->bodies[i].inv_mass;
+        sum[1] += (double)v.y / (double)problem->bodies[i].inv_mass;
+    }
+}
+
+/* Velocities are those that the impulses make: b gets +, a gets -. */
+static void assert_consistent(const ContactProblem *problem, const ContactSolution *solution) {
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        double x = (double)body->velocity.x, y = (double)body->velocity.y, spin = (double)body->angular_velocity;
+        for (int k = 0; k < problem->contact_count; k++) {
+            const ContactPoint *contact = &problem->contacts[k];
+            if (contact->a != i && contact->b != i) continue;
+            ContactImpulse p = solution->impulses[k];
+            Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+            Vec2 sum = vec2_add(vec2_scale(p.normal, contact->normal), vec2_scale(p.tangent, tangent));
+            double sign = contact->a == i ? -1 : 1;
+            Vec2 arm = contact->a == i ? contact->arm_a : contact->arm_b;
+            x += sign * (double)(body->inv_mass * sum.x);
+            y += sign * (double)(body->inv_mass * sum.y);
+            spin += sign * (double)(body->inv_inertia * vec2_cross(arm, sum));
+        }
+        assert_near(solution->velocities[i].linear.x, x, 1e-3);
+        assert_near(solution->velocities[i].linear.y, y, 1e-3);
+        assert_near(solution->velocities[i].angular, spin, 2e-3);
+    }
+}
+
+/* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
+static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
+    (void)state;
+    World *world = make_crash();
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution found = make_solution(problem);
+    const ContactSolverKind *const rivals[] = {&solver_momentum, &solver_over_relaxation, &solver_nncg, &solver_block};
+    double before[2], after[2];
+    linear_momentum(problem, NULL, before);
+    for (int k = 1; k <= 40; k++) {
+        char text[32];
+        snprintf(text, sizeof text, "k=%d", k);
+        for (int rival = 0; rival < 4; rival++) {
+            solve(rivals[rival], text, problem, &found);
+            linear_momentum(problem, found.velocities, after);
+            for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 4e-3);
+            for (int i = 0; i < problem->contact_count; i++) {
+                ContactImpulse p = found.impulses[i];
+                assert_true(p.normal >= 0);
+                /* Blocks rub within the normal impulse of the sweep before. */
+                if (rivals[rival] == &solver_block) continue;
+                assert_true(fabsf(p.tangent) <= problem->contacts[i].friction * p.normal);
+            }
+            assert_consistent(problem, &found);
+        }
+    }
+    free_solution(&found);
+    world_destroy(world);
+}
+
+/* Without the warm start it matters no more what the problem says of it. */
+static void a_cold_engine_starts_from_zero(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < 5; i++)
+        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 60);
+    free_solver(&engine);
+    ContactProblem cold = *world_problem(world);
+    ContactPoint contacts[16];
+    assert_in_range(cold.contact_count, 1, 16);
+    memcpy(contacts, cold.contacts, (size_t)cold.contact_count * sizeof *contacts);
+    for (int i = 0; i < cold.contact_count; i++) contacts[i].warm_normal = contacts[i].warm_tangent = 0;
+    cold.contacts = contacts;
+    ContactSolution off = make_solution(&cold), on = make_solution(&cold), of_cold = make_solution(&cold);
+    solve(&solver_sequential_impulses, "k=3,warm=off", world_problem(world), &off);
+    solve(&solver_sequential_impulses, "k=3", world_problem(world), &on);
+    solve(&solver_sequential_impulses, "k=3", &cold, &of_cold);
+    assert_same_bits(&cold, &off, &of_cold, "warm=off");
+    assert_memory_not_equal(off.impulses, on.impulses, (size_t)cold.contact_count * sizeof *on.impulses);
+    free_solution(&off);
+    free_solution(&on);
+    free_solution(&of_cold);
+    world_destroy(world);
+}
+
+static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) {
+    (void)state;
+    World *world = make_crash();
+    ContactProblem problem = *world_problem(world);
+    ContactPoint contacts[32];
+    assert_in_range(problem.contact_count, 1, 32);
+    memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
+    contacts[2].mass_normal = 1e38f;
+    problem.contacts = contacts;
+    ContactSolution plain = make_solution(&problem), before = make_solution(&problem), fast = make_solution(&problem);
+    float factors[10];
+    for (int s = 0; s < 10; s++) factors[s] = momentum_factor_by_hand(s, 10);
+    momentum_solve_plain(&problem, factors, 10, &before, &plain);
+    solve(&solver_momentum, "", &problem, &fast);
+    bool finite = isfinite(plain.velocities[1].linear.y);
+    assert_false(finite);
+    assert_memory_equal(fast.velocities, plain.velocities, (size_t)problem.body_count * sizeof *plain.velocities);
+    free_solution(&plain);
+    free_solution(&before);
+    free_solution(&fast);
+    world_destroy(world);
+}
+
+/* What create() says to these settings. */
+static void assert_refused(const ContactSolverKind *kind, const char *text, const char *message) {
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_null(kind->create(&settings, &error));
+    assert_error(error, ERROR_INPUT, message);
+}
+
+static void settings_out_of_range_are_refused(void **state) {
+    (void)state;
+    assert_refused(&solver_momentum, "k=0", "k");
+    assert_refused(&solver_over_relaxation, "k=0", "k");
+    assert_refused(&solver_block, "k=0", "k");
+    assert_refused(&solver_nncg, "k=0", "k");
+    assert_refused(&solver_nncg, "k=ten", "k");
+    assert_refused(&solver_over_relaxation, "omega=0", "omega");
+    assert_refused(&solver_over_relaxation, "omega=2", "omega");
+    assert_refused(&solver_over_relaxation, "omega=nan", "omega");
+    assert_refused(&solver_sequential_impulses, "warm=maybe", "warm");
+    assert_refused(&solver_learned_momentum, "", "names no factors");
+}
+
+static const char *write_schedules(void) {
+    Error error = {0};
+    MomentumSchedules schedules = {0};
+    float factors[20];
+    for (int s = 0; s < 20; s++) factors[s] = momentum_factor_by_hand(s, 20);
+    assert_ok(momentum_schedules_add(&schedules, 5, factors, &error), error);
+    assert_ok(momentum_schedules_add(&schedules, 20, factors, &error), error);
+    const char *path = temporary_path("schedules.npz");
+    assert_ok(momentum_schedules_write(&schedules, path, &error), error);
+    momentum_schedules_free(&schedules);
+    return path;
+}
+
+static void learned_factors_are_those_of_the_file(void **state) {
+    (void)state;
+    char text[300];
+    const char *path = write_schedules();
+    snprintf(text, sizeof text, "k=20,network=%s", path);
+    World *world = make_crash();
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution learned = make_solution(problem), by_hand = make_solution(problem);
+    solve(&solver_learned_momentum, text, problem, &learned);
+    solve(&solver_momentum, "k=20", problem, &by_hand);
+    assert_same_bits(problem, &learned, &by_hand, "factors from a file");
+    free_solution(&learned);
+    free_solution(&by_hand);
+    world_destroy(world);
+    snprintf(text, sizeof text, "k=10,network=%s", path);
+    assert_refused(&solver_learned_momentum, text, "has no factors for k=10; it has them for 5, 20");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(all_meet_the_plain_sweeps),
+                                       cmocka_unit_test(cone_momentum_and_velocities_fit_after_every_sweep),
+                                       cmocka_unit_test(a_cold_engine_starts_from_zero),
+                                       cmocka_unit_test(numbers_that_overflow_have_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(settings_out_of_range_are_refused),
+                                       cmocka_unit_test(learned_factors_are_those_of_the_file)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
