@@ -52,10 +52,10 @@ static bool add(ImpactProblems *problems, const ContactProblem *problem, bool im
     return true;
 }
 
-static bool observe(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                    Error *error) {
-    (void)frame, (void)solution;
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    (void)frame;
     Recording *recording = context;
+    const ContactProblem *problem = world_problem(world);
     if (recording->touched == 0 && (problem->bomb < 0 || !bomb_touches(problem))) return true;
     int since = recording->touched++;
     bool impact = since < IMPACT_FRAMES;
