@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct ReferenceVelocity {
     double x, y, spin; /* m/s, rad/s */
@@ -27,12 +28,14 @@ typedef struct Reference {
     double residual;               /* m/s: the largest change of a contact's relative velocity, normal or tangent,
                                       that one more plain sweep makes: |change of impulse| / effective mass */
     int sweeps;                    /* over all contacts, that it took */
-    /* workspace */
+    /* workspace, in units in which every mass is 1, contacts in the order of the sweeps */
     int body_count, contact_count;
-    ReferenceContact *contacts;                                /* [contact_count] */
-    ReferenceVelocity *velocities_before, *velocity_direction; /* [body_count] */
-    ReferenceImpulse *impulses_before, *direction;             /* [contact_count] */
-    size_t body_capacity[3], contact_capacity[4];
+    ReferenceContact *contacts;                                      /* [contact_count] */
+    ReferenceVelocity *momenta, *momenta_before, *momenta_direction; /* [body_count] */
+    ReferenceImpulse *sums, *sums_before, *direction;                /* [contact_count] */
+    int *rounds;     /* [contact_count] while loading: the round of the sweep that visits it */
+    uint64_t *taken; /* [body_count] while loading: a bit for each round that visits the body */
+    size_t body_capacity[5], contact_capacity[6];
 } Reference;
 
 /* The residual at which a solve stops, and the most sweeps it may take to get there. */

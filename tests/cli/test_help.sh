@@ -31,7 +31,7 @@ says "twinbox "
 run 0 methods
 says "engine"
 says "pair-net"
-says "    k: "
+says "k:"
 says "network:"
 
 "$twinbox" methods >/dev/full 2>err
