@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "solvers/solvers.h"
+#include "simulate/method.h"
 
 #include <stdio.h>
 
@@ -23,9 +23,10 @@ static const struct argp argp = {
 int command_methods(int argc, char **argv, Error *error) {
     (void)error;
     if (!options_parse(&argp, argc, argv, NULL)) return STATUS_DIFFERENT;
-    for (int i = 0; solver_kinds[i] != NULL; i++) {
-        printf("%-12s %s\n", solver_kinds[i]->name, solver_kinds[i]->summary);
-        for (const SettingSpec *setting = solver_kinds[i]->settings; setting->key != NULL; setting++)
+    MethodInfo info;
+    for (int i = 0; method_info(i, &info); i++) {
+        printf("%-16s %s\n", info.name, info.summary);
+        for (const SettingSpec *setting = info.settings; setting->key != NULL; setting++)
             printf("    %s: %s\n", setting->key, setting->summary);
     }
     return STATUS_SAME;

@@ -33,8 +33,7 @@ static bool add_run(Panels *panels, const Scene *scene, const char *method_name,
 static bool add_scene(Panels *panels, const char *input, Error *error) {
     Scene *scene = scene_read(input, error);
     bool ok = scene != NULL && add_run(panels, scene, "engine", input, error);
-    for (int i = 0; ok && i < scene->network_count; i++)
-        ok = add_run(panels, scene, scene->networks[i].method, input, error);
+    if (ok && scene_network(scene, "pair-net") != NULL) ok = add_run(panels, scene, "pair-net", input, error);
     scene_destroy(scene);
     return ok;
 }

@@ -57,9 +57,8 @@ typedef struct Writing {
     const char *path;
 } Writing;
 
-static bool write_last(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                       Error *error) {
-    (void)solution;
+static bool write_last(void *context, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
     const Writing *writing = context;
     if (frame < writing->scene->frames) return true;
     if (!problem_write(problem, writing->scene->name, frame, writing->path, error)) return false;

@@ -57,7 +57,7 @@ static const struct argp argp = {
     parse,
     "RUN_OR_SCENE...",
     "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
-    "run by the engine and by each network that it names.\v"
+    "run by the engine and by the pair-net that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
     NULL,
     NULL,

@@ -75,6 +75,14 @@ bool parse_float(const char *text, float *value) {
     return true;
 }
 
+bool parse_double(const char *text, double *value) {
+    Number number;
+    const char *rest;
+    if (!take_number(text, '\0', &number, &rest)) return false;
+    *value = number.full;
+    return true;
+}
+
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value) {
     const char *digits = skip_sign(text), *end = skip_digits(digits);
     if (end == digits || *end != '\0') return false;

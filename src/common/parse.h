@@ -8,6 +8,9 @@
 /* A decimal number, rounded to the nearest float32, or a fraction of two such as 1/60, divided in float32. */
 bool parse_float(const char *text, float *value);
 
+/* A decimal number within the reach of float32, rounded to the nearest double. */
+bool parse_double(const char *text, double *value);
+
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);
 
 /* "A:B:STEP", three floats with STEP > 0 and A <= B. Value i of the range is the decimal A + i * STEP (computed

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/array.h"
+#include "common/parallel.h"
 #include "dataset/dataset.h"
 #include "simulate/simulate.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,9 +22,9 @@ typedef struct LaunchRows {
     size_t start; /* of its rows in the dataset */
 } LaunchRows;
 
-static bool observe(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                    Error *error) {
+static bool observe(void *context, int frame, const World *world, Error *error) {
     LaunchRows *launch = context;
+    const ContactProblem *problem = world_problem(world);
     for (int first = 0, count; first < problem->contact_count; first += count) {
         count = pair_contact_count(problem, first);
         if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows))
@@ -34,7 +34,7 @@ static bool observe(void *context, int frame, const ContactProblem *problem, con
         row->bodies[0] = problem->contacts[first].a;
         row->bodies[1] = problem->contacts[first].b;
         pair_inputs(problem, row->bodies[0], row->bodies[1], row->inputs);
-        pair_changes(problem, solution, first, count, row->changes);
+        pair_changes(problem, world_solution(world), first, count, row->changes);
     }
     return true;
 }
@@ -91,42 +91,16 @@ typedef struct Recording {
     Scene *const *scenes;
     const Dataset *dataset;
     LaunchRows *launches;
-    const Progress *progress;
-    atomic_int done;
-    atomic_bool stopped;
-    Error *error; /* guarded by the critical section */
 } Recording;
 
-static void record_launch(Recording *recording, int index) {
+static bool record_launch(void *context, int index, Error *error) {
+    const Recording *recording = context;
     const Dataset *dataset = recording->dataset;
     Scene scene = *recording->scenes[dataset->launch_scene[index]];
     scene.bomb.body.position.x = dataset->launch_x[index];
-    Error error = {0};
     Method method;
     StepObserver observer = {observe, &recording->launches[index]};
-    if (!method_parse(&method, "engine", &error) || !simulate_observed(&scene, &method, &observer, &error)) {
-        atomic_store(&recording->stopped, true);
-#pragma omp critical
-        if (recording->error->kind == ERROR_NONE) *recording->error = error;
-    }
-}
-
-static bool record_launches(Recording *recording) {
-    int total = recording->dataset->launches;
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < total; i++) {
-        if (atomic_load(&recording->stopped)) continue;
-        record_launch(recording, i);
-        int done = atomic_fetch_add(&recording->done, 1) + 1;
-        bool go_on = true;
-#pragma omp critical
-        go_on = progress_report(recording->progress, done, total);
-        if (!go_on) atomic_store(&recording->stopped, true);
-    }
-    if (atomic_load(&recording->stopped))
-        return error_input(recording->error, "dataset", "stopped after %d of %d launches",
-                           atomic_load(&recording->done), total);
-    return true;
+    return method_parse(&method, "engine", error) && simulate_observed(&scene, &method, &observer, error);
 }
 
 /* Copies the rows of launch i to row `at` and on. */
@@ -172,9 +146,10 @@ static Dataset *record_scenes(const DatasetOptions *options, Scene *const *scene
     if (dataset == NULL) return NULL;
     LaunchRows *launches = calloc((size_t)dataset->launches, sizeof *launches);
     if (launches == NULL) error_memory(error, "dataset");
-    Recording recording = {
-        .scenes = scenes, .dataset = dataset, .launches = launches, .progress = progress, .error = error};
-    bool ok = launches != NULL && record_launches(&recording) && gather(dataset, launches, error);
+    Recording recording = {.scenes = scenes, .dataset = dataset, .launches = launches};
+    const ParallelWork work = {record_launch, &recording};
+    bool ok = launches != NULL && parallel_for(&work, dataset->launches, "recorded launches", progress, error) &&
+              gather(dataset, launches, error);
     for (int i = 0; launches != NULL && i < dataset->launches; i++) free(launches[i].rows);
     free(launches);
     if (ok) return dataset;

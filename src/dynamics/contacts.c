@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 void contact_set_free(ContactSet *set) {
     free(set->arbiters);
@@ -19,6 +20,18 @@ static bool reserve(ContactSet *set, size_t pairs) {
     return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
            array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
            array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses);
+}
+
+bool contact_set_copy(ContactSet *to, const ContactSet *from) {
+    size_t arbiters = (size_t)from->arbiter_count, contacts = (size_t)from->contact_count;
+    if (!reserve(to, arbiters)) return false;
+    to->arbiter_count = from->arbiter_count;
+    to->contact_count = from->contact_count;
+    if (arbiters == 0) return true;
+    memcpy(to->arbiters, from->arbiters, arbiters * sizeof *to->arbiters);
+    memcpy(to->contacts, from->contacts, contacts * sizeof *to->contacts);
+    memcpy(to->impulses, from->impulses, contacts * sizeof *to->impulses);
+    return true;
 }
 
 static void add_arbiter(ContactSet *set, BodyPair pair, const Manifold *manifold) {
@@ -77,12 +90,16 @@ static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm
     return 1.0f / inverse;
 }
 
-void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
-                         bool position_correction) {
+float contact_bias(float separation, float inverse_dt) {
     /* Only what is deeper than the slop is pushed out, or resting contacts would jitter between touching and apart
        (Catto 2006). */
-    const float slop = 0.01f;
-    const float bias_factor = position_correction ? 0.2f : 0.0f;
+    const float slop = 0.01f, bias_factor = 0.2f;
+    float depth = separation + slop;
+    return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
+}
+
+void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
+                         bool position_correction) {
     float inverse_dt = 1.0f / dt;
     for (int i = 0; i < set->contact_count; i++) {
         ContactPoint *contact = &set->contacts[i];
@@ -92,8 +109,7 @@ void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float
         contact->mass_normal = effective_mass(a, b, contact->arm_a, contact->arm_b, contact->normal);
         Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
         contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
-        float depth = contact->separation + slop;
-        contact->bias = -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
+        contact->bias = position_correction ? contact_bias(contact->separation, inverse_dt) : 0;
         contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
     }
 }

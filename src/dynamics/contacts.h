@@ -24,12 +24,19 @@ typedef struct ContactSet {
 
 void contact_set_free(ContactSet *set);
 
+/* Makes `to` equal to `from`. False when memory is short. */
+bool contact_set_copy(ContactSet *to, const ContactSet *from);
+
 /* Narrow phase over the candidate pairs; fills where, which way and how deep, not yet masses or impulses. False
    when memory is short. */
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes);
 
 /* Hands the impulses of the last step to the points of this one that have the same pair and feature. */
 void contact_set_match(ContactSet *set, const ContactSet *last);
+
+/* The velocity, m/s, that position correction wants along the normal (Baumgarte 1972, as Box2D-Lite has it);
+   inverse_dt in 1/s. */
+float contact_bias(float separation, float inverse_dt);
 
 /* Lever arms, effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body.
    Without position correction the bias is 0. */

@@ -57,8 +57,7 @@ void world_destroy(World *world) {
     free(world);
 }
 
-/* Room for one more body in each of the arrays. */
-static bool reserve_body(World *world) {
+static bool reserve_bodies(World *world, size_t count) {
     struct {
         void **items;
         size_t size;
@@ -73,14 +72,14 @@ static bool reserve_body(World *world) {
     size_t capacity = world->body_capacity;
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
         capacity = world->body_capacity;
-        if (!array_reserve(arrays[i].items, &capacity, (size_t)world->body_count + 1, arrays[i].size)) return false;
+        if (!array_reserve(arrays[i].items, &capacity, count, arrays[i].size)) return false;
     }
     world->body_capacity = capacity;
     return true;
 }
 
 bool world_add_body(World *world, const BodyDef *def, Error *error) {
-    if (!reserve_body(world)) return error_memory(error, "world");
+    if (!reserve_bodies(world, (size_t)world->body_count + 1)) return error_memory(error, "world");
     Body body = {def->position, def->angle, def->velocity, def->angular_velocity, def->size, def->friction, 0, 0};
     if (!def->fixed) {
         float inertia = def->mass * (def->size.x * def->size.x + def->size.y * def->size.y) / 12.0f;
@@ -90,6 +89,24 @@ bool world_add_body(World *world, const BodyDef *def, Error *error) {
     world->fixed[world->body_count] = def->fixed;
     world->friction[world->body_count] = def->friction;
     world->bodies[world->body_count++] = body;
+    return true;
+}
+
+bool world_copy(World *to, const World *from, Error *error) {
+    to->def = from->def;
+    to->bomb = from->bomb;
+    to->problem = (ContactProblem){.bomb = -1};
+    to->posed = 0;
+    to->body_count = from->body_count;
+    if (!reserve_bodies(to, (size_t)from->body_count) || !contact_set_copy(&to->last, &from->last)) {
+        to->body_count = 0;
+        return error_memory(error, "world");
+    }
+    size_t count = (size_t)from->body_count;
+    if (count == 0) return true;
+    memcpy(to->bodies, from->bodies, count * sizeof *to->bodies);
+    memcpy(to->fixed, from->fixed, count * sizeof *to->fixed);
+    memcpy(to->friction, from->friction, count * sizeof *to->friction);
     return true;
 }
 
@@ -129,39 +146,27 @@ static void apply_gravity(World *world, float dt) {
     }
 }
 
-static bool solve(World *world, const ContactSolver *solver, float dt, Error *error) {
-    const ContactSet *set = &world->next;
-    ContactProblem problem = {.body_count = world->body_count,
-                              .contact_count = set->contact_count,
-                              .bomb = world->bomb,
-                              .dt = dt,
-                              .bodies = world->problem_bodies,
-                              .contacts = set->contacts};
-    ContactSolution solution = {world->velocities, set->impulses};
-    if (!solver->kind->solve(solver->state, &problem, &solution, error)) return false;
-    world->problem = problem;
-    world->solution = solution;
-    return true;
-}
-
 static bool is_finite_body(const Body *body) {
     return isfinite(body->position.x) && isfinite(body->position.y) && isfinite(body->angle) &&
            isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity);
 }
 
-/* Semi-implicit Euler: the new velocities carry the bodies. */
-static bool integrate(World *world, float dt, Error *error) {
-    for (int i = 0; i < world->body_count; i++) {
-        Body *body = &world->moved[i];
-        *body = world->bodies[i];
-        body->velocity = world->velocities[i].linear;
-        body->angular_velocity = world->velocities[i].angular;
-        body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
-        body->angle += dt * body->angular_velocity;
-        if (!is_finite_body(body))
+/* One body after the step. Semi-implicit Euler: the new velocity carries it. */
+static void move_body(World *world, int i) {
+    float dt = world->problem.dt;
+    Body *body = &world->moved[i];
+    *body = world->bodies[i];
+    body->velocity = world->velocities[i].linear;
+    body->angular_velocity = world->velocities[i].angular;
+    body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
+    body->angle += dt * body->angular_velocity;
+}
+
+static bool check_finite(const World *world, Error *error) {
+    for (int i = 0; i < world->body_count; i++)
+        if (!is_finite_body(&world->moved[i]))
             return error_input(error, "world", "body %d left the finite numbers (its velocity was %g, %g m/s)", i,
                                (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
-    }
     return true;
 }
 
@@ -176,12 +181,44 @@ static void commit(World *world) {
     world->next = last;
 }
 
-bool world_step(World *world, const ContactSolver *solver, float dt, Error *error) {
+bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution *solution, Error *error) {
     if (!collide(world)) return error_memory(error, "world");
     if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
     apply_gravity(world, dt);
     contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
-    if (!solve(world, solver, dt, error) || !integrate(world, dt, error)) return false;
+    *problem = (ContactProblem){.body_count = world->body_count,
+                                .contact_count = world->next.contact_count,
+                                .bomb = world->bomb,
+                                .dt = dt,
+                                .bodies = world->problem_bodies,
+                                .contacts = world->next.contacts};
+    *solution = (ContactSolution){world->velocities, world->next.impulses};
+    world->problem = *problem;
+    world->solution = *solution;
+    return true;
+}
+
+bool world_end_step(World *world, Error *error) {
+    for (int i = 0; i < world->body_count; i++) move_body(world, i);
+    if (!check_finite(world, error)) return false;
     commit(world);
     return true;
+}
+
+bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        move_body(world, i);
+        world->moved[i].position = poses[i].position;
+        world->moved[i].angle = poses[i].angle;
+    }
+    if (!check_finite(world, error)) return false;
+    commit(world);
+    return true;
+}
+
+bool world_step(World *world, const ContactSolver *solver, float dt, Error *error) {
+    ContactProblem problem;
+    ContactSolution solution;
+    return world_begin_step(world, dt, &problem, &solution, error) &&
+           solver->kind->solve(solver->state, &problem, &solution, error) && world_end_step(world, error);
 }

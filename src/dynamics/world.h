@@ -27,8 +27,30 @@ bool world_add_body(World *world, const BodyDef *def, Error *error);
 /* Tells the contact problem which body is the bomb (-1: none). */
 void world_set_bomb(World *world, int body);
 
-/* Advances world by dt seconds (dt > 0). On failure world is unchanged and error says which body left the finite
-   numbers, or what the solver said. */
+/* Makes `to` what `from` is now, whatever it was. False with error set when memory is short. */
+bool world_copy(World *to, const World *from, Error *error);
+
+/* A step, in parts, for who solves contacts in another way than by one call of a solver. Until the step ends, the
+   world is as it was before: a step begun may be forgotten.
+
+   Begins one of dt seconds (dt > 0): collision detection, gravity, the contact problem. It and the arrays of the
+   solution, which are to be filled in, are the world's and last until the next step. */
+bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution *solution, Error *error);
+
+/* Ends it by the solution filled in: the new velocities carry the bodies. On failure world is unchanged and error
+   says which body left the finite numbers. */
+bool world_end_step(World *world, Error *error);
+
+/* Where a body is. */
+typedef struct BodyPose {
+    Vec2 position; /* m */
+    float angle;   /* rad */
+} BodyPose;
+
+/* The same, with the poses [body_count] that the bodies came to on the way. */
+bool world_end_step_at(World *world, const BodyPose *poses, Error *error);
+
+/* Advances world by dt seconds: begins, solves, ends. On failure world is unchanged and error says why. */
 bool world_step(World *world, const ContactSolver *solver, float dt, Error *error);
 
 int world_body_count(const World *world);

@@ -18,10 +18,10 @@ static bool check_widths(int layers, const int *widths, Error *error) {
     return true;
 }
 
-/* Parameters and normalisations. */
+/* Parameters, normalisations, and the mean of the outputs. */
 static size_t number_count(const Network *network) {
     return (size_t)network_parameter_count(network) +
-           2 * (size_t)(network->widths[0] + network->widths[network->layers]);
+           2 * (size_t)network->widths[0] + 3 * (size_t)network->widths[network->layers];
 }
 
 /* One block, so that training can take the parameters as one vector. */
@@ -35,6 +35,7 @@ static void place_arrays(Network *network, float *block) {
     network->input = (Normalisation){block, block + inputs};
     block += 2 * inputs;
     network->output = (Normalisation){block, block + outputs};
+    network->output_mean = block + 2 * outputs;
 }
 
 Network *network_create(int layers, const int *widths, Error *error) {

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { NETWORK_VERSION = 1, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
+enum { NETWORK_VERSION = 2, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
 
 typedef enum Activation { ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH } Activation;
 
@@ -28,6 +28,7 @@ typedef struct Network {
     float *weights[NETWORK_MAX_LAYERS]; /* [widths[l + 1], widths[l]] */
     float *biases[NETWORK_MAX_LAYERS];  /* [widths[l + 1]] */
     Normalisation input, output;
+    float *output_mean; /* [outputs] of the data it was trained on, in their units: what a constant would say */
     char inputs[NETWORK_TEXT_SIZE];  /* what goes in: "dx dy v1x v1y ..." */
     char outputs[NETWORK_TEXT_SIZE]; /* what comes out */
     char command[NETWORK_TEXT_SIZE]; /* the command that made it */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Network files: .npz with version, kind ("network"), widths[layers + 1], activations (words), weights_L and
-   biases_L for every layer, input_offset, input_scale, output_offset, output_scale, inputs, outputs,
+   biases_L for every layer, input_offset, input_scale, output_offset, output_scale, output_mean, inputs, outputs,
    command. */
 #include "network/network.h"
 
@@ -13,7 +13,7 @@
 
 #define KIND "network"
 
-enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 11 + 2 * NETWORK_MAX_LAYERS };
+enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 12 + 2 * NETWORK_MAX_LAYERS };
 
 static const char *const activation_names[] = {
     [ACTIVATION_LINEAR] = "linear", [ACTIVATION_SIGMOID] = "sigmoid", [ACTIVATION_TANH] = "tanh"};
@@ -28,7 +28,7 @@ typedef struct Member {
     float *numbers;
 } Member;
 
-enum { MAX_MEMBERS = 2 * NETWORK_MAX_LAYERS + 4 };
+enum { MAX_MEMBERS = 2 * NETWORK_MAX_LAYERS + 5 };
 
 static int list_members(const Network *network, Member members[MAX_MEMBERS]) {
     int count = 0, inputs = network->widths[0], outputs = network->widths[network->layers];
@@ -43,6 +43,7 @@ static int list_members(const Network *network, Member members[MAX_MEMBERS]) {
     members[count++] = (Member){"input_scale", 1, {inputs}, network->input.scale};
     members[count++] = (Member){"output_offset", 1, {outputs}, network->output.offset};
     members[count++] = (Member){"output_scale", 1, {outputs}, network->output.scale};
+    members[count++] = (Member){"output_mean", 1, {outputs}, network->output_mean};
     return count;
 }
 

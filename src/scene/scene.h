@@ -13,7 +13,8 @@ enum {
     SCENE_MAX_BODIES = 10000,
     SCENE_MAX_FRAMES = 1000000,
     SCENE_MAX_ITERATIONS = 1000000,
-    SCENE_MAX_NETWORKS = 8
+    SCENE_MAX_NETWORKS = 8,
+    SCENE_IMPACT_FRAMES = 6 /* where a file does not say */
 };
 
 #define SCENE_MAX_POSITION 1e6f /* m, either way along each axis */
@@ -27,6 +28,7 @@ typedef struct SceneBomb {
     BodyDef body;                /* velocity: only where the law below is off (scene_bomb_body) */
     bool velocity_from_position; /* velocity = velocity_factor * position */
     float velocity_factor;       /* 1/s */
+    int impact_frames;           /* from its first touch on, in studies */
 } SceneBomb;
 
 /* Which trained network a method of this scene uses. */
@@ -67,8 +69,8 @@ BodyDef scene_bomb_body(const Scene *scene);
 bool scene_add_bomb(const Scene *scene, World *world, Error *error);
 
 /* XXH3 of all that decides a run: equal physics, equal hash, whatever the file looks like. Gravity, dt,
-   iterations, switches, bodies and bomb (with the velocity that it gets) count; name, frames, camera and
-   networks do not. */
+   iterations, switches, bodies and bomb (with the velocity that it gets) count; name, frames, camera,
+   networks and impact_frames do not. */
 uint64_t scene_hash(const Scene *scene);
 
 /* Path of the network that the scene names for a method, or NULL. */

@@ -46,12 +46,13 @@ static const Field bomb_fields[] = {
     {"spin", field_number, offsetof(SceneBomb, body.angular_velocity), &range_spin, false},
     {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
     {"velocity", field_bomb_velocity, 0, &range_speed, false},
+    {"impact_frames", field_int, offsetof(SceneBomb, impact_frames), &range_frames, false},
     {NULL, NULL, 0, NULL, false}};
 
 static bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)field;
     Scene *scene = member;
-    scene->bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION};
+    scene->bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, node, "a bomb", bomb_fields, &scene->bomb, nodes, error)) return false;
     Vec2 velocity = scene_bomb_body(scene).velocity;

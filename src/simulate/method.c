@@ -4,13 +4,40 @@
 #include "solvers/solvers.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+static const SteppingKind *const stepping_kinds[] = {&stepping_substepping, &stepping_playback, NULL};
+
+bool method_info(int i, MethodInfo *info) {
+    int solvers = 0, others = 0;
+    for (; solver_kinds[solvers] != NULL; solvers++)
+        if (solvers == i) {
+            const ContactSolverKind *kind = solver_kinds[i];
+            *info = (MethodInfo){kind->name, kind->summary, kind->settings};
+            return true;
+        }
+    for (; stepping_kinds[others] != NULL; others++)
+        if (solvers + others == i) {
+            const SteppingKind *kind = stepping_kinds[others];
+            *info = (MethodInfo){kind->name, kind->summary, kind->settings};
+            return true;
+        }
+    return false;
+}
+
+static const SteppingKind *stepping_find(const char *name) {
+    for (int i = 0; stepping_kinds[i] != NULL; i++)
+        if (strcmp(stepping_kinds[i]->name, name) == 0) return stepping_kinds[i];
+    return NULL;
+}
 
 static bool unknown_method(const char *text, Error *error) {
     char names[512] = "";
-    for (int i = 0; solver_kinds[i] != NULL; i++) {
+    MethodInfo info;
+    for (int i = 0; method_info(i, &info); i++) {
         size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", solver_kinds[i]->name);
+        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", info.name);
     }
     return error_input(error, text, "no such method; there are %s", names);
 }
@@ -24,9 +51,10 @@ bool method_parse(Method *method, const char *text, Error *error) {
     memcpy(name, text, length);
     name[length] = '\0';
     method->solver = solver_find(name);
-    if (method->solver == NULL) return unknown_method(name, error);
-    const char *settings = text[length] == ':' ? text + length + 1 : "";
-    return settings_parse(&method->settings, settings, method->solver->settings, name, error);
+    method->stepping = stepping_find(name);
+    if (method->solver == NULL && method->stepping == NULL) return unknown_method(name, error);
+    const SettingSpec *known = method->solver != NULL ? method->solver->settings : method->stepping->settings;
+    return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "", known, name, error);
 }
 
 static bool has_setting(const ContactSolverKind *kind, const char *key) {
@@ -36,6 +64,9 @@ static bool has_setting(const ContactSolverKind *kind, const char *key) {
 }
 
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
+    if (method->solver == NULL)
+        return error_input(error, method->text, "no contact solver, but another way of stepping");
+    const ContactSolverKind *kind = method->solver;
     Settings settings = method->settings;
     char iterations[16];
     snprintf(iterations, sizeof iterations, "%d", scene->iterations);
@@ -43,13 +74,66 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         const char *key, *value;
     } scene_settings[] = {{"k", iterations},
                           {"accumulate", scene->accumulate_impulses ? "on" : "off"},
-                          {"network", scene_network(scene, method->solver->name)}};
+                          {"network", scene_network(scene, kind->name)}};
     for (size_t i = 0; i < sizeof scene_settings / sizeof scene_settings[0]; i++) {
-        if (scene_settings[i].value == NULL || !has_setting(method->solver, scene_settings[i].key)) continue;
+        if (scene_settings[i].value == NULL || !has_setting(kind, scene_settings[i].key)) continue;
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
-    solver->kind = method->solver;
-    solver->state = method->solver->create(&settings, error);
+    solver->kind = kind;
+    solver->state = kind->create(&settings, error);
     return solver->state != NULL;
+}
+
+bool method_lacks_network(const Method *method, const Scene *scene) {
+    return method->solver != NULL && has_setting(method->solver, "network") &&
+           settings_get(&method->settings, "network") == NULL && scene_network(scene, method->solver->name) == NULL;
+}
+
+struct Stepper {
+    ContactSolver solver;         /* in the standard step, */
+    const SteppingKind *stepping; /* or another way of stepping */
+    void *state;
+};
+
+Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) {
+    Stepper *stepper = calloc(1, sizeof *stepper);
+    if (stepper == NULL) {
+        error_memory(error, method->text);
+        return NULL;
+    }
+    stepper->stepping = method->stepping;
+    if (method->stepping != NULL) {
+        stepper->state = method->stepping->create(&method->settings, scene, error);
+        if (stepper->state != NULL) return stepper;
+    } else if (method_create_solver(method, scene, &stepper->solver, error)) {
+        return stepper;
+    }
+    free(stepper);
+    return NULL;
+}
+
+void stepper_destroy(Stepper *stepper) {
+    if (stepper == NULL) return;
+    if (stepper->stepping != NULL)
+        stepper->stepping->destroy(stepper->state);
+    else
+        stepper->solver.kind->destroy(stepper->solver.state);
+    free(stepper);
+}
+
+/* The step of Box2D-Lite around a contact solver. */
+static bool standard_step(const ContactSolver *solver, World *world, const Step *step, Error *error) {
+    ContactProblem problem;
+    ContactSolution solution;
+    if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(step);
+    bool solved = solver->kind->solve(solver->state, &problem, &solution, error);
+    step_solving_ends(step);
+    return solved && world_end_step(world, error);
+}
+
+bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
+    return standard_step(&stepper->solver, world, step, error);
 }

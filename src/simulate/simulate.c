@@ -5,35 +5,39 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A run in progress: the world, and who solves its contacts. */
+/* A run in progress: the world, and what steps it. */
 typedef struct Run {
     const Scene *scene;
     World *world;
-    ContactSolver solver;
+    Stepper *stepper;
 } Run;
 
 static void run_end(Run *run) {
-    if (run->solver.state != NULL) run->solver.kind->destroy(run->solver.state);
+    stepper_destroy(run->stepper);
     world_destroy(run->world);
 }
 
 static bool run_begin(Run *run, const Scene *scene, const Method *method, Error *error) {
     *run = (Run){.scene = scene, .world = scene_world(scene, error)};
-    if (run->world != NULL && method_create_solver(method, scene, &run->solver, error)) return true;
+    if (run->world != NULL) run->stepper = stepper_create(method, scene, error);
+    if (run->stepper != NULL) return true;
     run_end(run);
     return false;
 }
 
-/* One step; the bomb comes after the step it is told to. */
+/* The bomb comes after the step it is told to. */
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    const SceneBomb *bomb = &step->scene->bomb;
+    if (stepper_step(stepper, world, step, error))
+        return !bomb->present || bomb->frame != step->frame || scene_add_bomb(step->scene, world, error);
+    size_t length = strlen(error->message);
+    snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", step->frame,
+             step->scene->name);
+    return false;
+}
+
 static bool run_step(Run *run, int frame, Error *error) {
-    if (!world_step(run->world, &run->solver, run->scene->dt, error)) {
-        size_t length = strlen(error->message);
-        snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", frame,
-                 run->scene->name);
-        return false;
-    }
-    bool bomb_comes = run->scene->bomb.present && run->scene->bomb.frame == frame;
-    return !bomb_comes || scene_add_bomb(run->scene, run->world, error);
+    return simulate_step(run->stepper, run->world, &(Step){.scene = run->scene, .frame = frame}, error);
 }
 
 bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error) {
@@ -42,7 +46,7 @@ bool simulate_observed(const Scene *scene, const Method *method, const StepObser
     bool ok = true;
     for (int frame = 1; ok && frame <= scene->frames; frame++)
         ok = run_step(&run, frame, error) &&
-             observer->observe(observer->context, frame, world_problem(run.world), world_solution(run.world), error);
+             observer->observe(observer->context, frame, run.world, error);
     run_end(&run);
     return ok;
 }

@@ -9,12 +9,15 @@
 /* Bodies times frames that one trajectory may hold: 24 bytes each, 1.2 GB. */
 enum { SIMULATE_MAX_STATES = 50000000 };
 
-/* Sees every step: frame is the number of the step (1 .. frames), the problem before and the solution after. */
+/* Sees the world after every step: frame is the number of the step, 1 .. frames. */
 typedef struct StepObserver {
-    bool (*observe)(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                    Error *error);
+    bool (*observe)(void *context, int frame, const World *world, Error *error);
     void *context;
 } StepObserver;
+
+/* One step of a run: the scene's, and the bomb where it comes after this one. On failure the error names scene and
+   step. */
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
 /* NULL with error set when the method cannot be created, memory is short, a body leaves the finite numbers, or
    progress asks to stop. */

@@ -10,6 +10,9 @@
        points, so that momentum is kept;
      six outputs gives the change of both velocities and spins, added as it is: momentum is not kept.
 
+   `constant` says for every pair what the network's training data were on average. It is no method, but the mark that
+   one has to beat before it can be said to have learned anything.
+
    Fails on stacks: it sees one pair and no other, so no impulse can be carried through a chain of boxes; and what
    it leaves of a velocity that should be zero adds up to sinking. */
 #include "common/array.h"
@@ -22,6 +25,7 @@
 
 typedef struct PairNet {
     Network *network;
+    bool constant; /* the mean of the training data in place of what the network says */
     float *scratch;
     float *numbers; /* inputs[PAIR_INPUTS, pairs], then outputs[.., pairs], of the step's pairs */
     size_t capacity;
@@ -38,10 +42,10 @@ static void destroy(void *state) {
     free(solver);
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static PairNet *create_as(const char *name, const Settings *chosen, Error *error) {
     const char *path = settings_get(chosen, "network");
     if (path == NULL) {
-        error_input(error, "pair-net", "the scene names no network for it: use pair-net:network=FILE");
+        error_input(error, name, "the scene names no network for it: use %s:network=FILE", name);
         return NULL;
     }
     PairNet *solver = calloc(1, sizeof *solver);
@@ -66,6 +70,14 @@ static void *create(const Settings *chosen, Error *error) {
 fail:
     destroy(solver);
     return NULL;
+}
+
+static void *create(const Settings *chosen, Error *error) { return create_as("pair-net", chosen, error); }
+
+static void *create_constant(const Settings *chosen, Error *error) {
+    PairNet *solver = create_as("constant", chosen, error);
+    if (solver != NULL) solver->constant = true;
+    return solver;
 }
 
 /* The middle of the pair's contact points, from a body's centre. */
@@ -109,6 +121,10 @@ static const float *predict_pairs(PairNet *solver, const ContactProblem *problem
     if (!array_reserve((void **)&solver->numbers, &solver->capacity, inputs_size + outputs_size, sizeof(float)))
         return NULL;
     float *inputs = solver->numbers, *outputs = solver->numbers + inputs_size;
+    if (solver->constant) {
+        for (size_t i = 0; i < outputs_size; i++) outputs[i] = solver->network->output_mean[i / (size_t)pairs];
+        return outputs;
+    }
     for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
         float numbers[PAIR_INPUTS];
         pair_inputs(problem, problem->contacts[first].a, problem->contacts[first].b, numbers);
@@ -152,4 +168,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 
 const ContactSolverKind solver_pair_net = {
     "pair-net", "the paper's network: the change of a pair's velocities, pair by pair", settings, create, solve,
+    destroy};
+
+const ContactSolverKind solver_constant = {
+    "constant", "what pair-net was trained on, on average: the same for every pair", settings, create_constant, solve,
     destroy};

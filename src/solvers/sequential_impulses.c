@@ -21,27 +21,29 @@
 #include <stdlib.h>
 
 typedef struct SequentialImpulses {
-    int iterations;
-    bool accumulate;
+    int sweep_count;
+    SequentialOptions options;
     SweepKernel kernel;
     Sweeps sweeps;
 } SequentialImpulses;
 
 static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
                                        {"accumulate", "on|off: clamp the sum of impulses, not each one"},
+                                       {"warm", "on|off: start from the impulses of the step before (on)"},
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
-    SequentialImpulses options = {.iterations = 10, .accumulate = true};
-    options.kernel = sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE;
-    if (!settings_int(chosen, "k", 1, 1000000, &options.iterations, error) ||
-        !settings_bool(chosen, "accumulate", &options.accumulate, error))
+    SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    values.kernel = sweeps_best_kernel();
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
+        !settings_bool(chosen, "accumulate", &values.options.accumulate, error) ||
+        !settings_bool(chosen, "warm", &values.options.warm, error))
         return NULL;
     SequentialImpulses *solver = malloc(sizeof *solver);
     if (solver == NULL)
         error_memory(error, "engine");
     else
-        *solver = options;
+        *solver = values;
     return solver;
 }
 
@@ -66,24 +68,26 @@ static float clamp(float value, float low, float high) {
     return low > capped ? low : capped;
 }
 
-static void warm_start(const ContactProblem *problem, ContactSolution *solution) {
+static void warm_start(const ContactProblem *problem, bool warm, ContactSolution *solution) {
+    static const ContactImpulse cold = {0, 0};
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        solution->impulses[i] = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
+        ContactImpulse start = warm ? (ContactImpulse){contact->warm_normal, contact->warm_tangent} : cold;
+        solution->impulses[i] = start;
         Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-        Vec2 impulse =
-            vec2_add(vec2_scale(contact->warm_normal, contact->normal), vec2_scale(contact->warm_tangent, tangent));
+        Vec2 impulse = vec2_add(vec2_scale(start.normal, contact->normal), vec2_scale(start.tangent, tangent));
         apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies, impulse);
     }
 }
 
 /* One contact, once: the normal impulse, then friction against what it left. */
 static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies, BodyVelocity *velocities,
-                          ContactImpulse *sum, bool accumulate) {
+                          ContactImpulse *sum, const SequentialOptions *options) {
+    const bool accumulate = options->accumulate;
     BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
 
     float normal_velocity = vec2_dot(relative_velocity(a, b, contact), contact->normal);
-    float normal = contact->mass_normal * (-normal_velocity + contact->bias);
+    float normal = options->relaxation * contact->mass_normal * (-normal_velocity + contact->bias);
     float pushed = accumulate ? sum->normal : 0.0f;
     float total = pushed + normal > 0.0f ? pushed + normal : 0.0f;
     normal = total - pushed;
@@ -92,7 +96,7 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
 
     Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
     float tangent_velocity = vec2_dot(relative_velocity(a, b, contact), direction);
-    float tangent = contact->mass_tangent * -tangent_velocity;
+    float tangent = options->relaxation * contact->mass_tangent * -tangent_velocity;
     float limit = contact->friction * (accumulate ? sum->normal : normal);
     float dragged = accumulate ? sum->tangent : 0.0f;
     total = clamp(dragged + tangent, -limit, limit);
@@ -101,26 +105,36 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
     apply(a, b, contact, bodies, vec2_scale(tangent, direction));
 }
 
-void sequential_impulses_solve(const ContactProblem *problem, int iterations, bool accumulate,
+void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution) {
     for (int i = 0; i < problem->body_count; i++)
         solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-    if (accumulate) warm_start(problem, solution);
-    for (int sweep = 0; sweep < iterations; sweep++)
-        for (int i = 0; i < problem->contact_count; i++)
-            solve_contact(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i],
-                          accumulate);
+    if (options->accumulate) warm_start(problem, options->warm, solution);
+}
+
+void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
+                               ContactSolution *solution) {
+    for (int i = 0; i < problem->contact_count; i++)
+        solve_contact(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i], options);
+}
+
+void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
+                               ContactSolution *solution) {
+    sequential_impulses_begin(problem, options, solution);
+    for (int sweep = 0; sweep < count; sweep++) sequential_impulses_sweep(problem, options, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SequentialImpulses *solver = state;
-    if (solver->accumulate) {
-        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem) || !sweeps_run(&solver->sweeps, solver->iterations))
+    const SequentialOptions *options = &solver->options;
+    if (options->accumulate) {
+        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem, options->warm, options->relaxation) ||
+            !sweeps_run(&solver->sweeps, solver->sweep_count))
             return error_memory(error, "engine");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
-    sequential_impulses_solve(problem, solver->iterations, solver->accumulate, solution);
+    sequential_impulses_solve(problem, options, solver->sweep_count, solution);
     return true;
 }
 

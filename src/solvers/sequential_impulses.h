@@ -5,7 +5,20 @@
 
 #include <stdbool.h>
 
-/* Sweeps `iterations` times over the contacts. accumulate: clamp the sum of impulses, from the warm start on, not
-   each one. */
-void sequential_impulses_solve(const ContactProblem *problem, int iterations, bool accumulate,
+typedef struct SequentialOptions {
+    bool accumulate;  /* clamp the sum of impulses, from the warm start on, not each one */
+    bool warm;        /* start from the problem's warm impulses, not from zero */
+    float relaxation; /* of every step; 1: none */
+} SequentialOptions;
+
+/* Velocities and impulses before the first sweep. */
+void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
+                               ContactSolution *solution);
+
+/* Once over the contacts. */
+void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
+                               ContactSolution *solution);
+
+/* `count` sweeps from the beginning. */
+void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
                                ContactSolution *solution);

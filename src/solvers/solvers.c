@@ -3,7 +3,13 @@
 
 #include <string.h>
 
-const ContactSolverKind *const solver_kinds[] = {&solver_sequential_impulses, &solver_pair_net, &solver_reference,
+const ContactSolverKind *const solver_kinds[] = {&solver_sequential_impulses,
+                                                 &solver_over_relaxation,
+                                                 &solver_momentum,
+                                                 &solver_learned_momentum,
+                                                 &solver_pair_net,
+                                                 &solver_constant,
+                                                 &solver_reference,
                                                  NULL};
 
 const ContactSolverKind *solver_find(const char *name) {

@@ -4,7 +4,11 @@
 #include "dynamics/contact_solver.h"
 
 extern const ContactSolverKind solver_sequential_impulses;
+extern const ContactSolverKind solver_over_relaxation;
+extern const ContactSolverKind solver_momentum;
+extern const ContactSolverKind solver_learned_momentum;
 extern const ContactSolverKind solver_pair_net;
+extern const ContactSolverKind solver_constant;
 extern const ContactSolverKind solver_reference;
 
 /* All kinds, ended by NULL. */

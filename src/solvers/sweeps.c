@@ -9,7 +9,6 @@
 #include <string.h>
 
 enum {
-    SWEEPS_AT_ONCE = 16,      /* sweeps in one schedule; more are this one again */
     VISITS_AT_ONCE = 1 << 12, /* visits in one schedule: it should stay in the cache */
     LEVEL_PAYS = 3            /* visits a level from which on lanes are faster than one by one */
 };
@@ -20,6 +19,10 @@ void sweeps_free(Sweeps *sweeps) {
         free(schedules[i]->levels);
         free(schedules[i]->filled);
         free(schedules[i]->open);
+        free(schedules[i]->turns);
+        free(schedules[i]->body_turns);
+        free(schedules[i]->unsorted);
+        free(schedules[i]->turns_end);
     }
     free(sweeps->bodies);
     free(sweeps->pairs);
@@ -29,6 +32,8 @@ void sweeps_free(Sweeps *sweeps) {
     free(sweeps->quiet_since);
     free(sweeps->changed_at);
     free(sweeps->ready);
+    free(sweeps->seen);
+    free(sweeps->sums);
     *sweeps = (Sweeps){0};
 }
 
@@ -36,10 +41,12 @@ bool sweeps_can(SweepKernel kernel) {
     return kernel == SWEEP_ONE_BY_ONE || (kernel == SWEEP_AVX2 && sweeps_have_avx2());
 }
 
+SweepKernel sweeps_best_kernel(void) { return sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE; }
+
 static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
     size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
-    if (bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity) return true;
-    return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, bodies, sizeof *sweeps->bodies) &&
+    if (2 * bodies <= sweeps->body_capacity && bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity) return true;
+    return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, 2 * bodies, sizeof *sweeps->bodies) &&
            array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
            array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
            array_reserve((void **)&sweeps->pairs, &sweeps->pair_capacity, pairs, sizeof *sweeps->pairs) &&
@@ -81,19 +88,19 @@ static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
 }
 
 /* Member by member: a record is written once and not copied. */
-static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra) {
+static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra, bool warm, float relaxation) {
     SweepPoint *point = &pair->points[k];
-    pair->sums[k].normal = contact->warm_normal;
-    pair->sums[k].tangent = contact->warm_tangent;
+    pair->sums[k].normal = warm ? contact->warm_normal : 0.0f;
+    pair->sums[k].tangent = warm ? contact->warm_tangent : 0.0f;
     point->arm_a = contact->arm_a;
     point->arm_b = contact->arm_b;
-    point->mass_normal = contact->mass_normal;
-    point->mass_tangent = contact->mass_tangent;
+    point->mass_normal = relaxation * contact->mass_normal;
+    point->mass_tangent = relaxation * contact->mass_tangent;
     point->bias = contact->bias;
     point->extra = extra;
 }
 
-static void load_pairs(Sweeps *sweeps, const ContactProblem *problem) {
+static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, bool warm, float relaxation) {
     static const ContactPoint none = {0};
     sweeps->pair_count = 0;
     for (int i = 0; i < problem->contact_count;) {
@@ -103,58 +110,96 @@ static void load_pairs(Sweeps *sweeps, const ContactProblem *problem) {
         pair->normal = contact->normal;
         pair->friction = contact->friction;
         pair->inv_inertia_a = problem->bodies[contact->a].inv_inertia;
-        load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia);
-        load_point(pair, 1, two ? next : &none, two ? -1.0f : 0.0f);
+        load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm, relaxation);
+        load_point(pair, 1, two ? next : &none, two ? -1.0f : 0.0f, warm, relaxation);
         sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
         i += two ? 2 : 1;
     }
     sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
 }
 
-bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation) {
     if (!reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     load_bodies(sweeps, problem);
-    load_pairs(sweeps, problem);
+    load_pairs(sweeps, problem, warm, relaxation);
     sweeps_warm_start(sweeps);
     return true;
 }
 
-/* Makes both schedules, unless those of the step before are for the same pairs. */
-static bool reschedule(Sweeps *sweeps, int at_once, int rest) {
+/* Makes both schedules, unless those of the step before are for the same pairs. turns: with extrapolation. */
+static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     size_t size = (size_t)sweeps->pair_count * sizeof *sweeps->ends;
     if (sweeps->scheduled_count == sweeps->pair_count && memcmp(sweeps->scheduled, sweeps->ends, size) == 0 &&
         sweeps->scheduled_bodies == sweeps->body_count && sweeps->whole.sweeps == at_once &&
-        sweeps->rest.sweeps == rest)
+        sweeps->rest.sweeps == rest && sweeps->scheduled_turns == turns)
         return true;
     sweeps->scheduled_count = 0;
-    if (!sweeps_schedule(&sweeps->whole, sweeps, at_once) || !sweeps_schedule(&sweeps->rest, sweeps, rest))
+    if (!sweeps_schedule(&sweeps->whole, sweeps, at_once, turns) ||
+        !sweeps_schedule(&sweeps->rest, sweeps, rest, turns))
         return false;
     memcpy(sweeps->scheduled, sweeps->ends, size);
     sweeps->scheduled_count = sweeps->pair_count;
     sweeps->scheduled_bodies = sweeps->body_count;
+    sweeps->scheduled_turns = turns;
     return true;
 }
 
-/* The number of sweeps in one schedule: equal parts of them all, if possible. */
-static int sweeps_at_once(int pair_count, int count) {
+/* The number of sweeps in one schedule: equal parts of them all, if possible. With extrapolation an even one, where
+   it is run more than once: each run begins in the same half of the bodies and sums. */
+static int sweeps_at_once(int pair_count, int count, bool turns) {
     int most = VISITS_AT_ONCE / pair_count;
     if (most > SWEEPS_AT_ONCE) most = SWEEPS_AT_ONCE;
-    if (most < 1) return 1;
-    return count / ((count + most - 1) / most);
+    if (most < 1) most = 1;
+    if (count <= most) return count;
+    int equal = count / ((count + most - 1) / most);
+    return turns ? equal + equal % 2 : equal;
 }
 
-bool sweeps_run(Sweeps *sweeps, int count) {
-    if (sweeps->pair_count == 0) return true;
-    int at_once = sweeps_at_once(sweeps->pair_count, count);
-    if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once)) return false;
+/* By lanes, where the processor has them and enough visits share a level. */
+static bool run(Sweeps *sweeps, const float *factors, int count) {
+    bool turns = factors != NULL;
+    int at_once = sweeps_at_once(sweeps->pair_count, count, turns);
+    if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
-        sweeps_run_one_by_one(sweeps, count);
+        sweeps_run_one_by_one(sweeps, factors, count);
         return true;
     }
-    for (int done = 0; done + at_once <= count; done += at_once) sweeps_run_avx2(sweeps, &sweeps->whole);
-    sweeps_run_avx2(sweeps, &sweeps->rest);
+    int done = 0;
+    for (; done + at_once <= count; done += at_once)
+        sweeps_run_avx2(sweeps, &sweeps->whole, turns ? factors + done : NULL);
+    sweeps_run_avx2(sweeps, &sweeps->rest, turns ? factors + done : NULL);
+    return true;
+}
+
+bool sweeps_run(Sweeps *sweeps, int count) { return sweeps->pair_count == 0 || run(sweeps, NULL, count); }
+
+/* Both halves alike: the first sweep has no change before it to go on by. */
+static bool begin_turns(Sweeps *sweeps) {
+    size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
+    if (!array_reserve((void **)&sweeps->sums, &sweeps->sums_capacity, 4 * half, sizeof *sweeps->sums) ||
+        !array_reserve((void **)&sweeps->seen, &sweeps->seen_capacity, bodies, sizeof *sweeps->seen))
+        return false;
+    memcpy(sweeps->bodies + bodies, sweeps->bodies, bodies * sizeof *sweeps->bodies);
+    for (size_t i = 0; i < half; i++) memcpy(sweeps->sums + 2 * i, sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
+    memcpy(sweeps->sums + 2 * half, sweeps->sums, 2 * half * sizeof *sweeps->sums);
+    return true;
+}
+
+/* Back from the half that the last sweep worked in. */
+static void end_turns(Sweeps *sweeps, int count) {
+    size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
+    size_t last = (size_t)(count + 1) % 2;
+    if (last == 1) memcpy(sweeps->bodies, sweeps->bodies + bodies, bodies * sizeof *sweeps->bodies);
+    const ContactImpulse *sums = sweeps->sums + last * 2 * half;
+    for (size_t i = 0; i < half; i++) memcpy(sweeps->pairs[i].sums, sums + 2 * i, sizeof sweeps->pairs[i].sums);
+}
+
+bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
+    if (sweeps->pair_count == 0 || count == 0) return true;
+    if (!begin_turns(sweeps) || !run(sweeps, factors, count)) return false;
+    end_turns(sweeps, count);
     return true;
 }
 

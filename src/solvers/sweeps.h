@@ -14,10 +14,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { SWEEPS_MAX = 1000000 }; /* that any method may be asked for */
+
 /* How to sweep; all that the processor has, as sweeps_can says. */
 typedef enum SweepKernel { SWEEP_ONE_BY_ONE, SWEEP_AVX2, SWEEP_KERNELS } SweepKernel;
 
 bool sweeps_can(SweepKernel kernel);
+
+/* The fastest that the processor has. */
+SweepKernel sweeps_best_kernel(void);
 
 /* A body's row: one vector register of four. */
 typedef struct SweepBody {
@@ -43,6 +48,7 @@ typedef struct SweepPair {
 enum {
     LEVEL_WIDTH = 16,
     PAIR_FLOATS = sizeof(SweepPair) / sizeof(float),
+    SUMS_FLOATS = 2 * sizeof(ContactImpulse) / sizeof(float),
     BODY_FLOATS = sizeof(SweepBody) / sizeof(float)
 };
 
@@ -52,6 +58,17 @@ typedef struct SweepLevel {
     int32_t pair[LEVEL_WIDTH], a[LEVEL_WIDTH], b[LEVEL_WIDTH];
 } SweepLevel;
 
+/* With extrapolation: where the sums of a visit are after the sweep before, where those of this sweep go (until then
+   the sums of two sweeps before are there), both in floats, and the sweep's number in the schedule. */
+typedef struct SweepTurns {
+    int32_t from[LEVEL_WIDTH], to[LEVEL_WIDTH], sweep[LEVEL_WIDTH];
+} SweepTurns;
+
+/* The same for a body, before the levels from `level` on. */
+typedef struct SweepBodyTurn {
+    int32_t from, to, sweep, level;
+} SweepBodyTurn;
+
 /* The levels of `sweeps` sweeps. */
 typedef struct SweepSchedule {
     int sweeps, level_count;
@@ -59,6 +76,13 @@ typedef struct SweepSchedule {
     int32_t *filled; /* [level_count] visits in each */
     int32_t *open;   /* [level_count] a level at or after this one that may still have room */
     size_t level_capacity, filled_capacity, open_capacity;
+    /* Only with extrapolation: */
+    SweepTurns *turns;         /* [level_count] */
+    SweepBodyTurn *body_turns; /* [body_turn_count] by level */
+    SweepBodyTurn *unsorted;   /* [body_turn_count] while scheduling */
+    int32_t *turns_end;        /* [level_count + 1] the end of each level's body_turns */
+    int body_turn_count;
+    size_t turn_capacity, body_turn_capacity, unsorted_capacity, turns_end_capacity;
 } SweepSchedule;
 
 /* The two bodies of a pair. One that no impulse moves is there as ~index: many may visit it at once. */
@@ -70,27 +94,35 @@ typedef struct SweepEnds {
 typedef struct Sweeps {
     SweepKernel kernel;
     int body_count, pair_count;
-    SweepBody *bodies;    /* [body_count + 1] */
+    SweepBody *bodies;    /* [2, body_count + 1]; the second half is for extrapolation only */
     SweepPair *pairs;     /* [pair_count + 1] */
     SweepEnds *ends;      /* [pair_count] */
     SweepEnds *scheduled; /* [scheduled_count] the ends that the schedules are made for */
     int scheduled_count, scheduled_bodies;
+    bool scheduled_turns; /* are they made for extrapolation? */
+    ContactImpulse *sums; /* [2, pair_count + 1, 2] with extrapolation: of this sweep and the one before, in turns */
     SweepSchedule whole, rest; /* of as many sweeps as fit, run again and again, and of those left over */
     bool *moves;               /* [body_count] can an impulse change the body's velocity? */
     int64_t *quiet_since; /* [pair_count] one by one: number of the visit since which nothing changes; 0: of none */
     int64_t *changed_at;  /* [body_count] one by one: number of the visit that last changed the body */
     int32_t *ready;       /* [body_count] while scheduling: the first level that may visit the body */
-    size_t quiet_capacity, changed_capacity;
+    int32_t *seen;        /* [body_count] while scheduling with extrapolation: sweeps that have met the body */
+    size_t sums_capacity, seen_capacity, quiet_capacity, changed_capacity;
     size_t body_capacity, pair_capacity, ends_capacity, scheduled_capacity, moves_capacity, ready_capacity;
 } Sweeps;
 
 void sweeps_free(Sweeps *sweeps);
 
-/* Takes a problem in and applies its warm start. False when memory is short. */
-bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
+/* Takes a problem in and applies its warm start. Effective masses are multiplied by `relaxation` (1: as they are).
+   False when memory is short. */
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
 
 /* Sweeps `count` times over all contacts. False when memory is short. */
 bool sweeps_run(Sweeps *sweeps, int count);
+
+/* The same with an extrapolation before each sweep but the first, bit by bit the plain text of momentum.c: velocities
+   and sums go on by factors[sweep] (>= 0) times what the sweep before changed, extrapolation included. */
+bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 
 /* Hands out what was found. False where a velocity is not finite: then the order of visits may have mattered. */
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution);

@@ -56,9 +56,35 @@ TARGET static inline void store_rows(float *base, const int32_t *offsets, const 
     for (int i = 0; i < 4; i++) store_two(base + offsets[i], base + offsets[i + 4], rows[i]);
 }
 
+/* The mask: x - 0 is x, whereas x - (-0) takes the sign from a zero. */
+TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
+                                            const Factor *factors, const int32_t *sweep) {
+    Lanes rows[4];
+    for (int i = 0; i < 4; i++) {
+        const Factor *low = &factors[sweep[i]], *high = &factors[sweep[i + 4]];
+        Lanes from = load_two(base + now[i], base + now[i + 4]);
+        Lanes change = lanes_sub(load_two(base + before[i], base + before[i + 4]), from);
+        Lanes step = lanes_mul(load_two(low->value, high->value), change);
+        rows[i] = lanes_sub(from, _mm256_and_ps(step, load_two((const float *)low->mask, (const float *)high->mask)));
+    }
+    transpose(out, rows);
+}
+
+TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors) {
+    const Factor *factor = &factors[turn->sweep];
+    __m128 from = _mm_loadu_ps(base + turn->from);
+    __m128 step = _mm_mul_ps(_mm_loadu_ps(factor->value), _mm_sub_ps(_mm_loadu_ps(base + turn->to), from));
+    _mm_storeu_ps(base + turn->to, _mm_sub_ps(from, _mm_and_ps(step, _mm_loadu_ps((const float *)factor->mask))));
+}
+
 bool sweeps_have_avx2(void) { return __builtin_cpu_supports("avx2"); }
 
-TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) { run_levels(sweeps, schedule); }
+TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+    if (factors == NULL)
+        run_levels(sweeps, schedule);
+    else
+        run_levels_extrapolating(sweeps, schedule, factors);
+}
 
 #else
 
@@ -66,8 +92,8 @@ TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) { run
 
 bool sweeps_have_avx2(void) { return false; }
 
-void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
-    (void)sweeps, (void)schedule;
+void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+    (void)sweeps, (void)schedule, (void)factors;
     assert(false);
 }
 

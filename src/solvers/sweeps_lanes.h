@@ -69,6 +69,19 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
 TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
 TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
+/* A sweep's factor for extrapolation, for a whole row, and all bits set where it is not 0: a factor of 0 leaves even
+   the sign of a zero. */
+typedef struct Factor {
+    float value[4];
+    uint32_t mask[4];
+} Factor;
+
+/* As load_rows, from now - factor * (before - now). */
+TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
+                                            const Factor *factors, const int32_t *sweep);
+/* Replaces the row of two sweeps before. */
+TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors);
+
 TARGET static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
     Lanes rows[4];
     load_rows(rows, &sweeps->bodies->x, offsets);
@@ -87,11 +100,17 @@ TARGET static inline void keep_where_single(Side *after, const Side *before, Lan
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
 
-TARGET static inline void solve_pairs(Sweeps *sweeps, const int32_t *pair, const int32_t *offset_a,
-                                      const int32_t *offset_b) {
+/* turns, factors: with extrapolation; else NULL. */
+TARGET static inline void solve_pairs(Sweeps *sweeps, const SweepLevel *level, const SweepTurns *turns, int lane,
+                                      const Factor *factors) {
     SweepPair *records = sweeps->pairs;
+    const int32_t *pair = level->pair + lane, *offset_a = level->a + lane, *offset_b = level->b + lane;
     Lanes sums[4], shared[4], arms1[4], masses1[4], arms2[4], masses2[4];
-    load_rows(sums, &records->sums[0].normal, pair);
+    if (turns == NULL)
+        load_rows(sums, &records->sums[0].normal, pair);
+    else
+        load_extrapolated(sums, &sweeps->sums->normal, turns->from + lane, turns->to + lane, factors,
+                          turns->sweep + lane);
     load_rows(shared, &records->normal.x, pair);
     load_rows(arms1, &records->points[0].arm_a.x, pair);
     load_rows(masses1, &records->points[0].mass_normal, pair);
@@ -110,13 +129,31 @@ TARGET static inline void solve_pairs(Sweeps *sweeps, const int32_t *pair, const
 
     store_side(sweeps, offset_a, &a);
     store_side(sweeps, offset_b, &b);
-    store_rows(&records->sums[0].normal, pair, sums);
+    if (turns == NULL)
+        store_rows(&records->sums[0].normal, pair, sums);
+    else
+        store_rows(&sweeps->sums->normal, turns->to + lane, sums);
 }
 
 TARGET static inline void run_levels(Sweeps *sweeps, const SweepSchedule *schedule) {
-    for (int i = 0; i < schedule->level_count; i++) {
-        const SweepLevel *level = &schedule->levels[i];
+    for (int i = 0; i < schedule->level_count; i++)
         for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
-            solve_pairs(sweeps, level->pair + lane, level->a + lane, level->b + lane);
+            solve_pairs(sweeps, &schedule->levels[i], NULL, lane, NULL);
+}
+
+TARGET static inline void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule,
+                                                   const float *sweep_factors) {
+    Factor factors[SWEEPS_AT_ONCE];
+    for (int sweep = 0; sweep < schedule->sweeps; sweep++) {
+        for (int i = 0; i < 4; i++) {
+            factors[sweep].value[i] = sweep_factors[sweep];
+            factors[sweep].mask[i] = sweep_factors[sweep] != 0.0f ? UINT32_MAX : 0;
+        }
+    }
+    for (int i = 0, turn = 0; i < schedule->level_count; i++) {
+        for (; turn < schedule->turns_end[i]; turn++)
+            extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);
+        for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
+            solve_pairs(sweeps, &schedule->levels[i], &schedule->turns[i], lane, factors);
     }
 }

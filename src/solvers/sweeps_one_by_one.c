@@ -85,15 +85,15 @@ static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
 }
 
 /* Not 0 where the visit changed anything. */
-static inline uint32_t visit(SweepBody *bodies, SweepPair *pair, SweepEnds ends) {
+static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums, SweepEnds ends) {
     SweepBody *body_a = &bodies[body_at(ends.a)], *body_b = &bodies[body_at(ends.b)];
     SweepBody a = *body_a, b = *body_b;
     uint32_t changed = 0;
     int points = pair->points[1].extra < 0.0f ? 2 : 1;
     for (int k = 0; k < points; k++) {
-        ContactImpulse sum = pair->sums[k];
+        ContactImpulse sum = sums[k];
         solve_point(&a, &b, pair, &pair->points[k], &sum);
-        changed |= put_back_sum(&pair->sums[k], sum);
+        changed |= put_back_sum(&sums[k], sum);
     }
     if (ends.a >= 0) changed |= put_back(body_a, &a);
     if (ends.b >= 0) changed |= put_back(body_b, &b);
@@ -107,24 +107,74 @@ static bool may_rest(const Sweeps *sweeps, int pair) {
     return quiet > sweeps->changed_at[body_at(ends.a)] && quiet > sweeps->changed_at[body_at(ends.b)];
 }
 
-/* True where visit number `now` changed anything. */
-static bool visit_pair(Sweeps *sweeps, int pair, int64_t now) {
+/* Notes what visit number `now` did. */
+static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
     SweepEnds ends = sweeps->ends[pair];
-    bool changed = visit(sweeps->bodies, &sweeps->pairs[pair], ends) != 0;
     sweeps->quiet_since[pair] = changed ? 0 : now;
     if (changed && ends.a >= 0) sweeps->changed_at[ends.a] = now;
     if (changed && ends.b >= 0) sweeps->changed_at[ends.b] = now;
     return changed;
 }
 
-void sweeps_run_one_by_one(Sweeps *sweeps, int count) {
+/* Goes on from `now` by what changed since `before`; not 0 where that is not `now` itself. */
+static uint32_t extrapolate(float *before, float now, float factor) {
+    float next = factor != 0.0f ? now - factor * (*before - now) : now;
+    *before = next;
+    return difference(next, now);
+}
+
+/* Turns `to`, the velocities of two sweeps before, into those that the next sweep begins with. */
+static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *from, float factor, int64_t now) {
+    bool any = false;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        if (extrapolate(&to[i].x, from[i].x, factor) | extrapolate(&to[i].y, from[i].y, factor) |
+            extrapolate(&to[i].spin, from[i].spin, factor)) {
+            sweeps->changed_at[i] = now;
+            any = true;
+        }
+    }
+    return any;
+}
+
+static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from[2], float factor) {
+    uint32_t changed = 0;
+    for (int k = 0; k < 2; k++)
+        changed |= extrapolate(&to[k].normal, from[k].normal, factor) |
+                   extrapolate(&to[k].tangent, from[k].tangent, factor);
+    return changed;
+}
+
+/* One sweep in the half of bodies and sums whose turn it is; the other half is as the sweep before left it. True
+   where it changed anything. */
+static bool sweep_in_turn(Sweeps *sweeps, int half, float factor, int64_t *now) {
+    SweepBody *halves[2] = {sweeps->bodies, sweeps->bodies + sweeps->body_count + 1};
+    ContactImpulse *sums[2] = {sweeps->sums, sweeps->sums + 2 * (sweeps->pair_count + 1)};
+    bool changed = extrapolate_bodies(sweeps, halves[half], halves[1 - half], factor, ++*now);
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (may_rest(sweeps, i)) continue;
+        uint32_t moved = extrapolate_sums(&sums[half][2 * i], &sums[1 - half][2 * i], factor);
+        moved |= visit(halves[half], &sweeps->pairs[i], &sums[half][2 * i], sweeps->ends[i]);
+        changed |= note_visit(sweeps, i, moved != 0, ++*now);
+    }
+    return changed;
+}
+
+static bool sweep_in_place(Sweeps *sweeps, int64_t *now) {
+    bool changed = false;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (may_rest(sweeps, i)) continue;
+        SweepPair *pair = &sweeps->pairs[i];
+        changed |= note_visit(sweeps, i, visit(sweeps->bodies, pair, pair->sums, sweeps->ends[i]) != 0, ++*now);
+    }
+    return changed;
+}
+
+void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count) {
     memset(sweeps->quiet_since, 0, (size_t)sweeps->pair_count * sizeof *sweeps->quiet_since);
     memset(sweeps->changed_at, 0, (size_t)sweeps->body_count * sizeof *sweeps->changed_at);
     bool changed = true;
     int64_t now = 0;
-    for (int sweep = 0; changed && sweep < count; sweep++) {
-        changed = false;
-        for (int i = 0; i < sweeps->pair_count; i++)
-            if (!may_rest(sweeps, i)) changed |= visit_pair(sweeps, i, ++now);
-    }
+    for (int sweep = 0; changed && sweep < count; sweep++)
+        changed = factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors[sweep], &now)
+                                  : sweep_in_place(sweeps, &now);
 }

@@ -59,6 +59,7 @@ void samples_fit_normalisation(const Dataset *dataset, Network *network) {
     }
     for (int k = 0; k < outputs; k++) {
         Spread spread = column_spread(dataset, outputs, k);
+        network->output_mean[k] = (float)spread.mean;
         if (network->activations[network->layers - 1] == ACTIVATION_LINEAR)
             set_scale(&network->output, k, spread.mean, spread.deviation);
         else

@@ -18,7 +18,7 @@ static inline int samples_in_block(const Samples *samples, int64_t b) {
     return left < BLOCK_ROWS ? (int)left : BLOCK_ROWS;
 }
 
-/* Sets the network's normalisations from the rows to train on: inputs to mean 0 and standard deviation 1;
+/* Sets the network's normalisations and the mean of its outputs from the rows to train on: inputs to mean 0 and standard deviation 1;
    outputs the same way where the last layer is linear (paper, 3.1), else minimum and maximum to 0 and 1
    (3.2). A column that never changes has scale 1. */
 void samples_fit_normalisation(const Dataset *dataset, Network *network);

@@ -62,11 +62,11 @@ complains "nowhere.yaml: error:"
 run 2 simulate "$scenes/single.yaml" -o run.txt
 complains "ends in .npz or .csv"
 run 2 simulate "$scenes/single.yaml" --method magic
-complains "no such method; there are engine, pair-net"
+complains "no such method; there are engine, "
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
 complains "unknown setting 'sweeps'"
 run 2 simulate "$scenes/single.yaml" --method engine:k=none
-complains "iterations"
+complains "k: error: a whole number"
 for value in nan 1e9999 1/0 0 -1/60 60x; do
     run 2 simulate "$scenes/single.yaml" --dt=$value
     complains "--dt: error: '$value'"

@@ -96,6 +96,16 @@ static void check_range(const char *text, double first, double step, int decimal
     }
 }
 
+static void doubles_keep_their_digits(void **state) {
+    (void)state;
+    double value = 7;
+    assert_true(parse_double("-0.1", &value));
+    assert_true(value == -0.1);
+    static const char *const texts[] = {"", "nan", "1/2", "1e39", " 1", "1,5", "0x1"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) assert_false(parse_double(texts[i], &value));
+    assert_true(value == -0.1);
+}
+
 static void ranges_give_the_decimals(void **state) {
     (void)state;
     check_range("-5:5:0.05", -5, 0.05, 2, 201);
@@ -129,6 +139,7 @@ int main(void) {
         cmocka_unit_test(what_is_no_decimal_is_refused),
         cmocka_unit_test(locale_does_not_matter),
         cmocka_unit_test(whole_numbers),
+        cmocka_unit_test(doubles_keep_their_digits),
         cmocka_unit_test(ranges_give_the_decimals),
         cmocka_unit_test(bad_ranges_are_refused),
     };

@@ -125,10 +125,10 @@ static void bad_values_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_found_by_key), cmocka_unit_test(missing_keys_leave_the_value),
-        cmocka_unit_test(a_number_is_read_in_its_range),
-                                       cmocka_unit_test(defaults_do_not_replace), cmocka_unit_test(bad_settings_are_refused),
-        cmocka_unit_test(bad_values_are_refused),  cmocka_unit_test(too_many_settings_are_refused),
+        cmocka_unit_test(values_are_found_by_key),       cmocka_unit_test(missing_keys_leave_the_value),
+        cmocka_unit_test(a_number_is_read_in_its_range), cmocka_unit_test(defaults_do_not_replace),
+        cmocka_unit_test(bad_settings_are_refused),      cmocka_unit_test(bad_values_are_refused),
+        cmocka_unit_test(too_many_settings_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

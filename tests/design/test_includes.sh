@@ -9,8 +9,8 @@ declare -A neighbours=(
     [common]="" [collision]="" [network]="" [image]="" [trajectory]=""
     [dynamics]="collision" [solvers]="dynamics network" [scene]="dynamics"
     [simulate]="scene solvers trajectory" [dataset]="simulate" [training]="dataset network"
-    [render]="trajectory image"
-    [cli]="common collision network image trajectory dynamics solvers scene simulate dataset training render"
+    [render]="trajectory image" [study]="training simulate" [figure]="study render"
+    [cli]="common collision network image trajectory dynamics solvers scene simulate dataset training study render figure"
     [main.c]="cli"
 )
 

@@ -139,6 +139,46 @@ static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
     world_destroy(world);
 }
 
+/* A copy goes on as the original does, impulses and all; a step begun and forgotten changes neither. */
+static void a_copy_goes_on_as_the_original(void **state) {
+    (void)state;
+    Error error = {0};
+    World *world = box_on_ground(true, true, 0.495f), *copy = box_on_ground(false, false, 3);
+    FakeSolver fake = {.impulse = 7, .velocity = -0.1f};
+    step(world, &fake);
+    assert_ok(world_copy(copy, world, &error), error);
+    ContactProblem problem;
+    ContactSolution solution;
+    assert_ok(world_begin_step(world, dt, &problem, &solution, &error), error);
+    assert_near(problem.contacts[1].warm_normal, 8, 0);
+    for (int i = 0; i < 3; i++) {
+        fake.impulse += 1;
+        step(world, &fake);
+        step(copy, &fake);
+        assert_memory_equal(world_bodies(world), world_bodies(copy), 2 * sizeof(Body));
+        assert_near(world_problem(copy)->contacts[1].warm_normal, 7 + (float)i + 1, 0);
+    }
+    world_destroy(world);
+    world_destroy(copy);
+}
+
+/* Where the method says, with the velocities of the solution. */
+static void a_step_can_end_at_poses_given(void **state) {
+    (void)state;
+    Error error = {0};
+    World *world = box_on_ground(true, true, 2);
+    ContactProblem problem;
+    ContactSolution solution;
+    assert_ok(world_begin_step(world, dt, &problem, &solution, &error), error);
+    solution.velocities[0] = solution.velocities[1] = (BodyVelocity){vec2(1, 2), 3};
+    const BodyPose poses[] = {{{0, -10}, 0}, {{4, 5}, 6}};
+    assert_ok(world_end_step_at(world, poses, &error), error);
+    assert_near(world_bodies(world)[1].position.x, 4, 0);
+    assert_near(world_bodies(world)[1].angle, 6, 0);
+    assert_near(world_bodies(world)[1].angular_velocity, 3, 0);
+    world_destroy(world);
+}
+
 static void fixed_bodies_stay(void **state) {
     (void)state;
     World *world = box_on_ground(true, true, 5);
@@ -156,6 +196,8 @@ int main(void) {
                                        cmocka_unit_test(impulses_persist_while_the_pair_touches),
                                        cmocka_unit_test(warm_starting_can_be_switched_off),
                                        cmocka_unit_test(a_step_that_fails_leaves_the_world_unchanged),
+                                       cmocka_unit_test(a_copy_goes_on_as_the_original),
+                                       cmocka_unit_test(a_step_can_end_at_poses_given),
                                        cmocka_unit_test(fixed_bodies_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

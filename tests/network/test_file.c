@@ -61,7 +61,8 @@ static void numbers_out_of_range_are_refused(void **state) {
                  {&network->input.offset[2], NAN, "input_offset: number 2"},
                  {&network->input.scale[1], 0, "input_scale: number 1 is 0"},
                  {&network->output.scale[0], -1, "output_scale: number 0 is -1"},
-                 {&network->output.scale[0], INFINITY, "output_scale: number 0"}};
+                 {&network->output.scale[0], INFINITY, "output_scale: number 0"},
+                 {&network->output_mean[1], NAN, "output_mean: number 1"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         float kept = *cases[i].number;
         *cases[i].number = cases[i].bad;
@@ -82,7 +83,7 @@ static const NpzArray valid[] = {
     {"activations", NPZ_TEXT, 0, {0}, "linear"}, {"weights_0", NPZ_FLOAT32, 2, {1, 2}, ones},
     {"biases_0", NPZ_FLOAT32, 1, {1}, ones},     {"input_offset", NPZ_FLOAT32, 1, {2}, ones},
     {"input_scale", NPZ_FLOAT32, 1, {2}, ones},  {"output_offset", NPZ_FLOAT32, 1, {1}, ones},
-    {"output_scale", NPZ_FLOAT32, 1, {1}, ones}};
+    {"output_scale", NPZ_FLOAT32, 1, {1}, ones}, {"output_mean", NPZ_FLOAT32, 1, {1}, ones}};
 enum { VALID_COUNT = sizeof valid / sizeof valid[0] };
 
 /* Writes the valid file with the array of the same name replaced, or left out where its data is NULL. */
@@ -117,7 +118,7 @@ static void every_array_is_needed(void **state) {
 static void another_kind_or_version_is_refused(void **state) {
     (void)state;
     const int32_t future = NETWORK_VERSION + 1;
-    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 2");
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
     assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "dataset"}), "no network");
 }
 

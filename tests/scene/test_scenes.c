@@ -39,7 +39,7 @@ static BodyDef unit_box(float mass, float x, float y) {
 }
 
 /* Parameters that the paper's scenes share (Box2D-Lite's defaults), and the ground. */
-static void assert_common(const Scene *scene, int body_count, int frames, int bomb_frame) {
+static void assert_common(const Scene *scene, int body_count, int frames, int bomb_frame, int impact_frames) {
     assert_same_vector(scene->gravity, vec2(0, -10));
     assert_same_float(scene->dt, 1.0f / 60.0f);
     assert_int_equal(scene->iterations, 10);
@@ -50,6 +50,7 @@ static void assert_common(const Scene *scene, int body_count, int frames, int bo
     assert_same_body(&scene->bodies[0], &ground);
     assert_true(scene->bomb.present);
     assert_int_equal(scene->bomb.frame, bomb_frame);
+    assert_int_equal(scene->bomb.impact_frames, impact_frames);
     BodyDef found = scene_bomb_body(scene), bomb = unit_box(50, found.position.x, 15);
     bomb.velocity = vec2(-1.5f * bomb.position.x, -1.5f * 15);
     assert_same_body(&found, &bomb);
@@ -58,7 +59,7 @@ static void assert_common(const Scene *scene, int body_count, int frames, int bo
 static void single_is_a_box_of_200_kg(void **state) {
     (void)state;
     Scene *scene = shipped("single");
-    assert_common(scene, 2, 300, 0);
+    assert_common(scene, 2, 300, 0, 6);
     const BodyDef box = unit_box(200, 0, 4);
     assert_same_body(&scene->bodies[1], &box);
     scene_destroy(scene);
@@ -67,7 +68,7 @@ static void single_is_a_box_of_200_kg(void **state) {
 static void stack_is_ten_boxes_5_cm_apart(void **state) {
     (void)state;
     Scene *scene = shipped("stack");
-    assert_common(scene, 11, 300, 0);
+    assert_common(scene, 11, 300, 0, 6);
     for (int i = 0; i < 10; i++) {
         const BodyDef box = unit_box(1, 0, 0.51f + 1.05f * (float)i);
         assert_same_body(&scene->bodies[1 + i], &box);
@@ -95,8 +96,8 @@ static void assert_pyramid(const Scene *scene) {
 static void pyramid_has_66_boxes_in_11_rows(void **state) {
     (void)state;
     Scene *falling = shipped("pyramid"), *settled = shipped("pyramid_settled");
-    assert_common(falling, 67, 300, 0);
-    assert_common(settled, 67, 480, 180);
+    assert_common(falling, 67, 300, 0, 4);
+    assert_common(settled, 67, 480, 180, 4);
     assert_pyramid(falling);
     assert_pyramid(settled);
     scene_destroy(falling);
@@ -116,7 +117,7 @@ static void every_key_reaches_its_member(void **state) {
     Scene *scene =
         good_scene("networks: {b-2: /absolute.npz}\n"
                    "bomb: {rotation: 0.5, spin: -2, velocity: [3, 4], friction: 0, mass: 7, size: [2, 3],\n"
-                   "  y: 6, x: 5, frame: 9}\n"
+                   "  y: 6, x: 5, frame: 9, impact_frames: 3}\n"
                    "bodies:\n"
                    "- {friction: 1.5, spin: 0.25, velocity: [1, 2], angle: 1e-1, position: [3, 4], mass: 5,\n"
                    "   size: [6, 7], static: no}\n"
@@ -136,6 +137,7 @@ static void every_key_reaches_its_member(void **state) {
     BodyDef found = scene_bomb_body(scene);
     assert_same_body(&found, &bomb);
     assert_int_equal(scene->bomb.frame, 9);
+    assert_int_equal(scene->bomb.impact_frames, 3);
     assert_same_vector(scene->camera_center, vec2(-1, -2));
     assert_same_vector(scene->camera_size, vec2(8, 9));
     assert_int_equal(scene->frames, 9);
@@ -261,6 +263,7 @@ static void hash_keeps_with_all_else(void **state) {
     assert_int_equal(hash, hash_text("# comment\nframes: 200 # not physics\niterations: +10\ndt: 1/60\n"
                                      "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
                                      "networks: {pair-net: x.npz}\nbomb:\n  mass: 1\n  size: [1, 1]\n  y: 1\n  x: 1\n"
+                                     "  impact_frames: 9\n"
                                      "bodies: [{position: [0, 0], friction: 0.2, size: [1, 1], mass: 1.0}]\n"));
     Scene *scene = shipped("single");
     uint64_t without_mass = scene_hash(scene);

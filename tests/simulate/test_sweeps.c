@@ -5,10 +5,14 @@
 #include "simulate/simulate.h"
 #include "solvers/kernels.h"
 
-static bool agree(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                  Error *error) {
-    (void)frame, (void)solution, (void)error;
-    assert_kernels_agree(context, problem, 10);
+static bool agree(void *context, int frame, const World *world, Error *error) {
+    (void)frame, (void)error;
+    const ContactProblem *problem = world_problem(world);
+    static const float factors[19] = {0, 0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f, 0.9f,
+                                      0.9f, 0.9f, 0, 0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
+    Sweeps(*sweeps)[SWEEP_KERNELS] = context;
+    assert_kernels_agree(sweeps[0], problem, &engine_options, 10);
+    assert_momentum_kernels_agree(sweeps[1], problem, factors, 19);
     return true;
 }
 
@@ -21,9 +25,9 @@ static void run_scene(const char *name, float bomb_x) {
     scene->bomb.body.position.x = bomb_x;
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
-    Sweeps sweeps[SWEEP_KERNELS] = {{0}};
+    Sweeps sweeps[2][SWEEP_KERNELS] = {{{0}}};
     assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, sweeps}, &error), error);
-    for (int i = 0; i < SWEEP_KERNELS; i++) sweeps_free(&sweeps[i]);
+    for (int i = 0; i < 2; i++) free_kernels(sweeps[i]);
     scene_destroy(scene);
 }
 

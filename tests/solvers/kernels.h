@@ -3,8 +3,12 @@
 #pragma once
 #include "testing.h"
 
+#include "solvers/momentum.h"
 #include "solvers/sequential_impulses.h"
 #include "solvers/sweeps.h"
+
+/* As the engine sweeps. */
+static const SequentialOptions engine_options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
 
 static inline ContactSolution make_solution(const ContactProblem *problem) {
     ContactSolution solution = {calloc((size_t)problem->body_count + 1, sizeof(BodyVelocity)),
@@ -19,22 +23,44 @@ static inline void free_solution(ContactSolution *solution) {
     free(solution->impulses);
 }
 
+static inline void assert_same_bits(const ContactProblem *problem, const ContactSolution *found,
+                                    const ContactSolution *expected, const char *what) {
+    if (memcmp(found->velocities, expected->velocities, (size_t)problem->body_count * sizeof *found->velocities) != 0 ||
+        memcmp(found->impulses, expected->impulses, (size_t)problem->contact_count * sizeof *found->impulses) != 0)
+        fail_msg("%s, %d bodies, %d contacts: other bits", what, problem->body_count, problem->contact_count);
+}
+
 /* Fails where any kernel gives another bit than the plain text. `sweeps` is used again from call to call, so that
    stale schedules are met too. */
-static inline void assert_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const ContactProblem *problem, int iterations) {
+static inline void assert_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const ContactProblem *problem,
+                                        const SequentialOptions *options, int iterations) {
     ContactSolution plain = make_solution(problem), fast = make_solution(problem);
-    sequential_impulses_solve(problem, iterations, true, &plain);
+    sequential_impulses_solve(problem, options, iterations, &plain);
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
-        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem));
+        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem, options->warm, options->relaxation));
         assert_true(sweeps_run(&sweeps[kernel], iterations));
         assert_true(sweeps_end(&sweeps[kernel], &fast));
-        if (memcmp(fast.velocities, plain.velocities, (size_t)problem->body_count * sizeof *plain.velocities) != 0 ||
-            memcmp(fast.impulses, plain.impulses, (size_t)problem->contact_count * sizeof *plain.impulses) != 0)
-            fail_msg("kernel %d, %d bodies, %d contacts, %d iterations: other bits", (int)kernel, problem->body_count,
-                     problem->contact_count, iterations);
+        assert_same_bits(problem, &fast, &plain, kernel == SWEEP_ONE_BY_ONE ? "one by one" : "lanes");
     }
     free_solution(&plain);
+    free_solution(&fast);
+}
+
+/* The same for sweeps with momentum. */
+static inline void assert_momentum_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const ContactProblem *problem,
+                                                 const float *factors, int iterations) {
+    ContactSolution plain = make_solution(problem), before = make_solution(problem), fast = make_solution(problem);
+    momentum_solve_plain(problem, factors, iterations, &before, &plain);
+    for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
+        if (!sweeps_can(kernel)) continue;
+        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem, true, 1.0f));
+        assert_true(sweeps_run_momentum(&sweeps[kernel], factors, iterations));
+        assert_true(sweeps_end(&sweeps[kernel], &fast));
+        assert_same_bits(problem, &fast, &plain, kernel == SWEEP_ONE_BY_ONE ? "momentum one by one" : "momentum lanes");
+    }
+    free_solution(&plain);
+    free_solution(&before);
     free_solution(&fast);
 }
 

@@ -4,24 +4,28 @@
 #include "dynamics/pair.h"
 #include "network/network.h"
 
-/* A network of one linear layer that says the same whatever it sees; written to a file, as the solver takes it. */
+/* A network of one linear layer that says the same whatever it sees, trained on data whose mean was twice that;
+   written to a file, as the solver takes it. */
 static const char *constant_network(int outputs, const float *values) {
     Error error = {0};
     const int widths[2] = {10, outputs};
     Network *network = network_create(1, widths, &error);
     assert_ok(network != NULL, error);
-    for (int i = 0; i < outputs; i++) network->biases[0][i] = values[i];
+    for (int i = 0; i < outputs; i++) {
+        network->biases[0][i] = values[i];
+        network->output_mean[i] = 2 * values[i];
+    }
     const char *path = temporary_path("constant.npz");
     assert_ok(network_write(network, path, &error), error);
     network_destroy(network);
     return path;
 }
 
-static ContactSolver make_pair_net(const char *path) {
+static ContactSolver make_solver(const ContactSolverKind *kind, const char *path) {
     Error error = {0};
     Settings settings = {0};
     assert_true(settings_default(&settings, "network", path));
-    ContactSolver solver = {&solver_pair_net, solver_pair_net.create(&settings, &error)};
+    ContactSolver solver = {kind, kind->create(&settings, &error)};
     assert_ok(solver.state != NULL, error);
     return solver;
 }
@@ -40,14 +44,19 @@ static const ContactPoint contacts[2] = {
     {.a = 0, .b = 1, .position = {-0.25f, 0.5f}, .normal = {0, 1}, .arm_a = {-0.25f, 0.5f}, .arm_b = {-0.5f, -0.5f}},
     {.a = 0, .b = 1, .position = {0.5f, 0.5f}, .normal = {0, 1}, .arm_a = {0.5f, 0.5f}, .arm_b = {0.25f, -0.5f}}};
 
-static void solve(const char *path, const ProblemBody *with, BodyVelocity velocities[3]) {
-    ContactSolver solver = make_pair_net(path);
+static void solve_by(const ContactSolverKind *kind, const char *path, const ProblemBody *with,
+                     BodyVelocity velocities[3]) {
+    ContactSolver solver = make_solver(kind, path);
     ContactProblem problem = {.body_count = 3, .contact_count = 2, .bomb = -1, .bodies = with, .contacts = contacts};
     ContactImpulse impulses[2];
     ContactSolution solution = {velocities, impulses};
     Error error = {0};
     assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
     free_solver(&solver);
+}
+
+static void solve(const char *path, const ProblemBody *with, BodyVelocity velocities[3]) {
+    solve_by(&solver_pair_net, path, with, velocities);
 }
 
 /* The relative velocity changes by (3, 6): P = (3, 6) / (1/2 + 1) = (2, 4), in the middle of the contacts,
@@ -65,6 +74,14 @@ static void two_outputs_act_as_one_impulse_in_the_middle(void **state) {
     /* Momentum 2 (1, 2) + 1 (0, -1) = (2, 3), before and after. */
     assert_near(2 * v[0].linear.x + v[1].linear.x, 2, 1e-5);
     assert_near(2 * v[0].linear.y + v[1].linear.y, 3, 1e-5);
+}
+
+static void the_constant_says_what_the_data_were_on_average(void **state) {
+    (void)state;
+    BodyVelocity constant[3], network[3];
+    solve_by(&solver_constant, constant_network(6, (const float[]){1, 2, 3, 4, 5, 6}), bodies, constant);
+    solve(constant_network(6, (const float[]){2, 4, 6, 8, 10, 12}), bodies, network);
+    assert_memory_equal(constant, network, sizeof constant);
 }
 
 static void six_outputs_are_added_as_they_are(void **state) {
@@ -142,7 +159,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
             body->angular += changes[3 * side + 2];
         }
     }
-    ContactSolver solver = make_pair_net(path);
+    ContactSolver solver = make_solver(&solver_pair_net, path);
     ContactSolution solution = {found, (ContactImpulse[3]){{0}}};
     assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
     assert_memory_equal(found, expected, sizeof found);
@@ -171,6 +188,7 @@ static void a_network_of_another_shape_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(two_outputs_act_as_one_impulse_in_the_middle),
+                                       cmocka_unit_test(the_constant_says_what_the_data_were_on_average),
                                        cmocka_unit_test(six_outputs_are_added_as_they_are),
                                        cmocka_unit_test(a_fixed_body_is_not_moved),
                                        cmocka_unit_test(what_is_not_finite_never_reaches_a_body),

@@ -94,9 +94,48 @@ static void random_problems_have_the_bits_of_the_plain_text(void **state) {
         const float densities[] = {0.5f, 4.0f / (float)bodies, 0.7f / (float)bodies};
         make_random(&random, &seed, bodies, densities[i % 3], i % 4 == 0 ? 30.0f : 2.0f);
         if (i % 5 == 0) calm_down(&random, &seed);
-        assert_kernels_agree(sweeps, &random.problem, iterations[i % 6]);
+        const SequentialOptions options = {
+            .accumulate = true, .warm = i % 7 != 0, .relaxation = i % 3 == 0 ? uniform(&seed, 0.1f, 1.9f) : 1.0f};
+        assert_kernels_agree(sweeps, &random.problem, &options, iterations[i % 6]);
     }
     free_kernels(sweeps);
+}
+
+/* Zeros among the factors too: they leave the sign of a zero. */
+static void random_problems_with_momentum_have_the_bits_of_the_plain_text(void **state) {
+    (void)state;
+    static RandomProblem random;
+    Sweeps sweeps[SWEEP_KERNELS] = {{0}};
+    uint32_t seed = 4;
+    const int iterations[] = {1, 2, 10, 16, 17, 19, 33, 40};
+    for (int i = 0; i < 600; i++) {
+        int bodies = 2 + i % (BODIES_MAX - 1);
+        const float densities[] = {0.5f, 4.0f / (float)bodies, 0.7f / (float)bodies};
+        make_random(&random, &seed, bodies, densities[i % 3], 2.0f);
+        if (i % 5 == 0) calm_down(&random, &seed);
+        float factors[40];
+        for (int k = 0; k < 40; k++) factors[k] = fabsf(any_number(&seed, 0.7f));
+        assert_momentum_kernels_agree(sweeps, &random.problem, factors, iterations[i % 8]);
+    }
+    free_kernels(sweeps);
+}
+
+static void momentum_of_factor_zero_has_the_bits_of_the_engine(void **state) {
+    (void)state;
+    static RandomProblem random;
+    static const float zeros[17];
+    uint32_t seed = 6;
+    for (int i = 0; i < 100; i++) {
+        make_random(&random, &seed, 10 + i % 60, 0.1f, 2.0f);
+        ContactSolution engine = make_solution(&random.problem), before = make_solution(&random.problem);
+        ContactSolution momentum = make_solution(&random.problem);
+        sequential_impulses_solve(&random.problem, &engine_options, 17, &engine);
+        momentum_solve_plain(&random.problem, zeros, 17, &before, &momentum);
+        assert_same_bits(&random.problem, &momentum, &engine, "factors 0");
+        free_solution(&engine);
+        free_solution(&before);
+        free_solution(&momentum);
+    }
 }
 
 static int find_fixed(const RandomProblem *random) {
@@ -116,7 +155,7 @@ static void a_kept_schedule_serves_the_same_pairs(void **state) {
     assert_true(random.problem.contact_count > 150);
     for (int i = 0; i < 20; i++) {
         for (int k = 0; k < random.problem.contact_count; k++) random.contacts[k].bias = any_number(&seed, 1);
-        assert_kernels_agree(sweeps, &random.problem, 10 + i / 10);
+        assert_kernels_agree(sweeps, &random.problem, &engine_options, 10 + i / 10);
         ProblemBody *fixed = &random.bodies[find_fixed(&random)];
         if (i % 4 == 0) fixed->inv_mass = fixed->inv_inertia = 1;
     }
@@ -130,7 +169,7 @@ static void no_contacts_leave_the_velocities(void **state) {
     uint32_t seed = 9;
     make_random(&random, &seed, 30, 0, 1);
     assert_int_equal(random.problem.contact_count, 0);
-    assert_kernels_agree(sweeps, &random.problem, 10);
+    assert_kernels_agree(sweeps, &random.problem, &engine_options, 10);
     free_kernels(sweeps);
 }
 
@@ -143,7 +182,7 @@ static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
     make_random(&random, &seed, 60, 0.1f, 1);
     random.contacts[40].mass_normal = 1e38f;
     ContactSolution plain = make_solution(&random.problem), fast = make_solution(&random.problem);
-    sequential_impulses_solve(&random.problem, 10, true, &plain);
+    sequential_impulses_solve(&random.problem, &engine_options, 10, &plain);
     ContactSolver engine = make_engine("");
     assert_true(engine.kind->solve(engine.state, &random.problem, &fast, &error));
     int lost = 0;
@@ -168,6 +207,8 @@ static void one_by_one_works_everywhere(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
+        cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
+        cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
         cmocka_unit_test(a_kept_schedule_serves_the_same_pairs), cmocka_unit_test(no_contacts_leave_the_velocities),
         cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text), cmocka_unit_test(one_by_one_works_everywhere)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -137,9 +137,8 @@ static void scaling(double *exponent, double *worst) {
     *exponent = xy / xx;
 }
 
-static bool ignore_step(void *context, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                        Error *error) {
-    (void)context, (void)frame, (void)problem, (void)solution, (void)error;
+static bool ignore_step(void *context, int frame, const World *world, Error *error) {
+    (void)context, (void)frame, (void)world, (void)error;
     return true;
 }
 

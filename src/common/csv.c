@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* RFC 4180 in one pass: fields are unquoted in place and end in NUL. */
+#include "common/csv.h"
+
+#include "common/array.h"
+#include "common/file.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool fail_at(const char *path, int line, int column, Error *error, const char *what) {
+    char where[1280];
+    snprintf(where, sizeof where, "%.1200s:%d:%d", path, line, column);
+    return error_input(error, where, "%s", what);
+}
+
+/* UTF-8: the bytes after a character's first do not count. */
+static bool begins_character(char c) { return ((unsigned char)c & 0xc0) != 0x80; }
+
+static bool check_text(const char *path, const char *text, size_t size, Error *error) {
+    int line = 1, column = 1;
+    for (size_t i = 0; i < size; i++) {
+        unsigned char c = (unsigned char)text[i];
+        bool line_end = c == '\n' || (c == '\r' && text[i + 1] == '\n');
+        if (!line_end && (c < 0x20 || c == 0x7f)) {
+            char what[64];
+            snprintf(what, sizeof what, "control character 0x%02x in a table", (unsigned)c);
+            return fail_at(path, line, column, error, what);
+        }
+        column += begins_character(text[i]);
+        if (c != '\n') continue;
+        line++;
+        column = 1;
+    }
+    return true;
+}
+
+typedef struct Reader {
+    Csv *csv;
+    char *at;
+    size_t capacity; /* fields that there is room for */
+    size_t count;    /* fields read */
+    int column;
+    int max_rows;
+} Reader;
+
+static bool fail(const Reader *reader, int column, Error *error, const char *what) {
+    return fail_at(reader->csv->path, reader->csv->rows + 1, column, error, what);
+}
+
+static char step(Reader *reader) {
+    reader->column += begins_character(*reader->at);
+    return *reader->at++;
+}
+
+static bool ends_field(const char *at) { return *at == ',' || *at == '\n' || *at == '\0' || *at == '\r'; }
+
+static char *fail_text(const Reader *reader, int column, Error *error, const char *what) {
+    fail(reader, column, error, what);
+    return NULL;
+}
+
+static char *take_plain(Reader *reader, Error *error) {
+    while (!ends_field(reader->at))
+        if (step(reader) == '"')
+            return fail_text(reader, reader->column - 1, error, "a quote within a field that does not begin with one");
+    return reader->at;
+}
+
+static char *take_quoted(Reader *reader, Error *error) {
+    int start = reader->column;
+    char *write = reader->at;
+    step(reader);
+    for (;;) {
+        if (*reader->at == '\0' || *reader->at == '\n' || *reader->at == '\r')
+            return fail_text(reader, start, error, "this quote is not closed in its line");
+        char c = step(reader);
+        if (c == '"' && *reader->at != '"') break;
+        if (c == '"') step(reader);
+        *write++ = c;
+    }
+    return ends_field(reader->at) ? write
+                                  : fail_text(reader, reader->column, error, "a comma is missing behind the quote");
+}
+
+/* *separator is what ended the field: a comma, or the line. */
+static bool take_field(Reader *reader, char *separator, Error *error) {
+    Csv *csv = reader->csv;
+    void *fields = csv->fields;
+    bool room = array_reserve(&fields, &reader->capacity, reader->count + 1, sizeof *csv->fields);
+    csv->fields = fields;
+    if (!room) return error_memory(error, csv->path);
+    csv->fields[reader->count++] = (CsvField){reader->at, reader->column};
+    /* Where the field's text, unquoted in place, has to end. */
+    char *end = (*reader->at == '"' ? take_quoted : take_plain)(reader, error);
+    if (end == NULL) return false;
+    if (*reader->at == '\r') reader->at++;
+    /* The text's NUL may take the place of what ended it. */
+    *separator = *reader->at;
+    if (*separator != '\0') step(reader);
+    *end = '\0';
+    return true;
+}
+
+static bool take_row(Reader *reader, Error *error) {
+    Csv *csv = reader->csv;
+    reader->column = 1;
+    if (csv->rows > reader->max_rows) {
+        char what[64];
+        snprintf(what, sizeof what, "more than %d lines behind the header", reader->max_rows);
+        return fail(reader, 1, error, what);
+    }
+    if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "an empty line");
+    size_t first = reader->count;
+    char separator = ',';
+    while (separator == ',')
+        if (!take_field(reader, &separator, error)) return false;
+    int width = (int)(reader->count - first);
+    if (csv->rows++ == 0) csv->width = width;
+    return width == csv->width ||
+           csv_error(csv, csv->rows - 1, 0, error, "%d fields where the header has %d", width, csv->width);
+}
+
+static bool take_rows(Csv *csv, int max_rows, Error *error) {
+    Reader reader = {.csv = csv, .at = csv->text, .max_rows = max_rows};
+    while (*reader.at != '\0')
+        if (!take_row(&reader, error)) return false;
+    return csv->rows > 1 || fail(&reader, 1, error, csv->rows == 0 ? "an empty table" : "no line behind the header");
+}
+
+bool csv_read(Csv *csv, const char *path, size_t max_size, int max_rows, Error *error) {
+    *csv = (Csv){.path = path};
+    size_t size;
+    csv->text = file_read(path, max_size, &size, error);
+    if (csv->text == NULL) return false;
+    if (strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
+    if (check_text(path, csv->text, size, error) && take_rows(csv, max_rows, error)) return true;
+    csv_free(csv);
+    return false;
+}
+
+void csv_free(Csv *csv) {
+    free(csv->fields);
+    free(csv->text);
+    *csv = (Csv){.path = NULL};
+}
+
+static const CsvField *field_at(const Csv *csv, int row, int field) {
+    return &csv->fields[(size_t)row * (size_t)csv->width + (size_t)field];
+}
+
+const char *csv_text(const Csv *csv, int row, int field) { return field_at(csv, row, field)->text; }
+
+bool csv_error(const Csv *csv, int row, int field, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return fail_at(csv->path, row + 1, field_at(csv, row, field)->column, error, what);
+}
+
+CsvShown csv_show(const char *text) {
+    CsvShown shown;
+    if (*text == '\0') text = "nothing";
+    size_t length = strlen(text), room = sizeof shown.text - 1;
+    bool cut = length > room;
+    if (cut) length = room - 3;
+    for (size_t i = 0; i < length; i++) shown.text[i] = text[i] >= ' ' && text[i] <= '~' ? text[i] : '?';
+    strcpy(shown.text + length, cut ? "..." : "");
+    return shown;
+}
+
+void csv_put(FILE *file, const char *text) {
+    if (text[strcspn(text, ",\"\r\n")] == '\0') {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text != '\0'; text++) {
+        if (*text == '"') fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}

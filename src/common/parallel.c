@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/parallel.h"
+
+#include <stdatomic.h>
+
+bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error) {
+    atomic_int done = 0;
+    atomic_bool stopped = false;
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < count; i++) {
+        if (atomic_load(&stopped)) continue;
+        Error failure = {0};
+        bool ok = work->piece(work->context, i, &failure);
+#pragma omp critical
+        {
+            if (ok)
+                ok = progress_report(progress, atomic_fetch_add(&done, 1) + 1, count);
+            else if (error->kind == ERROR_NONE)
+                *error = failure;
+        }
+        if (!ok) atomic_store(&stopped, true);
+    }
+    if (!atomic_load(&stopped)) return true;
+    return error->kind == ERROR_NONE ? error_input(error, what, "stopped after %d of %d", atomic_load(&done), count)
+                                     : false;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a chart shows of a scene: marks joined to lines, in two panels. */
+#pragma once
+#include "study/chart_csv.h"
+
+#include <stdbool.h>
+
+enum {
+    CHART_MAX_LINES = 24,
+    CHART_TEXT_SIZE = 40,
+    CHART_PANELS = 2,
+    CHART_KEY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE
+};
+
+/* A method, with those of its settings that are words ("engine, warm=off"). */
+typedef struct ChartLine {
+    char key[CHART_KEY_SIZE];          /* whole, as the table has it: what tells lines apart */
+    char name[CHART_TEXT_SIZE];        /* plain, and cut to fit */
+    int marks[CHART_PANELS], left_out; /* how many */
+} ChartLine;
+
+typedef struct ChartMark {
+    int line;
+    double us, us_q1, us_q3; /* time in the solver per step: median and quartiles, microseconds */
+    double error;            /* mean, m/s */
+    bool on_front;
+    bool shipped;                /* the engine as shipped: 10 iterations */
+    char label[CHART_TEXT_SIZE]; /* those of the settings that are numbers ("k=20"); or empty */
+} ChartMark;
+
+typedef struct ChartPanel {
+    int count;
+    ChartMark *marks; /* [count], by line, then by time */
+} ChartPanel;
+
+typedef struct Chart {
+    int line_count, launches;
+    ChartLine lines[CHART_MAX_LINES];
+    ChartPanel panels[CHART_PANELS];                   /* impact frames, frames after; closed loop */
+    double us_least, us_most, error_least, error_most; /* of the marks */
+} Chart;
+
+/* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts
+   are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
+   gnuplot. Left out and counted: rows without a time, or without an error above 0, or with one below a
+   hundred-thousandth of the largest, which a logarithmic axis cannot show. False with error set where nothing is
+   left, or more than CHART_MAX_LINES lines. */
+bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
+void chart_free(Chart *chart);
+
+/* Copies a text, made plain and cut to fit. */
+void chart_plain(char out[CHART_TEXT_SIZE], const char *text);

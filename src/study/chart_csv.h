@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* chart.csv: speed and accuracy of every method, one row a scene, method, setting, protocol and phase. */
+#pragma once
+#include "common/error.h"
+
+enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
+
+/* Frozen: all methods on the same contact problems. Closed: each on the trajectory that it makes. */
+typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
+
+/* Frames counted from the bomb's first touch: its impact, the 60 after, all others. */
+typedef enum ChartPhase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } ChartPhase;
+
+/* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve. */
+typedef struct ChartRow {
+    char scene[CHART_NAME_SIZE], method[CHART_NAME_SIZE];
+    char setting[CHART_SETTING_SIZE]; /* "k=20,warm=off" */
+    ChartProtocol protocol;
+    ChartPhase phase;
+    int launches;
+    double us_solver, us_solver_q1, us_solver_q3; /* time in the solver per step: median, quartiles; microseconds */
+    double us_step;                               /* of the whole step, median; microseconds */
+    double instructions;                          /* in the solver per step */
+    double error_mean, error_median, error_p95;   /* m/s */
+    double share_right;                           /* of bodies, 0 to 1 */
+    double penetration_max, drift;                /* m */
+    double energy;                                /* above the converged run's, J */
+    double moved;                                 /* boxes that moved more than 0.5 m */
+} ChartRow;
+
+typedef struct ChartTable {
+    int count;
+    ChartRow *rows; /* [count] */
+} ChartTable;
+
+/* Writes the table as a whole file, numbers with six digits. Refused: texts with control characters, and figures that
+   are infinite, as neither could be read again. */
+bool chart_csv_write(const char *path, const ChartRow *rows, int count, Error *error);
+
+/* Reads what chart_csv_write wrote: exactly its header, 1 to CHART_MAX_ROWS rows, no row twice, every figure within
+   what it can be (no negative time, quartiles around their median, ...). On failure error is "path:line:column:
+   error: reason" and nothing is to be freed. */
+bool chart_csv_read(ChartTable *table, const char *path, Error *error);
+void chart_csv_free(ChartTable *table);

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/contenders.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the study has for each method. */
+typedef struct Entry {
+    const char *name;
+    const char *settings, *quick; /* separated by spaces; NULL: the method without settings */
+} Entry;
+
+static const Entry entries[] = {
+    {"engine", "k=1 k=2 k=4 k=7 k=10 k=20 k=50 k=100", "k=4 k=10 k=50"},
+    {"engine", "k=4,warm=off k=10,warm=off k=20,warm=off k=50,warm=off k=100,warm=off", "k=10,warm=off"},
+    {"over-relaxation", "k=5 k=10 k=20 k=50 k=100", "k=10"},
+    {"momentum", "k=5 k=10 k=20 k=50 k=100", "k=10 k=20"},
+    {"learned-momentum", "k=5 k=10 k=20 k=50", "k=10 k=20"},
+    {"block", "k=5 k=10 k=20 k=50 k=100", "k=10"},
+    {"nncg", "k=5 k=10 k=20 k=50 k=100", "k=20"},
+    {"substepping", "substeps=2 substeps=4 substeps=10 substeps=20 substeps=50", "substeps=10"},
+    {"pair-net", NULL, NULL},
+    {"constant", NULL, NULL},
+    {"playback", NULL, NULL},
+    {"reference", NULL, NULL}};
+
+enum { ENTRIES = sizeof entries / sizeof entries[0] };
+
+static bool add(ContenderList *list, const char *name, const char *setting, Error *error) {
+    Contender contender;
+    char text[CHART_NAME_SIZE + CHART_SETTING_SIZE + 1];
+    if (strlen(name) >= sizeof contender.name || strlen(setting) >= sizeof contender.setting)
+        return error_input(error, name, "the method's text is too long");
+    strcpy(contender.name, name);
+    strcpy(contender.setting, setting);
+    snprintf(text, sizeof text, "%s%s%s", name, setting[0] != '\0' ? ":" : "", setting);
+    for (int i = 0; i < list->count; i++)
+        if (strcmp(list->items[i].name, name) == 0 && strcmp(list->items[i].setting, setting) == 0)
+            return error_input(error, text, "is given twice");
+    if (!method_parse(&contender.method, text, error)) return false;
+    Contender *grown = realloc(list->items, (size_t)(list->count + 1) * sizeof *grown);
+    if (grown == NULL) return error_memory(error, "contenders");
+    list->items = grown;
+    list->items[list->count++] = contender;
+    return true;
+}
+
+static bool add_entry(ContenderList *list, const Entry *entry, bool quick, Error *error) {
+    const char *settings = quick ? entry->quick : entry->settings;
+    if (settings == NULL) return add(list, entry->name, "", error);
+    while (*settings != '\0') {
+        char setting[CHART_SETTING_SIZE];
+        size_t length = strcspn(settings, " ");
+        snprintf(setting, sizeof setting, "%.*s", (int)length, settings);
+        if (!add(list, entry->name, setting, error)) return false;
+        settings += length + strspn(settings + length, " ");
+    }
+    return true;
+}
+
+/* One method of the list: with its own settings, or with all that the study has. */
+static bool add_word(ContenderList *list, char *word, bool quick, Error *error) {
+    char *colon = strchr(word, ':');
+    bool known = false;
+    if (colon != NULL) {
+        *colon = '\0';
+        return add(list, word, colon + 1, error);
+    }
+    for (int i = 0; i < ENTRIES; i++) {
+        if (strcmp(entries[i].name, word) != 0) continue;
+        if (!add_entry(list, &entries[i], quick, error)) return false;
+        known = true;
+    }
+    return known || add(list, word, "", error);
+}
+
+/* Ends the first word of the list: a comma separates methods, unless a setting follows it. Returns the next or NULL. */
+static char *split(char *text) {
+    for (char *comma = strchr(text, ','); comma != NULL; comma = strchr(comma + 1, ',')) {
+        size_t word = strcspn(comma + 1, ",:=");
+        if (comma[1 + word] == '=') continue;
+        *comma = '\0';
+        return comma + 1;
+    }
+    return NULL;
+}
+
+bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error) {
+    *list = (ContenderList){0};
+    bool ok = true;
+    if (text == NULL) {
+        for (int i = 0; ok && i < ENTRIES; i++) ok = add_entry(list, &entries[i], quick, error);
+    } else {
+        char *copy = strdup(text), *word = copy;
+        if (copy == NULL) return error_memory(error, "contenders");
+        while (ok && word != NULL) {
+            char *next = split(word);
+            ok = add_word(list, word, quick, error);
+            word = next;
+        }
+        free(copy);
+    }
+    if (!ok) contenders_free(list);
+    return ok;
+}
+
+void contenders_free(ContenderList *list) {
+    free(list->items);
+    *list = (ContenderList){0};
+}
+
+int contenders_for(const ContenderList *list, const Scene *scene, const Contender **fit) {
+    int count = 0;
+    for (int i = 0; i < list->count; i++)
+        if (!method_lacks_network(&list->items[i].method, scene)) fit[count++] = &list->items[i];
+    return count;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which methods nobody beats. */
+#pragma once
+#include "study/chart_csv.h"
+
+/* a is surely faster, and not less accurate: its upper quartile of time lies below b's lower one, and its mean error
+   is at most b's. Where the quartile intervals overlap the two are not ordered, and neither beats the other. Rows of
+   different scene, protocol or phase are not compared; one without quartiles of time or without an error beats nobody
+   and is beaten by nobody. */
+bool front_beats(const ChartRow *a, const ChartRow *b);
+
+/* on_front[count]: rows with time and error that no other row beats. */
+void front_mark(const ChartRow *rows, int count, bool *on_front);

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/frozen.h"
+
+#include "common/array.h"
+#include "simulate/simulate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void snapshots_free(SnapshotList *list) {
+    for (int i = 0; i < list->count; i++) {
+        world_destroy(list->items[i].world);
+        free(list->items[i].reference);
+    }
+    free(list->items);
+    *list = (SnapshotList){0};
+}
+
+/* An empty world of the scene. */
+static World *empty_world(const Scene *scene, Error *error) {
+    Scene empty = *scene;
+    empty.body_count = 0;
+    empty.bomb.present = false;
+    return scene_world(&empty, error);
+}
+
+/* Keeps the state before the step that `after` has just taken. */
+static bool keep(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
+                 ChartPhase phase, Reference *reference, Error *error) {
+    const ContactProblem *problem = world_problem(after);
+    size_t size = (size_t)problem->body_count * sizeof(ReferenceVelocity);
+    if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
+        return error_memory(error, "study");
+    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_SWEEPS, NULL, error)) return false;
+    if (reference->residual > list->residual) list->residual = reference->residual;
+    Snapshot *snapshot = &list->items[list->count++];
+    *snapshot = (Snapshot){scene, empty_world(scene, error), frame, phase, malloc(size)};
+    if (snapshot->world == NULL) return false;
+    if (snapshot->reference == NULL) return error_memory(error, "study");
+    memcpy(snapshot->reference, reference->velocities, size);
+    return world_copy(snapshot->world, before, error);
+}
+
+typedef struct Sampler {
+    Stepper *engine;
+    World *world, *before;
+    Reference reference;
+} Sampler;
+
+static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, const Sampling *sampling,
+                   Error *error) {
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    for (int frame = 1; frame <= launched->frames; frame++) {
+        const Step step = {.scene = launched, .frame = frame};
+        if (!world_copy(sampler->before, sampler->world, error) ||
+            !simulate_step(sampler->engine, sampler->world, &step, error))
+            return false;
+        ChartPhase phase = phase_next(&tracker, world_problem(sampler->world), frame);
+        if (sampled(sampling, phase, &tracker, frame) &&
+            !keep(list, launched, sampler->before, sampler->world, frame, phase, &sampler->reference, error))
+            return false;
+    }
+    return true;
+}
+
+bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error) {
+    Method engine;
+    if (!method_parse(&engine, "engine", error)) return false;
+    Sampler sampler = {.engine = stepper_create(&engine, launched, error),
+                       .world = scene_world(launched, error),
+                       .before = empty_world(launched, error)};
+    bool ok = sampler.engine != NULL && sampler.world != NULL && sampler.before != NULL &&
+              sample(list, &sampler, launched, sampling, error);
+    stepper_destroy(sampler.engine);
+    world_destroy(sampler.world);
+    world_destroy(sampler.before);
+    reference_free(&sampler.reference);
+    return ok;
+}
+
+bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES],
+                     Error *error) {
+    for (int i = 0; i < list->count; i++) {
+        const Snapshot *snapshot = &list->items[i];
+        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame};
+        if (!world_copy(world, snapshot->world, error) || !stepper_step(stepper, world, &step, error)) return false;
+        if (!step_scores_add(&scores[snapshot->phase], world_problem(world), world_solution(world)->velocities,
+                             snapshot->reference))
+            return error_memory(error, "study");
+    }
+    return true;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/phases.h"
+
+#include <stdbool.h>
+
+static bool bomb_touches(const ContactProblem *problem) {
+    for (int i = 0; problem->bomb >= 0 && i < problem->contact_count; i++)
+        if (problem->contacts[i].a == problem->bomb || problem->contacts[i].b == problem->bomb) return true;
+    return false;
+}
+
+ChartPhase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame) {
+    if (tracker->touch == 0 && bomb_touches(problem)) tracker->touch = frame;
+    if (tracker->touch == 0) return PHASE_REST;
+    int since = frame - tracker->touch;
+    if (since < tracker->impact_frames) return PHASE_IMPACT;
+    return since < tracker->impact_frames + AFTER_FRAMES ? PHASE_AFTER : PHASE_REST;
+}

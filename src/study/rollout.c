@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/rollout.h"
+
+#include "common/array.h"
+#include "simulate/simulate.h"
+#include "solvers/solution_error.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void step_scores_free(StepScores *scores) {
+    free(scores->error);
+    free(scores->share);
+    *scores = (StepScores){0};
+}
+
+bool step_scores_add(StepScores *scores, const ContactProblem *problem, const BodyVelocity *velocities,
+                     const ReferenceVelocity *reference) {
+    size_t wanted = (size_t)scores->count + 1;
+    if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
+        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share))
+        return false;
+    SolutionError found = solution_error(problem, velocities, reference);
+    scores->error[scores->count] = found.rms;
+    scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
+    return true;
+}
+
+bool sampled(const Sampling *sampling, ChartPhase phase, const PhaseTracker *tracker, int frame) {
+    if (phase == PHASE_IMPACT) return true;
+    if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
+    return frame % sampling->rest == 0;
+}
+
+void rollout_free(Rollout *rollout) {
+    world_destroy(rollout->world);
+    reference_free(&rollout->reference);
+    run_log_free(&rollout->log);
+    *rollout = (Rollout){0};
+}
+
+static bool score(Rollout *rollout, StepScores *scores, Error *error) {
+    const ContactProblem *problem = world_problem(rollout->world);
+    Reference *reference = &rollout->reference;
+    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_SWEEPS, NULL, error)) return false;
+    if (reference->residual > rollout->residual) rollout->residual = reference->residual;
+    if (step_scores_add(scores, problem, world_solution(rollout->world)->velocities, reference->velocities))
+        return true;
+    return error_memory(error, "study");
+}
+
+/* All bodies as the scene has them before the first step. */
+static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
+    world_destroy(rollout->world);
+    rollout->world = scene_world(launched, error);
+    if (rollout->world == NULL) return false;
+    return run_log_begin(&rollout->log, launched, rollout->world) || error_memory(error, "study");
+}
+
+bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
+                 StepScores scores[PHASES], Error *error) {
+    if (!begin(rollout, launched, error)) return false;
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    for (int frame = 1; frame <= launched->frames; frame++) {
+        const Step step = {.scene = launched, .frame = frame};
+        Error failure = {0};
+        if (!simulate_step(stepper, rollout->world, &step, &failure)) {
+            /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+            if (failure.kind == ERROR_INPUT) return true;
+            *error = failure;
+            return false;
+        }
+        ChartPhase phase = phase_next(&tracker, world_problem(rollout->world), frame);
+        run_log_step(&rollout->log, launched, rollout->world, frame, phase);
+        if (scores != NULL && sampled(sampling, phase, &tracker, frame) && !score(rollout, &scores[phase], error))
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/scene_study.h"
+
+#include "common/parallel.h"
+#include "scene/launch.h"
+#include "study/statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool choose_launches(SceneStudy *study, const char *path, Error *error) {
+    LaunchTable table = {0};
+    if (path != NULL && !launches_read(&table, path, error)) return false;
+    study->launch_count = path != NULL ? table.count : study->size->launches;
+    size_t count = (size_t)study->launch_count;
+    Launch *launches = malloc(count * sizeof *launches);
+    study->launches = malloc(count * sizeof *study->launches);
+    study->converged = calloc(count, sizeof *study->converged);
+    study->snapshots = calloc(count, sizeof *study->snapshots);
+    bool ok = launches != NULL && study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
+    if (!ok) error_memory(error, "study");
+    if (ok && path != NULL) ok = launches_for(&table, study->scene, launches, error);
+    if (ok && path == NULL) launches_for_scoring(study->scene, study->launch_count, launches);
+    for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
+    free(launches);
+    launches_free(&table);
+    return ok;
+}
+
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders, const char *launches,
+                       const StudySize *size, Error *error) {
+    *study = (SceneStudy){.scene = scene_read(path, error), .size = size};
+    bool ok = study->scene != NULL && (study->scene->bomb.present || error_input(error, path, "the scene has no bomb"));
+    if (ok) {
+        study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
+        ok = study->contenders != NULL || error_memory(error, "study");
+    }
+    if (ok) study->contender_count = contenders_for(contenders, study->scene, study->contenders);
+    if (ok && choose_launches(study, launches, error)) return true;
+    scene_study_end(study);
+    return false;
+}
+
+void scene_study_end(SceneStudy *study) {
+    for (int i = 0; i < study->launch_count; i++) {
+        if (study->converged != NULL) run_log_free(&study->converged[i]);
+        if (study->snapshots != NULL) snapshots_free(&study->snapshots[i]);
+    }
+    free(study->converged);
+    free(study->snapshots);
+    free(study->launches);
+    free(study->contenders);
+    scene_destroy(study->scene);
+    *study = (SceneStudy){0};
+}
+
+static void keep_residual(SceneStudy *study, double residual) {
+#pragma omp critical(study_residual)
+    if (residual > study->residual) study->residual = residual;
+}
+
+static bool prepare_launch(void *context, int i, Error *error) {
+    SceneStudy *study = context;
+    const Scene *launched = &study->launches[i];
+    Method method;
+    Rollout rollout = {0};
+    Stepper *stepper = method_parse(&method, "reference", error) ? stepper_create(&method, launched, error) : NULL;
+    bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error) &&
+              snapshots_add(&study->snapshots[i], launched, &study->size->frozen, error);
+    study->converged[i] = rollout.log;
+    rollout.log = (RunLog){0};
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+    keep_residual(study, study->snapshots[i].residual);
+    return ok;
+}
+
+bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *error) {
+    const ParallelWork work = {prepare_launch, study};
+    return parallel_for(&work, study->launch_count, "converged runs", progress, error);
+}
+
+/* What the launches of one contender gave. */
+typedef struct Scores {
+    StepScores frozen[PHASES], closed[PHASES];
+    RunFigures *figures; /* [launch_count] */
+} Scores;
+
+static void scores_free(Scores *scores) {
+    for (int phase = 0; phase < PHASES; phase++) {
+        step_scores_free(&scores->frozen[phase]);
+        step_scores_free(&scores->closed[phase]);
+    }
+    free(scores->figures);
+}
+
+static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, Error *error) {
+    Rollout rollout = {0};
+    bool ok = true;
+    for (int i = 0; ok && i < study->launch_count; i++) {
+        const Scene *launched = &study->launches[i];
+        ok = rollout_run(&rollout, stepper, launched, &study->size->closed, scores->closed, error);
+        if (ok) scores->figures[i] = run_figures(&rollout.log, &study->converged[i], launched);
+        ok = ok && snapshots_score(&study->snapshots[i], stepper, rollout.world, scores->frozen, error);
+    }
+    keep_residual(study, rollout.residual);
+    rollout_free(&rollout);
+    return ok;
+}
+
+static void fill_errors(ChartRow *row, StepScores *scores) {
+    row->error_mean = statistics_mean(scores->error, scores->count);
+    row->share_right = statistics_mean(scores->share, scores->count);
+    row->error_median = statistics_quantile(scores->error, scores->count, 0.5);
+    row->error_p95 = statistics_quantile(scores->error, scores->count, 0.95);
+}
+
+/* Mean or largest over the launches that have the figure, `offset` into their figures. */
+static double over_launches(const RunFigures *figures, int count, size_t offset, bool largest) {
+    double sum = 0, most = NAN;
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        double value;
+        memcpy(&value, (const char *)&figures[i] + offset, sizeof value);
+        if (isnan(value)) continue;
+        sum += value;
+        found++;
+        if (!(most >= value)) most = value;
+    }
+    return largest ? most : found > 0 ? sum / found : NAN;
+}
+
+static void fill_figures(ChartRow *row, const RunFigures *figures, int count) {
+    size_t phase = (size_t)row->phase;
+    row->penetration_max =
+        over_launches(figures, count, offsetof(RunFigures, penetration) + phase * sizeof(double), true);
+    row->energy = over_launches(figures, count, offsetof(RunFigures, energy) + phase * sizeof(double), false);
+    if (row->phase != PHASE_REST) return;
+    row->drift = over_launches(figures, count, offsetof(RunFigures, drift), false);
+    row->moved = over_launches(figures, count, offsetof(RunFigures, moved), false);
+}
+
+static ChartRow empty_row(const SceneStudy *study, const Contender *contender, int protocol, int phase) {
+    ChartRow row = {.protocol = (ChartProtocol)protocol,
+                    .phase = (ChartPhase)phase,
+                    .launches = study->launch_count,
+                    .us_solver = NAN,
+                    .us_solver_q1 = NAN,
+                    .us_solver_q3 = NAN,
+                    .us_step = NAN,
+                    .instructions = NAN,
+                    .penetration_max = NAN,
+                    .drift = NAN,
+                    .energy = NAN,
+                    .moved = NAN};
+    snprintf(row.scene, sizeof row.scene, "%s", study->scene->name);
+    snprintf(row.method, sizeof row.method, "%s", contender->name);
+    snprintf(row.setting, sizeof row.setting, "%s", contender->setting);
+    return row;
+}
+
+bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error) {
+    Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures))};
+    if (scores.figures == NULL) return error_memory(error, "study");
+    const Contender *who = study->contenders[contender];
+    Stepper *stepper = stepper_create(&who->method, study->scene, error);
+    bool ok = stepper != NULL && score_launches(study, stepper, &scores, error);
+    stepper_destroy(stepper);
+    for (int phase = 0; ok && phase < PHASES; phase++) {
+        ChartRow *frozen = &rows[PROTOCOL_FROZEN * PHASES + phase], *closed = &rows[PROTOCOL_CLOSED * PHASES + phase];
+        *frozen = empty_row(study, who, PROTOCOL_FROZEN, phase);
+        *closed = empty_row(study, who, PROTOCOL_CLOSED, phase);
+        fill_errors(frozen, &scores.frozen[phase]);
+        fill_errors(closed, &scores.closed[phase]);
+        fill_figures(closed, scores.figures, study->launch_count);
+    }
+    scores_free(&scores);
+    return ok;
+}
+
+static void fill_cost(ChartRow *row, const StepCost *cost) {
+    row->us_solver = cost->solver;
+    row->us_solver_q1 = cost->solver_q1;
+    row->us_solver_q3 = cost->solver_q3;
+    row->us_step = cost->step;
+    row->instructions = cost->instructions;
+}
+
+/* The launches to time: evenly from all; each until the frames after are over, with some at rest before and behind. */
+static bool choose_timed(const SceneStudy *study, Scene *launches, SnapshotList *snapshots, TimingOptions *options,
+                         Error *error) {
+    options->last_frame = 0;
+    for (int i = 0; i < options->launch_count; i++) {
+        int from = (2 * i + 1) * study->launch_count / (2 * options->launch_count);
+        const RunLog *log = &study->converged[from];
+        int last = log->touch + study->scene->bomb.impact_frames + AFTER_FRAMES + 20;
+        launches[i] = study->launches[from];
+        if (last > options->last_frame) options->last_frame = last;
+        if (!snapshots_add(snapshots, &launches[i], &study->size->frozen, error)) return false;
+    }
+    if (options->last_frame > study->scene->frames) options->last_frame = study->scene->frames;
+    return true;
+}
+
+bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progress, Error *error) {
+    size_t contenders = (size_t)study->contender_count;
+    int timed = study->size->timed_launches < study->launch_count ? study->size->timed_launches : study->launch_count;
+    Scene *launches = malloc((size_t)timed * sizeof *launches);
+    StepCost(*costs[PROTOCOLS])[PHASES] = {malloc((contenders + 1) * sizeof(StepCost[PHASES])),
+                                           malloc((contenders + 1) * sizeof(StepCost[PHASES]))};
+    SnapshotList snapshots = {0};
+    TimingOptions options = {.launches = launches, .launch_count = timed, .repetitions = study->size->repetitions};
+    bool ok = launches != NULL && costs[0] != NULL && costs[1] != NULL;
+    if (!ok) error_memory(error, "study");
+    ok = ok && choose_timed(study, launches, &snapshots, &options, error) &&
+         timing_measure(study->contenders, study->contender_count, &options, &snapshots, costs[PROTOCOL_CLOSED],
+                        costs[PROTOCOL_FROZEN], progress, error);
+    for (size_t i = 0; ok && i < contenders; i++)
+        for (int p = 0; p < PROTOCOLS; p++)
+            for (int phase = 0; phase < PHASES; phase++)
+                fill_cost(&rows[i * ROWS_EACH + (size_t)(p * PHASES + phase)], &costs[p][i][phase]);
+    snapshots_free(&snapshots);
+    free(launches);
+    free(costs[0]);
+    free(costs[1]);
+    return ok;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One scene of a study of speed against accuracy. */
+#pragma once
+#include "study/contenders.h"
+#include "study/frozen.h"
+#include "study/timing.h"
+
+/* How much is run. */
+typedef struct StudySize {
+    int launches;            /* where none are given */
+    Sampling closed, frozen; /* steps to score */
+    int timed_launches, repetitions;
+} StudySize;
+
+typedef struct SceneStudy {
+    Scene *scene;
+    int launch_count, contender_count;
+    Scene *launches;              /* [launch_count] launched */
+    const Contender **contenders; /* [contender_count] that can run here */
+    RunLog *converged;            /* [launch_count] */
+    SnapshotList *snapshots;      /* [launch_count] */
+    const StudySize *size;
+    double residual; /* m/s: the largest so far */
+} SceneStudy;
+
+/* Reads the scene and its launches. */
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders, const char *launches,
+                       const StudySize *size, Error *error);
+void scene_study_end(SceneStudy *study);
+
+/* The converged run of every launch, and the frozen steps of the engine's. */
+bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *error);
+
+enum { ROWS_EACH = PROTOCOLS * PHASES };
+
+/* Scores one contender into rows[ROWS_EACH], costs left empty. May be called by several threads at once. */
+bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error);
+
+/* Fills the costs of all rows[contender_count * ROWS_EACH]. */
+bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progress, Error *error);

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/statistics.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <math.h>
+
+/* Summed in order: GSL's running mean is rounded in another way on machines without long double. */
+double statistics_mean(const double *values, int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += values[i];
+    return count > 0 ? sum / count : NAN;
+}
+
+double statistics_quantile(double *values, int count, double fraction) {
+    if (count == 0) return NAN;
+    gsl_sort(values, 1, (size_t)count);
+    return gsl_stats_quantile_from_sorted_data(values, 1, (size_t)count, fraction);
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Launches: tables of them, and the two families that studies use. */
+#include "scene_text.h"
+
+#include "scene/launch.h"
+
+#define BOMB "bomb: {x: 1, y: 15, size: [1, 1], mass: 50, rotation: 0.5, spin: 2, frame: 9"
+
+static Scene *aiming_scene(void) { return good_scene(BASE GROUND BOMB ", velocity: {times_position: -1.5}}\n"); }
+
+static const char *write_launches(const char *text, size_t size) {
+    const char *path = temporary_path("launches.csv");
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+static LaunchTable read_good(const char *text) {
+    Error error = {0};
+    LaunchTable table;
+    assert_ok(launches_read(&table, write_launches(text, strlen(text)), &error), error);
+    return table;
+}
+
+static void assert_launch(Launch found, Launch expected) {
+    assert_true(found.x == expected.x && found.rotation == expected.rotation && found.spin == expected.spin &&
+                found.mass == expected.mass && found.frame == expected.frame);
+}
+
+static void launched_scene_has_the_bomb_of_the_launch(void **state) {
+    (void)state;
+    Scene *scene = aiming_scene();
+    assert_launch(launch_of(scene), (Launch){1, 0.5f, 2, 50, 9});
+    const Launch launch = {-4, 0.25f, -3, 70, 12};
+    Scene launched = launch_scene(scene, &launch);
+    assert_launch(launch_of(&launched), launch);
+    BodyDef bomb = scene_bomb_body(&launched);
+    /* The velocity is -1.5 times the new position, the height is the scene's. */
+    assert_true(bomb.position.x == -4 && bomb.position.y == 15);
+    assert_true(bomb.velocity.x == 6 && bomb.velocity.y == -22.5f);
+    assert_ptr_equal(launched.bodies, scene->bodies);
+    assert_launch(launch_of(scene), (Launch){1, 0.5f, 2, 50, 9});
+    /* The scene's own launch gives the scene's own run. */
+    Launch own = launch_of(scene);
+    Scene again = launch_scene(scene, &own);
+    assert_int_equal(scene_hash(&again), scene_hash(scene));
+    assert_int_not_equal(scene_hash(&launched), scene_hash(scene));
+    scene_destroy(scene);
+}
+
+static void columns_come_in_any_order_and_number(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        Launch first, second;
+    } cases[] = {
+        {"x\n-2\n2.5\n", {-2, 0.5f, 2, 50, 9}, {2.5f, 0.5f, 2, 50, 9}},
+        {"frame,x\r\n7,-2\r\n300,2.5\r\n", {-2, 0.5f, 2, 50, 7}, {2.5f, 0.5f, 2, 50, 300}},
+        {"mass,frame,spin,rotation,x\n1,2,3,4,5\n6,7,8,9,1/2", {5, 4, 3, 1, 2}, {0.5f, 9, 8, 6, 7}},
+        {"spin\n\"0\"\n-1e4\n", {1, 0.5f, 0, 50, 9}, {1, 0.5f, -1e4f, 50, 9}},
+    };
+    Scene *scene = aiming_scene();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        LaunchTable table = read_good(cases[i].text);
+        Launch out[2];
+        Error error = {0};
+        assert_int_equal(table.count, 2);
+        assert_ok(launches_for(&table, scene, out, &error), error);
+        assert_launch(out[0], cases[i].first);
+        assert_launch(out[1], cases[i].second);
+        launches_free(&table);
+    }
+    scene_destroy(scene);
+}
+
+static void broken_launches_are_refused_with_their_place(void **state) {
+    (void)state;
+#define CASE(text, message) \
+    { text, sizeof(text) - 1, "launches.csv:" message }
+    static const struct {
+        const char *text;
+        size_t size;
+        const char *message;
+    } cases[] = {
+        CASE("x,y\n1,2\n", "1:3: error: unknown column 'y'; launches have: x, rotation, spin, mass, frame"),
+        CASE("x,\n1,2\n", "1:3: error: unknown column 'nothing'"),
+        CASE("X\n1\n", "1:1: error: unknown column 'X'"),
+        CASE("x,spin,x\n1,2,3\n", "1:8: error: column 'x' is there twice"),
+        CASE("x,spin\n1\n", "2:1: error: 1 fields where the header has 2"),
+        CASE("x,spin\n1,2\n1,2,3\n", "3:1: error: 3 fields where the header has 2"),
+        CASE("x\n", "2:1: error: no line behind the header"),
+        CASE("", "1:1: error: an empty table"),
+        CASE("x\n1\n\0\n", "3:1: error: control character 0x00"),
+        CASE("spin,x\n1,two\n", "2:3: error: x must be a number (got two)"),
+        CASE("x\n nan\n", "2:1: error: x must be a number (got  nan)"),
+        CASE("x,spin\n,1\n", "2:1: error: x must be a number (got nothing)"),
+        CASE("x\ninf\n", "2:1: error: x must be a number (got inf)"),
+        CASE("x\n2e6\n", "2:1: error: x must be from -1e+06 to 1e+06 m (got 2e6)"),
+        CASE("rotation\n1e5\n", "2:1: error: rotation must be from -10000 to 10000 rad (got 1e5)"),
+        CASE("spin\n-1e5\n", "2:1: error: spin must be from -10000 to 10000 rad/s (got -1e5)"),
+        CASE("mass\n0\n", "2:1: error: mass must be greater than 0 (got 0)"),
+        CASE("mass\n1e10\n", "2:1: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"),
+        CASE("frame\n1.5\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got 1.5)"),
+        CASE("frame\n-1\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got -1)"),
+        CASE("frame\n1000001\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got 1000001)"),
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        LaunchTable table;
+        assert_false(launches_read(&table, write_launches(cases[i].text, cases[i].size), &error));
+        assert_error(error, ERROR_INPUT, cases[i].message);
+    }
+}
+
+static void ten_thousand_launches_are_the_most(void **state) {
+    (void)state;
+    static char text[2 + 2 * 10001] = "x\n";
+    for (int i = 0; i < 10001; i++) memcpy(text + 2 + 2 * i, "1\n", 2);
+    Error error = {0};
+    LaunchTable table;
+    assert_ok(launches_read(&table, write_launches(text, sizeof text - 2), &error), error);
+    assert_int_equal(table.count, 10000);
+    launches_free(&table);
+    assert_false(launches_read(&table, write_launches(text, sizeof text), &error));
+    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: more than 10000 lines behind the header");
+}
+
+static void expect_misfit(const char *scene_text, const char *launches, const char *message) {
+    Scene *scene = good_scene(scene_text);
+    LaunchTable table = read_good(launches);
+    Launch out[2];
+    Error error = {0};
+    assert_false(launches_for(&table, scene, out, &error));
+    assert_error(error, ERROR_INPUT, message);
+    launches_free(&table);
+    scene_destroy(scene);
+}
+
+static void launches_that_a_scene_cannot_run_are_refused(void **state) {
+    (void)state;
+    expect_misfit(BASE GROUND BOMB "}\n", "x,frame\n1,300\n1,301\n",
+                  "launches.csv:3:3: error: the bomb would come in frame 301, after the last of scene (frames: 300)");
+    expect_misfit(BASE GROUND BOMB ", velocity: {times_position: -1.5}}\n", "x\n6000\n6700\n",
+                  "launches.csv:3:1: error: the bomb of scene would start with (-10050, -22.5) m/s, above 10000");
+    expect_misfit(BASE GROUND, "x\n1\n2\n", "launches.csv: error: the scene scene has no bomb to launch");
+}
+
+static void scoring_never_meets_training(void **state) {
+    (void)state;
+    Scene *scene = aiming_scene();
+    static Launch training[201], scoring[200];
+    launches_for_training(scene, 201, training);
+    launches_for_scoring(scene, 200, scoring);
+    for (int i = 0; i < 201; i++) {
+        assert_true(training[i].x == (float)((i - 100) / 20.0)); /* the float of the decimal, 0 included */
+        assert_launch(training[i], (Launch){training[i].x, 0.5f, 2, 50, 9});
+    }
+    for (int i = 0; i < 200; i++) {
+        assert_near(scoring[i].x, -4.975 + 0.05 * i, 1e-6);
+        assert_true(scoring[i].x != 0);
+        for (int k = 0; k < 201; k++) assert_true(scoring[i].x != training[k].x);
+    }
+    scene_destroy(scene);
+}
+
+static void few_launches_are_spread_evenly(void **state) {
+    (void)state;
+    Scene *scene = aiming_scene();
+    Launch out[4];
+    launches_for_scoring(scene, 4, out);
+    static const double scored[] = {-3.725, -1.225, 1.275, 3.775}; /* j = 25, 75, 125, 175 */
+    for (int i = 0; i < 4; i++) assert_near(out[i].x, scored[i], 1e-6);
+    launches_for_training(scene, 3, out);
+    static const double trained[] = {-3.35, 0, 3.35}; /* j = 33, 100, 167 */
+    for (int i = 0; i < 3; i++) assert_near(out[i].x, trained[i], 1e-6);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(launched_scene_has_the_bomb_of_the_launch),
+        cmocka_unit_test(columns_come_in_any_order_and_number),
+        cmocka_unit_test(broken_launches_are_refused_with_their_place),
+        cmocka_unit_test(ten_thousand_launches_are_the_most),
+        cmocka_unit_test(launches_that_a_scene_cannot_run_are_refused),
+        cmocka_unit_test(scoring_never_meets_training),
+        cmocka_unit_test(few_launches_are_spread_evenly),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables made up by a test. */
+#pragma once
+#include "testing.h"
+
+#define CHART_HEADER                                                                                         \
+    "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
+    "error_mean,error_median,error_p95,share_right,penetration_max,drift,energy,moved\n"
+
+/* Writes a table with the header of a chart; the lines follow it as they are. */
+static inline const char *write_chart(const char *lines) {
+    const char *path = temporary_path("chart.csv");
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file, CHART_HEADER "%s", lines);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
