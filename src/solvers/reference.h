@@ -38,13 +38,17 @@ typedef struct Reference {
     size_t body_capacity[5], contact_capacity[6];
 } Reference;
 
-/* The residual at which a solve stops, and the most sweeps it may take to get there. */
+/* The residual at which a solve stops, and the most sweeps it may take to get there. Velocities are then within 1e-5
+   m/s (RMS, median) and 4e-5 m/s (95%) of the fully converged ones on the impacts of scenes/stack. On those of
+   scenes/pyramid_settled two thirds of the solves end at the last sweep, 6e-4 m/s (median) and 0.015 m/s (95%) away:
+   loads that can pass in many ways creep from one to another, and where they end depends on the start, by up to 0.02
+   m/s. */
 #define REFERENCE_TOLERANCE 1e-5 /* m/s */
 enum { REFERENCE_MAX_SWEEPS = 10000 };
 
 void reference_free(Reference *reference);
 
-/* Solves until the residual is at most `tolerance` or `max_sweeps` are done. start: impulses to begin with
+/* Solves until the residual is at most `tolerance` or `max_sweeps` are done (two at least). start: impulses to begin with
    [contact_count]; NULL: the problem's warm start. A solve that does not get there is no error: `residual` says how
    far it got. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, double tolerance, int max_sweeps,
