@@ -14,186 +14,89 @@
    Schemes", 2015). A third to a tenth of the sweeps for the same error.
 
    Fails slowly where such a drift is long; the residual says so. */
-#include "solvers/reference.h"
-
-#include "common/array.h"
+#include "solvers/reference_units.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* One direction of a contact: what an impulse along it sees of the two bodies. */
-typedef struct ReferenceRow {
-    double x, y;           /* the direction */
-    double turn_a, turn_b; /* lever arm x direction, m */
-    double mass;           /* effective, kg */
-} ReferenceRow;
-
-struct ReferenceContact {
-    int a, b;
-    double inv_mass_a, inv_inertia_a, inv_mass_b, inv_inertia_b;
-    ReferenceRow normal, tangent;
-    double bias, friction;
-};
-
-void reference_free(Reference *reference) {
-    free(reference->velocities);
-    free(reference->velocities_before);
-    free(reference->velocity_direction);
-    free(reference->contacts);
-    free(reference->impulses);
-    free(reference->impulses_before);
-    free(reference->direction);
-    *reference = (Reference){0};
-}
-
-static bool reserve(Reference *r, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
-    ReferenceVelocity **of_bodies[] = {&r->velocities, &r->velocities_before, &r->velocity_direction};
-    ReferenceImpulse **of_contacts[] = {&r->impulses, &r->impulses_before, &r->direction};
-    for (int i = 0; i < 3; i++)
-        if (!array_reserve((void **)of_bodies[i], &r->body_capacity[i], bodies, sizeof **of_bodies[i]) ||
-            !array_reserve((void **)of_contacts[i], &r->contact_capacity[i], contacts, sizeof **of_contacts[i]))
-            return false;
-    return array_reserve((void **)&r->contacts, &r->contact_capacity[3], contacts, sizeof *r->contacts);
-}
-
-static ReferenceRow make_row(const ContactPoint *contact, double x, double y, double mass) {
-    return (ReferenceRow){.x = x,
-                          .y = y,
-                          .turn_a = (double)contact->arm_a.x * y - (double)contact->arm_a.y * x,
-                          .turn_b = (double)contact->arm_b.x * y - (double)contact->arm_b.y * x,
-                          .mass = mass};
-}
-
-static void load(Reference *r, const ContactProblem *problem) {
-    r->body_count = problem->body_count;
-    r->contact_count = problem->contact_count;
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
-        double x = (double)contact->normal.x, y = (double)contact->normal.y;
-        r->contacts[i] = (ReferenceContact){.a = contact->a,
-                                            .b = contact->b,
-                                            .inv_mass_a = (double)a->inv_mass,
-                                            .inv_inertia_a = (double)a->inv_inertia,
-                                            .inv_mass_b = (double)b->inv_mass,
-                                            .inv_inertia_b = (double)b->inv_inertia,
-                                            .normal = make_row(contact, x, y, (double)contact->mass_normal),
-                                            .tangent = make_row(contact, y, -x, (double)contact->mass_tangent),
-                                            .bias = (double)contact->bias,
-                                            .friction = (double)contact->friction};
-    }
-}
-
 static double relative_velocity(const ReferenceVelocity *a, const ReferenceVelocity *b, const ReferenceRow *row) {
-    return row->x * (b->x - a->x) + row->y * (b->y - a->y) + (row->turn_b * b->spin - row->turn_a * a->spin);
+    return (row->a[0] * a->x + row->a[1] * a->y + row->a[2] * a->spin) +
+           (row->b[0] * b->x + row->b[1] * b->y + row->b[2] * b->spin);
 }
 
-static void apply(ReferenceVelocity *a, ReferenceVelocity *b, const ReferenceContact *contact, const ReferenceRow *row,
-                  double impulse) {
-    double of_a = contact->inv_mass_a * impulse, of_b = contact->inv_mass_b * impulse;
-    a->x -= of_a * row->x;
-    a->y -= of_a * row->y;
-    a->spin -= contact->inv_inertia_a * impulse * row->turn_a;
-    b->x += of_b * row->x;
-    b->y += of_b * row->y;
-    b->spin += contact->inv_inertia_b * impulse * row->turn_b;
+static void apply(ReferenceVelocity *a, ReferenceVelocity *b, const ReferenceRow *row, double impulse) {
+    a->x += row->a[0] * impulse;
+    a->y += row->a[1] * impulse;
+    a->spin += row->a[2] * impulse;
+    b->x += row->b[0] * impulse;
+    b->y += row->b[1] * impulse;
+    b->spin += row->b[2] * impulse;
 }
 
-/* Velocities from the impulses, without the rounding of many sweeps. */
-static void apply_all(Reference *r, const ContactProblem *problem) {
-    for (int i = 0; i < r->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        r->velocities[i] =
-            (ReferenceVelocity){(double)body->velocity.x, (double)body->velocity.y, (double)body->angular_velocity};
-    }
-    for (int i = 0; i < r->contact_count; i++) {
-        const ReferenceContact *contact = &r->contacts[i];
-        ReferenceVelocity *a = &r->velocities[contact->a], *b = &r->velocities[contact->b];
-        apply(a, b, contact, &contact->normal, r->impulses[i].normal);
-        apply(a, b, contact, &contact->tangent, r->impulses[i].tangent);
-    }
+/* One contact, once. Returns by how much its two impulses change. */
+static ReferenceImpulse solve_contact(const ReferenceContact *contact, ReferenceVelocity *momenta,
+                                      ReferenceImpulse *sum) {
+    ReferenceVelocity a = momenta[contact->a], b = momenta[contact->b];
+    ReferenceImpulse before = *sum, step;
+    double total = before.normal + (contact->normal.target - relative_velocity(&a, &b, &contact->normal));
+    sum->normal = total > 0 ? total : 0;
+    step.normal = sum->normal - before.normal;
+    apply(&a, &b, &contact->normal, step.normal);
+
+    double limit = contact->friction * sum->normal;
+    total = before.tangent + (contact->tangent.target - relative_velocity(&a, &b, &contact->tangent));
+    total = total < limit ? total : limit;
+    sum->tangent = total > -limit ? total : -limit;
+    step.tangent = sum->tangent - before.tangent;
+    apply(&a, &b, &contact->tangent, step.tangent);
+    momenta[contact->a] = a;
+    momenta[contact->b] = b;
+    return step;
 }
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* One contact, once. Returns the larger change of its two relative velocities. */
-static double solve_contact(const ReferenceContact *contact, ReferenceVelocity *velocities, ReferenceImpulse *impulse) {
-    ReferenceVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
-    const ReferenceRow *normal = &contact->normal, *tangent = &contact->tangent;
-    double total = impulse->normal + normal->mass * (contact->bias - relative_velocity(a, b, normal));
-    total = total > 0 ? total : 0;
-    double pushed = total - impulse->normal;
-    impulse->normal = total;
-    apply(a, b, contact, normal, pushed);
+/* What one sweep did: |g|^2; -g d, with the direction of the sweeps before; and the largest change of a contact's
+   relative velocity, m/s. The first two are energies: bodies of unlike mass count alike. */
+typedef struct Sweep {
+    double squared, along, change;
+} Sweep;
 
-    double limit = contact->friction * impulse->normal;
-    total = impulse->tangent - tangent->mass * relative_velocity(a, b, tangent);
-    total = total < limit ? total : limit;
-    total = total > -limit ? total : -limit;
-    double dragged = total - impulse->tangent;
-    impulse->tangent = total;
-    apply(a, b, contact, tangent, dragged);
-    return larger(fabs(pushed) / normal->mass, fabs(dragged) / tangent->mass);
-}
-
-/* One sweep over all contacts; returns the largest change of a relative velocity. */
-static double sweep(Reference *r) {
-    memcpy(r->velocities_before, r->velocities, (size_t)r->body_count * sizeof *r->velocities);
-    memcpy(r->impulses_before, r->impulses, (size_t)r->contact_count * sizeof *r->impulses);
-    double change = 0;
-    for (int i = 0; i < r->contact_count; i++)
-        change = larger(change, solve_contact(&r->contacts[i], r->velocities, &r->impulses[i]));
-    r->sweeps++;
-    return change;
-}
-
-/* Of the last sweep's step: |g|^2, and -g d with the direction of the sweeps before. Each impulse is weighed so that
-   the sums are energies: bodies of unlike mass count alike. */
-typedef struct Step {
-    double squared, along;
-} Step;
-
-static Step measure_step(const Reference *r) {
-    Step sum = {0, 0};
+static Sweep sweep(Reference *r) {
+    memcpy(r->momenta_before, r->momenta, (size_t)r->body_count * sizeof *r->momenta);
+    memcpy(r->sums_before, r->sums, (size_t)r->contact_count * sizeof *r->sums);
+    ReferenceImpulse squared = {0, 0}, along = {0, 0}, change = {0, 0};
     for (int i = 0; i < r->contact_count; i++) {
         const ReferenceContact *contact = &r->contacts[i];
-        double normal = r->impulses[i].normal - r->impulses_before[i].normal;
-        double tangent = r->impulses[i].tangent - r->impulses_before[i].tangent;
-        sum.squared += normal * normal / contact->normal.mass + tangent * tangent / contact->tangent.mass;
-        sum.along += normal * r->direction[i].normal / contact->normal.mass +
-                     tangent * r->direction[i].tangent / contact->tangent.mass;
+        ReferenceImpulse step = solve_contact(contact, r->momenta, &r->sums[i]);
+        squared.normal += step.normal * step.normal;
+        squared.tangent += step.tangent * step.tangent;
+        along.normal += step.normal * r->direction[i].normal;
+        along.tangent += step.tangent * r->direction[i].tangent;
+        change.normal = larger(fabs(step.normal) / contact->normal.scale, change.normal);
+        change.tangent = larger(fabs(step.tangent) / contact->tangent.scale, change.tangent);
     }
-    return sum;
+    r->sweeps++;
+    return (Sweep){squared.normal + squared.tangent, along.normal + along.tangent,
+                   larger(change.normal, change.tangent)};
 }
 
-/* p = p' + beta d and d' = beta d - g for one number. */
-static void extrapolate_number(double *value, double before, double *direction, double beta) {
-    double step = *value - before, carried = beta * *direction;
-    *value += carried;
-    *direction = carried + step;
+/* p = p' + beta d and d' = beta d - g for a row of numbers. */
+static void extrapolate_numbers(double *values, const double *before, double *direction, int count, double beta) {
+    for (int i = 0; i < count; i++) {
+        double step = values[i] - before[i], carried = beta * direction[i];
+        values[i] += carried;
+        direction[i] = carried + step;
+    }
 }
 
 static void extrapolate(Reference *r, double beta) {
-    for (int i = 0; i < r->contact_count; i++) {
-        extrapolate_number(&r->impulses[i].normal, r->impulses_before[i].normal, &r->direction[i].normal, beta);
-        extrapolate_number(&r->impulses[i].tangent, r->impulses_before[i].tangent, &r->direction[i].tangent, beta);
-    }
-    for (int i = 0; i < r->body_count; i++) {
-        ReferenceVelocity *v = &r->velocities[i], *d = &r->velocity_direction[i];
-        const ReferenceVelocity *before = &r->velocities_before[i];
-        extrapolate_number(&v->x, before->x, &d->x, beta);
-        extrapolate_number(&v->y, before->y, &d->y, beta);
-        extrapolate_number(&v->spin, before->spin, &d->spin, beta);
-    }
+    extrapolate_numbers(&r->sums->normal, &r->sums_before->normal, &r->direction->normal, 2 * r->contact_count, beta);
+    extrapolate_numbers(&r->momenta->x, &r->momenta_before->x, &r->momenta_direction->x, 3 * r->body_count, beta);
 }
 
 /* Back to before the last sweep. */
-static void take_back(Reference *r) {
-    memcpy(r->velocities, r->velocities_before, (size_t)r->body_count * sizeof *r->velocities);
-    memcpy(r->impulses, r->impulses_before, (size_t)r->contact_count * sizeof *r->impulses);
-}
+static void take_back(Reference *r) { memcpy(r->sums, r->sums_before, (size_t)r->contact_count * sizeof *r->sums); }
 
 /* Ends with a sweep that began where another left off: its change is the residual of what the first one left, and
    that is kept. */
@@ -201,51 +104,39 @@ static void iterate(Reference *r, double tolerance, int max_sweeps) {
     double before = 0;
     bool from_sweep = false;
     memset(r->direction, 0, (size_t)r->contact_count * sizeof *r->direction);
-    memset(r->velocity_direction, 0, (size_t)r->body_count * sizeof *r->velocity_direction);
+    memset(r->momenta_direction, 0, (size_t)r->body_count * sizeof *r->momenta_direction);
     for (;;) {
-        double change = sweep(r);
-        bool converged = !(change > tolerance);
+        Sweep now = sweep(r);
+        bool converged = !(now.change > tolerance);
         if (from_sweep && (converged || r->sweeps >= max_sweeps)) {
-            r->residual = change;
+            r->residual = now.change;
             take_back(r);
             return;
         }
         bool last_is_next = converged || r->sweeps + 1 >= max_sweeps;
-        Step step = measure_step(r);
-        double beta = last_is_next || !(step.along > 0) ? 0 : step.squared < before ? step.squared / before : 1;
+        double beta = last_is_next || !(now.along > 0) ? 0 : now.squared < before ? now.squared / before : 1;
         extrapolate(r, beta);
         from_sweep = beta == 0;
-        before = step.squared;
+        before = now.squared;
     }
-}
-
-static void start_from(Reference *r, const ContactProblem *problem, const ContactImpulse *start) {
-    for (int i = 0; i < r->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        ContactImpulse impulse =
-            start != NULL ? start[i] : (ContactImpulse){contact->warm_normal, contact->warm_tangent};
-        r->impulses[i] = (ReferenceImpulse){(double)impulse.normal, (double)impulse.tangent};
-    }
-    apply_all(r, problem);
 }
 
 bool reference_solve(Reference *reference, const ContactProblem *problem, double tolerance, int max_sweeps,
                      const ContactImpulse *start, Error *error) {
-    if (!reserve(reference, problem)) return error_memory(error, "reference");
-    load(reference, problem);
-    start_from(reference, problem, start);
-    reference->sweeps = 0;
+    if (!reference_reserve(reference, problem)) return error_memory(error, "reference");
+    reference_load(reference, problem);
+    reference_start(reference, problem, start);
     iterate(reference, tolerance, max_sweeps);
-    apply_all(reference, problem);
+    reference_hand_out(reference, problem);
     return true;
 }
 
 bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,
                         double *residual, Error *error) {
-    if (!reserve(reference, problem)) return error_memory(error, "reference");
-    load(reference, problem);
-    start_from(reference, problem, impulses);
-    *residual = sweep(reference);
-    take_back(reference);
+    if (!reference_reserve(reference, problem)) return error_memory(error, "reference");
+    reference_load(reference, problem);
+    reference_start(reference, problem, impulses);
+    memset(reference->direction, 0, (size_t)reference->contact_count * sizeof *reference->direction);
+    *residual = sweep(reference).change;
     return true;
 }

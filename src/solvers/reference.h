@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct ReferenceVelocity {
     double x, y, spin; /* m/s, rad/s */
@@ -27,21 +28,27 @@ typedef struct Reference {
     double residual;               /* m/s: the largest change of a contact's relative velocity, normal or tangent,
                                       that one more plain sweep makes: |change of impulse| / effective mass */
     int sweeps;                    /* over all contacts, that it took */
-    /* workspace */
+    /* workspace, in units in which every mass is 1, contacts in the order of the sweeps */
     int body_count, contact_count;
-    ReferenceContact *contacts;                                /* [contact_count] */
-    ReferenceVelocity *velocities_before, *velocity_direction; /* [body_count] */
-    ReferenceImpulse *impulses_before, *direction;             /* [contact_count] */
-    size_t body_capacity[3], contact_capacity[4];
+    ReferenceContact *contacts;                                      /* [contact_count] */
+    ReferenceVelocity *momenta, *momenta_before, *momenta_direction; /* [body_count] */
+    ReferenceImpulse *sums, *sums_before, *direction;                /* [contact_count] */
+    int *rounds;     /* [contact_count] while loading: the round of the sweep that visits it */
+    uint64_t *taken; /* [body_count] while loading: a bit for each round that visits the body */
+    size_t body_capacity[5], contact_capacity[6];
 } Reference;
 
-/* The residual at which a solve stops, and the most sweeps it may take to get there. */
+/* The residual at which a solve stops, and the most sweeps it may take to get there. Velocities are then within 1e-5
+   m/s (RMS, median) and 4e-5 m/s (95%) of the fully converged ones on the impacts of scenes/stack. On those of
+   scenes/pyramid_settled two thirds of the solves end at the last sweep, 6e-4 m/s (median) and 0.015 m/s (95%) away:
+   loads that can pass in many ways creep from one to another, and where they end depends on the start, by up to 0.02
+   m/s. */
 #define REFERENCE_TOLERANCE 1e-5 /* m/s */
 enum { REFERENCE_MAX_SWEEPS = 10000 };
 
 void reference_free(Reference *reference);
 
-/* Solves until the residual is at most `tolerance` or `max_sweeps` are done. start: impulses to begin with
+/* Solves until the residual is at most `tolerance` or `max_sweeps` are done (two at least). start: impulses to begin with
    [contact_count]; NULL: the problem's warm start. A solve that does not get there is no error: `residual` says how
    far it got. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, double tolerance, int max_sweeps,

@@ -7,7 +7,7 @@ run 0 --help
 [ "$(wc -l <out)" -le 24 ] || fail "--help does not fit a screen of 24 lines"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "--help is wider than 100 columns"
 names=$(awk '/^  [a-z]/ { print $1 }' out)
-equal "commands listed" "$(echo $names)" "simulate render compare dataset train problem solve methods"
+equal "commands listed" "$(echo $names)" "simulate render compare dataset train chart problem solve methods"
 
 for name in $names; do
     run 0 "$name" --help
@@ -16,7 +16,7 @@ for name in $names; do
     run 2 "$name" --no-such-option
     complains "--no-such-option"
 done
-for name in simulate render compare dataset train problem solve; do
+for name in simulate render compare dataset train chart problem solve; do
     run 2 "$name"
     complains "needed"
 done
@@ -31,7 +31,7 @@ says "twinbox "
 run 0 methods
 says "engine"
 says "pair-net"
-says "    k: "
+says "k:"
 says "network:"
 
 "$twinbox" methods >/dev/full 2>err

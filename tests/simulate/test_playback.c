@@ -33,7 +33,7 @@ static void the_nearest_launch_is_played(void **state) {
     scene_destroy(scene);
     for (int i = 0; i < 2; i++) {
         Trajectory *played = run("playback:launches=2", recorded[i].x * 0.3f, 20);
-        Trajectory *original = run("engine:k=100", recorded[i].x, 20);
+        Trajectory *original = run("momentum:k=100", recorded[i].x, 20);
         size_t states = (size_t)played->frames * (size_t)played->bodies;
         for (size_t s = 21 * (size_t)played->bodies; s < states; s++) {
             assert_near(played->velocity[s].x, original->velocity[s].x, 0);

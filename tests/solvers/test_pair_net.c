@@ -21,7 +21,7 @@ static const char *constant_network(int outputs, const float *values) {
     return path;
 }
 
-static ContactSolver make_solver(const ContactSolverKind *kind, const char *path) {
+static ContactSolver make_network_solver(const ContactSolverKind *kind, const char *path) {
     Error error = {0};
     Settings settings = {0};
     assert_true(settings_default(&settings, "network", path));
@@ -46,7 +46,7 @@ static const ContactPoint contacts[2] = {
 
 static void solve_by(const ContactSolverKind *kind, const char *path, const ProblemBody *with,
                      BodyVelocity velocities[3]) {
-    ContactSolver solver = make_solver(kind, path);
+    ContactSolver solver = make_network_solver(kind, path);
     ContactProblem problem = {.body_count = 3, .contact_count = 2, .bomb = -1, .bodies = with, .contacts = contacts};
     ContactImpulse impulses[2];
     ContactSolution solution = {velocities, impulses};
@@ -159,7 +159,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
             body->angular += changes[3 * side + 2];
         }
     }
-    ContactSolver solver = make_solver(&solver_pair_net, path);
+    ContactSolver solver = make_network_solver(&solver_pair_net, path);
     ContactSolution solution = {found, (ContactImpulse[3]){{0}}};
     assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
     assert_memory_equal(found, expected, sizeof found);

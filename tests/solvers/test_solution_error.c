@@ -82,10 +82,10 @@ static void more_sweeps_rank_better_and_a_perturbed_solution_worse(void **state)
     BodyVelocity velocities[6];
     ContactImpulse impulses[32];
     ContactSolution solution = {velocities, impulses};
-    const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
     double last = INFINITY;
     for (int sweeps = 1; sweeps <= 256; sweeps *= 4) {
-        sequential_impulses_solve(landed, &options, sweeps, &solution);
+        sequential_impulses_solve(landed, &(SequentialOptions){.accumulate = true, .warm = true, .relaxation = 1},
+                                  sweeps, &solution);
         double now = solution_error(landed, velocities, solved.velocities).rms;
         assert_true(now < last);
         last = now;
