@@ -19,9 +19,9 @@ static const struct argp_option option_table[] = {
      "layers and all six changes, 10-8-8-6 (standardised, as in its 3.1)",
      0},
     {"optimizer", OPTIMIZER, "NAME", 0, "adam (default), bfgs or lm (Levenberg-Marquardt)", 0},
-    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (150)", 0},
+    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (100)", 0},
     {"seed", SEED, "N", 0, "Of the initial weights, or of the search (default: 1)", 0},
-    {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.25)", 0},
+    {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.5)", 0},
     {"from", FROM, "NET.npz", 0, "Go on from the weights of this network, such as one cut short by Ctrl-C", 0},
     {0}};
 
@@ -145,11 +145,11 @@ static int train_pair_net(const Options *options, Error *error) {
 
 int command_train(int argc, char **argv, Error *error) {
     Options options = {
-        .layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.25"};
+        .layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.5"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     if (strcmp(options.kind, "momentum-schedule") == 0) {
         const TrainMomentum momentum = {options.data, options.output,
-                                        options.iterations != NULL ? options.iterations : "150", options.seed,
+                                        options.iterations != NULL ? options.iterations : "100", options.seed,
                                         options.bomb_x};
         return train_momentum(&momentum, error) ? STATUS_SAME : STATUS_DIFFERENT;
     }
