@@ -26,7 +26,7 @@ bool step_scores_add(StepScores *scores, const ContactProblem *problem, const Bo
     return true;
 }
 
-bool sampled(const Sampling *sampling, ChartPhase phase, const PhaseTracker *tracker, int frame) {
+bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
     if (phase == PHASE_IMPACT) return true;
     if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
     return frame % sampling->rest == 0;
@@ -70,7 +70,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
             *error = failure;
             return false;
         }
-        ChartPhase phase = phase_next(&tracker, world_problem(rollout->world), frame);
+        Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
         if (scores != NULL && sampled(sampling, phase, &tracker, frame) && !score(rollout, &scores[phase], error))
             return false;

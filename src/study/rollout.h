@@ -25,7 +25,7 @@ typedef struct Sampling {
     int after, rest;
 } Sampling;
 
-bool sampled(const Sampling *sampling, ChartPhase phase, const PhaseTracker *tracker, int frame);
+bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
 
 /* One thread's run in progress; zero-initialise, free with rollout_free. */
 typedef struct Rollout {

@@ -144,7 +144,7 @@ static void fill_figures(ChartRow *row, const RunFigures *figures, int count) {
 
 static ChartRow empty_row(const SceneStudy *study, const Contender *contender, int protocol, int phase) {
     ChartRow row = {.protocol = (ChartProtocol)protocol,
-                    .phase = (ChartPhase)phase,
+                    .phase = (Phase)phase,
                     .launches = study->launch_count,
                     .us_solver = NAN,
                     .us_solver_q1 = NAN,
