@@ -1,0 +1,66 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Speed against accuracy: the figures of a quick chart, times apart, and a run that is cut off.
+. "$(dirname "$0")/checks.sh"
+
+without_times() { "$sources/golden/without_times" "$1"; }
+
+run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o quick --quick
+says "stack: "
+says "reference: residual at most"
+for file in chart-single.png chart-stack.png chart-stack.svg chart-stack.pdf; do
+    [ -s "quick/$file" ] || fail "no $file"
+done
+equal "files" "$(ls quick | wc -l)" 7
+without_times quick/chart.csv >figures.csv
+diff "$sources/golden/chart_quick.csv" figures.csv >difference || fail "other figures: $(head -5 difference)"
+/usr/bin/python3 - <<'PYTHON' || fail "times are not in order"
+import csv
+for row in csv.DictReader(open("quick/chart.csv")):
+    # A phase that a method's run never came to has neither.
+    assert (row["us_solver"] == "") == (row["error_mean"] == ""), row
+    if row["us_solver"]:
+        assert float(row["us_solver_q1"]) <= float(row["us_solver"]) <= float(row["us_solver_q3"]), row
+        assert float(row["us_step"]) > 0, row
+PYTHON
+
+# What is cut off goes on where it stopped, to the same figures.
+"$twinbox" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick >out 2>err </dev/null &
+for _ in $(seq 2000); do
+    ls part/*.part.csv >/dev/null 2>&1 && break
+    sleep 0.01
+done
+kill -INT $!
+wait $!
+equal "exit status of a chart cut off" $? 2
+complains "stopped after"
+equal "what was done is kept" "$(ls part | grep -c '\.part\.csv$')" 1
+[ -e part/chart.csv ] && fail "a chart cut off has a table"
+run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
+without_times part/chart.csv | cmp -s - figures.csv || fail "a chart gone on with has other figures"
+equal "what was done is gone" "$(ls part | grep -c '\.part\.csv$')" 0
+
+# Launches of one's own.
+printf 'x,spin\n1.02,5\n-2.02,-5\n' >launches.csv
+run 0 chart "$scenes/single.yaml" -o own --quick --methods engine:k=10,reference --launches launches.csv
+says "single: 2 methods and settings, 2 launches -> own/chart-single.png"
+equal "rows" "$(wc -l <own/chart.csv)" 13
+
+printf 'x,colour\n1,red\n' >bad.csv
+run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv
+complains "bad.csv:1:3: error: "
+run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
+complains "single.yaml: error: there is a scene of that name already"
+run 2 chart "$scenes/single.yaml" -o none --methods magic
+complains "magic: error: no such method"
+run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10
+complains "is given twice"
+run 2 chart nowhere.yaml -o none --quick
+complains "nowhere.yaml: error:"
+run 2 chart -o none
+complains "a scene file is needed"
+run 2 chart "$scenes/single.yaml"
+complains "-o DIR is needed"
+run 3 chart "$scenes/single.yaml" -o /proc/none --quick --methods engine:k=10
+[ -e none/chart.csv ] && fail "a chart that was refused has a table"
+finish
