@@ -8,6 +8,7 @@
 #include <immintrin.h>
 
 #define TARGET __attribute__((target("avx2")))
+#define INLINE TARGET __attribute__((always_inline)) static inline
 
 typedef __m256d Lanes;
 
@@ -21,25 +22,25 @@ typedef struct LaneSweep {
     Lanes squared, along, change;
 } LaneSweep;
 
-TARGET static inline Lanes add(Lanes x, Lanes y) { return _mm256_add_pd(x, y); }
-TARGET static inline Lanes subtract(Lanes x, Lanes y) { return _mm256_sub_pd(x, y); }
-TARGET static inline Lanes multiply(Lanes x, Lanes y) { return _mm256_mul_pd(x, y); }
-TARGET static inline Lanes magnitude(Lanes x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
-TARGET static inline Lanes negative(Lanes x) { return _mm256_xor_pd(_mm256_set1_pd(-0.0), x); }
+INLINE Lanes add(Lanes x, Lanes y) { return _mm256_add_pd(x, y); }
+INLINE Lanes subtract(Lanes x, Lanes y) { return _mm256_sub_pd(x, y); }
+INLINE Lanes multiply(Lanes x, Lanes y) { return _mm256_mul_pd(x, y); }
+INLINE Lanes magnitude(Lanes x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
+INLINE Lanes negative(Lanes x) { return _mm256_xor_pd(_mm256_set1_pd(-0.0), x); }
 /* x > y ? x : y and x < y ? x : y, zeros of either sign included. */
-TARGET static inline Lanes larger(Lanes x, Lanes y) { return _mm256_max_pd(x, y); }
-TARGET static inline Lanes smaller(Lanes x, Lanes y) { return _mm256_min_pd(x, y); }
+INLINE Lanes larger(Lanes x, Lanes y) { return _mm256_max_pd(x, y); }
+INLINE Lanes smaller(Lanes x, Lanes y) { return _mm256_min_pd(x, y); }
 
-TARGET static inline Lanes load_two(const double *low, const double *high) {
+INLINE Lanes load_two(const double *low, const double *high) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(low)), _mm_loadu_pd(high), 1);
 }
 
-TARGET static inline void store_two(double *low, double *high, Lanes lanes) {
+INLINE void store_two(double *low, double *high, Lanes lanes) {
     _mm_storeu_pd(low, _mm256_castpd256_pd128(lanes));
     _mm_storeu_pd(high, _mm256_extractf128_pd(lanes, 1));
 }
 
-TARGET static inline Side load_side(const ReferenceMomentum *momenta, const int *bodies) {
+INLINE Side load_side(const ReferenceMomentum *momenta, const int *bodies) {
     const ReferenceMomentum *m[] = {&momenta[bodies[0]], &momenta[bodies[1]], &momenta[bodies[2]], &momenta[bodies[3]]};
     Lanes even = load_two(&m[0]->x, &m[2]->x), odd = load_two(&m[1]->x, &m[3]->x);
     Lanes even_spin = load_two(&m[0]->spin, &m[2]->spin), odd_spin = load_two(&m[1]->spin, &m[3]->spin);
@@ -47,7 +48,7 @@ TARGET static inline Side load_side(const ReferenceMomentum *momenta, const int 
                   _mm256_unpacklo_pd(even_spin, odd_spin)};
 }
 
-TARGET static inline void store_side(ReferenceMomentum *momenta, const int *bodies, const Side *side) {
+INLINE void store_side(ReferenceMomentum *momenta, const int *bodies, const Side *side) {
     ReferenceMomentum *m[] = {&momenta[bodies[0]], &momenta[bodies[1]], &momenta[bodies[2]], &momenta[bodies[3]]};
     store_two(&m[0]->x, &m[2]->x, _mm256_unpacklo_pd(side->x, side->y));
     store_two(&m[1]->x, &m[3]->x, _mm256_unpackhi_pd(side->x, side->y));
@@ -55,67 +56,73 @@ TARGET static inline void store_side(ReferenceMomentum *momenta, const int *bodi
     store_two(&m[1]->spin, &m[3]->spin, _mm256_unpackhi_pd(side->spin, side->spin));
 }
 
-TARGET static inline Lanes along_row(const Side *side, const double row[3][REFERENCE_LANES]) {
+INLINE Lanes along_row(const Side *side, const double row[3][REFERENCE_LANES]) {
     Lanes xy = add(multiply(_mm256_loadu_pd(row[0]), side->x), multiply(_mm256_loadu_pd(row[1]), side->y));
     return add(xy, multiply(_mm256_loadu_pd(row[2]), side->spin));
 }
 
-TARGET static inline void apply(Side *side, const double row[3][REFERENCE_LANES], Lanes impulse) {
+INLINE void apply(Side *side, const double row[3][REFERENCE_LANES], Lanes impulse) {
     side->x = add(side->x, multiply(_mm256_loadu_pd(row[0]), impulse));
     side->y = add(side->y, multiply(_mm256_loadu_pd(row[1]), impulse));
     side->spin = add(side->spin, multiply(_mm256_loadu_pd(row[2]), impulse));
 }
 
-/* The impulse that would bring the row to its target. */
-TARGET static inline Lanes wanted(const Side *a, const Side *b, const ReferenceRow *row, Lanes before) {
-    Lanes velocity = add(along_row(a, row->a), along_row(b, row->b));
-    return add(before, subtract(_mm256_loadu_pd(row->target), velocity));
-}
-
 /* p = p' + beta d and d' = beta d - g. */
-TARGET static inline Lanes go_on(Lanes value, Lanes step, double *direction, Lanes beta) {
+INLINE Lanes go_on(Lanes value, Lanes step, double *direction, Lanes beta) {
     Lanes carried = multiply(beta, _mm256_loadu_pd(direction));
     _mm256_storeu_pd(direction, add(carried, step));
     return add(value, carried);
 }
 
-TARGET static inline Lanes change_of(Lanes step, const ReferenceRow *row) {
-    return multiply(magnitude(step), _mm256_loadu_pd(row->to_velocity));
+/* The impulses of the pairs, in `sums`, and their changes: reference_sweep.c. */
+INLINE void solve_pairs(const ReferenceGroup *group, const Lanes *before, const Lanes *wanted, Lanes *sums,
+                        Lanes *steps) {
+    Lanes limit = _mm256_setzero_pd();
+    for (int row = 0, at = 0; row < REFERENCE_ROWS; row++) {
+        Lanes total = wanted[row];
+        for (int earlier = 0; earlier < row; earlier++)
+            total = subtract(total, multiply(_mm256_loadu_pd(group->coupling[at++]), steps[earlier]));
+        if (row % 2 == 0) {
+            sums[row] = larger(total, _mm256_setzero_pd());
+            limit = multiply(_mm256_loadu_pd(group->friction[row / 2]), sums[row]);
+        } else {
+            sums[row] = larger(smaller(total, limit), negative(limit));
+        }
+        steps[row] = subtract(sums[row], before[row]);
+    }
 }
 
-/* Point k of the group's pairs. */
-TARGET static inline LaneSweep visit_point(Reference *r, int i, int k, Side *a, Side *b, Lanes beta) {
-    const ReferencePoint *point = &r->groups[i].points[k];
-    double *d_normal = r->direction[i].normal[k], *d_tangent = r->direction[i].tangent[k];
-    double *s_normal = r->steps[i].normal[k], *s_tangent = r->steps[i].tangent[k];
-    Lanes normal_before =
-        go_on(_mm256_loadu_pd(r->sums_before[i].normal[k]), _mm256_loadu_pd(s_normal), d_normal, beta);
-    Lanes tangent_before =
-        go_on(_mm256_loadu_pd(r->sums_before[i].tangent[k]), _mm256_loadu_pd(s_tangent), d_tangent, beta);
+INLINE Lanes sum_four(const Lanes *x) { return add(add(x[0], x[1]), add(x[2], x[3])); }
 
-    Lanes normal = larger(wanted(a, b, &point->normal, normal_before), _mm256_setzero_pd());
-    Lanes normal_step = subtract(normal, normal_before);
-    apply(a, point->normal.a, normal_step);
-    apply(b, point->normal.b, normal_step);
-
-    Lanes limit = multiply(_mm256_loadu_pd(point->friction), normal);
-    Lanes tangent = smaller(wanted(a, b, &point->tangent, tangent_before), limit);
-    tangent = larger(tangent, negative(limit));
-    Lanes tangent_step = subtract(tangent, tangent_before);
-    apply(a, point->tangent.a, tangent_step);
-    apply(b, point->tangent.b, tangent_step);
-
-    _mm256_storeu_pd(r->sums[i].normal[k], normal);
-    _mm256_storeu_pd(r->sums[i].tangent[k], tangent);
-    _mm256_storeu_pd(s_normal, normal_step);
-    _mm256_storeu_pd(s_tangent, tangent_step);
-    return (LaneSweep){
-        add(multiply(normal_step, normal_step), multiply(tangent_step, tangent_step)),
-        add(multiply(normal_step, _mm256_loadu_pd(d_normal)), multiply(tangent_step, _mm256_loadu_pd(d_tangent))),
-        larger(change_of(normal_step, &point->normal), change_of(tangent_step, &point->tangent))};
+/* The four pairs of a group. */
+INLINE LaneSweep visit(Reference *r, int i, Lanes beta) {
+    const ReferenceGroup *group = &r->groups[i];
+    Side a = load_side(r->momenta, group->a), b = load_side(r->momenta, group->b);
+    Lanes before[REFERENCE_ROWS], wanted[REFERENCE_ROWS], sums[REFERENCE_ROWS], steps[REFERENCE_ROWS];
+    Lanes squares[REFERENCE_ROWS], products[REFERENCE_ROWS], change = _mm256_setzero_pd();
+    for (int k = 0; k < REFERENCE_ROWS; k++) {
+        const ReferenceRow *row = &group->rows[k];
+        before[k] = go_on(_mm256_loadu_pd(r->sums_before[i].rows[k]), _mm256_loadu_pd(r->steps[i].rows[k]),
+                          r->direction[i].rows[k], beta);
+        wanted[k] =
+            subtract(add(before[k], _mm256_loadu_pd(row->target)), add(along_row(&a, row->a), along_row(&b, row->b)));
+    }
+    solve_pairs(group, before, wanted, sums, steps);
+    for (int k = 0; k < REFERENCE_ROWS; k++) {
+        apply(&a, group->rows[k].a, steps[k]);
+        apply(&b, group->rows[k].b, steps[k]);
+        _mm256_storeu_pd(r->sums[i].rows[k], sums[k]);
+        _mm256_storeu_pd(r->steps[i].rows[k], steps[k]);
+        squares[k] = multiply(steps[k], steps[k]);
+        products[k] = multiply(steps[k], _mm256_loadu_pd(r->direction[i].rows[k]));
+        change = larger(multiply(magnitude(steps[k]), _mm256_loadu_pd(group->rows[k].to_velocity)), change);
+    }
+    store_side(r->momenta, group->a, &a);
+    store_side(r->momenta, group->b, &b);
+    return (LaneSweep){sum_four(squares), sum_four(products), change};
 }
 
-TARGET static inline void go_on_momenta(Reference *r, Lanes beta) {
+INLINE void go_on_momenta(Reference *r, Lanes beta) {
     for (int i = 0; i < r->body_count; i++) {
         double *now = &r->momenta[i].x, *before = &r->momenta_before[i].x;
         Lanes value = _mm256_loadu_pd(now), step = subtract(value, _mm256_loadu_pd(before));
@@ -125,27 +132,31 @@ TARGET static inline void go_on_momenta(Reference *r, Lanes beta) {
     }
 }
 
+/* The lanes in the order of sum_four. */
+INLINE double sum_lanes(Lanes x) {
+    double lanes[REFERENCE_LANES];
+    _mm256_storeu_pd(lanes, x);
+    return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+INLINE double largest_lane(Lanes x) {
+    double lanes[REFERENCE_LANES];
+    _mm256_storeu_pd(lanes, x);
+    double low = lanes[0] > lanes[1] ? lanes[0] : lanes[1], high = lanes[2] > lanes[3] ? lanes[2] : lanes[3];
+    return low > high ? low : high;
+}
+
 TARGET ReferenceSweep reference_sweep_avx2(Reference *r, double factor) {
     Lanes beta = _mm256_set1_pd(factor);
     go_on_momenta(r, beta);
     LaneSweep all = {_mm256_setzero_pd(), _mm256_setzero_pd(), _mm256_setzero_pd()};
     for (int i = 0; i < r->group_count; i++) {
-        const ReferenceGroup *group = &r->groups[i];
-        Side a = load_side(r->momenta, group->a), b = load_side(r->momenta, group->b);
-        LaneSweep first = visit_point(r, i, 0, &a, &b, beta), second = visit_point(r, i, 1, &a, &b, beta);
-        store_side(r->momenta, group->a, &a);
-        store_side(r->momenta, group->b, &b);
-        all.squared = add(all.squared, add(first.squared, second.squared));
-        all.along = add(all.along, add(first.along, second.along));
-        all.change = larger(larger(first.change, second.change), all.change);
+        LaneSweep found = visit(r, i, beta);
+        all.squared = add(all.squared, found.squared);
+        all.along = add(all.along, found.along);
+        all.change = larger(found.change, all.change);
     }
-    double squared[4], along[4], change[4];
-    _mm256_storeu_pd(squared, all.squared);
-    _mm256_storeu_pd(along, all.along);
-    _mm256_storeu_pd(change, all.change);
-    double low = change[0] > change[1] ? change[0] : change[1], high = change[2] > change[3] ? change[2] : change[3];
-    return (ReferenceSweep){(squared[0] + squared[1]) + (squared[2] + squared[3]),
-                            (along[0] + along[1]) + (along[2] + along[3]), low > high ? low : high};
+    return (ReferenceSweep){sum_lanes(all.squared), sum_lanes(all.along), largest_lane(all.change)};
 }
 
 #else

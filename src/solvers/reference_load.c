@@ -93,15 +93,26 @@ static void load_row(ReferenceRow *row, int lane, const ContactProblem *problem,
 
 static void load_contact(ReferenceGroup *group, int k, int lane, const ContactProblem *problem, int index) {
     const ContactPoint *contact = &problem->contacts[index];
-    ReferencePoint *point = &group->points[k];
     ReferenceImpulse scale = reference_scale(contact);
     double x = (double)contact->normal.x, y = (double)contact->normal.y;
     group->contacts[k][lane] = index;
     group->a[lane] = contact->a;
     group->b[lane] = contact->b;
-    load_row(&point->normal, lane, problem, contact, x, y, scale.normal, (double)contact->bias);
-    load_row(&point->tangent, lane, problem, contact, y, -x, scale.tangent, 0);
-    point->friction[lane] = (double)contact->friction * scale.normal / scale.tangent;
+    load_row(&group->rows[2 * k], lane, problem, contact, x, y, scale.normal, (double)contact->bias);
+    load_row(&group->rows[2 * k + 1], lane, problem, contact, y, -x, scale.tangent, 0);
+    group->friction[k][lane] = (double)contact->friction * scale.normal / scale.tangent;
+}
+
+static double row_times_row(const ReferenceRow *x, const ReferenceRow *y, int lane) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) sum += x->a[i][lane] * y->a[i][lane] + x->b[i][lane] * y->b[i][lane];
+    return sum;
+}
+
+static void couple(ReferenceGroup *group, int lane) {
+    for (int row = 0, at = 0; row < REFERENCE_ROWS; row++)
+        for (int earlier = 0; earlier < row; earlier++)
+            group->coupling[at++][lane] = row_times_row(&group->rows[row], &group->rows[earlier], lane);
 }
 
 static void clear_group(ReferenceGroup *group, int spare_body) {
@@ -121,6 +132,7 @@ static void load_round(Reference *r, const ContactProblem *problem, int round, R
         load_contact(*group, 0, lane, problem, i);
         if (i + 1 < problem->contact_count && r->rounds[i + 1] == SECOND_POINT)
             load_contact(*group, 1, lane, problem, i + 1);
+        couple(*group, lane);
         lane = (lane + 1) % lanes_of(round);
         if (lane == 0) ++*group;
     }

@@ -49,8 +49,8 @@ static void start_point(Reference *r, const ContactProblem *problem, int i, int 
         int contact = r->groups[i].contacts[k][lane];
         if (contact < 0) continue;
         ReferenceImpulse scale = reference_scale(&problem->contacts[contact]);
-        r->sums[i].normal[k][lane] = r->impulses[contact].normal / scale.normal;
-        r->sums[i].tangent[k][lane] = r->impulses[contact].tangent / scale.tangent;
+        r->sums[i].rows[2 * k][lane] = r->impulses[contact].normal / scale.normal;
+        r->sums[i].rows[2 * k + 1][lane] = r->impulses[contact].tangent / scale.tangent;
     }
 }
 
@@ -59,8 +59,8 @@ static void hand_out_point(Reference *r, const ContactProblem *problem, int i, i
         int contact = r->groups[i].contacts[k][lane];
         if (contact < 0) continue;
         ReferenceImpulse scale = reference_scale(&problem->contacts[contact]);
-        r->impulses[contact].normal = r->sums[i].normal[k][lane] * scale.normal;
-        r->impulses[contact].tangent = r->sums[i].tangent[k][lane] * scale.tangent;
+        r->impulses[contact].normal = r->sums[i].rows[2 * k][lane] * scale.normal;
+        r->impulses[contact].tangent = r->sums[i].rows[2 * k + 1][lane] * scale.tangent;
     }
 }
 

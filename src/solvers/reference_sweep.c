@@ -4,37 +4,14 @@
 
 #include <math.h>
 
-static double relative_velocity(const ReferenceMomentum *a, const ReferenceMomentum *b, const ReferenceRow *row,
-                                int lane) {
-    return (row->a[0][lane] * a->x + row->a[1][lane] * a->y + row->a[2][lane] * a->spin) +
-           (row->b[0][lane] * b->x + row->b[1][lane] * b->y + row->b[2][lane] * b->spin);
+static double along_row(const ReferenceMomentum *body, const double row[3][REFERENCE_LANES], int lane) {
+    return row[0][lane] * body->x + row[1][lane] * body->y + row[2][lane] * body->spin;
 }
 
-static void apply(ReferenceMomentum *a, ReferenceMomentum *b, const ReferenceRow *row, int lane, double impulse) {
-    a->x += row->a[0][lane] * impulse;
-    a->y += row->a[1][lane] * impulse;
-    a->spin += row->a[2][lane] * impulse;
-    b->x += row->b[0][lane] * impulse;
-    b->y += row->b[1][lane] * impulse;
-    b->spin += row->b[2][lane] * impulse;
-}
-
-/* One contact, once. Returns by how much its two impulses change. */
-static ReferenceImpulse solve_point(ReferenceMomentum *a, ReferenceMomentum *b, const ReferencePoint *point, int lane,
-                                    ReferenceImpulse *sum) {
-    ReferenceImpulse before = *sum, step;
-    double total = before.normal + (point->normal.target[lane] - relative_velocity(a, b, &point->normal, lane));
-    sum->normal = total > 0 ? total : 0;
-    step.normal = sum->normal - before.normal;
-    apply(a, b, &point->normal, lane, step.normal);
-
-    double limit = point->friction[lane] * sum->normal;
-    total = before.tangent + (point->tangent.target[lane] - relative_velocity(a, b, &point->tangent, lane));
-    total = total < limit ? total : limit;
-    sum->tangent = total > -limit ? total : -limit;
-    step.tangent = sum->tangent - before.tangent;
-    apply(a, b, &point->tangent, lane, step.tangent);
-    return step;
+static void apply(ReferenceMomentum *body, const double row[3][REFERENCE_LANES], int lane, double impulse) {
+    body->x += row[0][lane] * impulse;
+    body->y += row[1][lane] * impulse;
+    body->spin += row[2][lane] * impulse;
 }
 
 /* p = p' + beta d and d' = beta d - g. */
@@ -51,46 +28,67 @@ static void go_on_momentum(ReferenceMomentum *now, ReferenceMomentum *before, Re
     now->spin = before->spin = go_on(now->spin, now->spin - before->spin, &direction->spin, beta);
 }
 
+static double sum_four(const double *x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* One point of one pair in the workspace. */
-static ReferenceSweep visit_point(Reference *r, int i, int k, int lane, ReferenceMomentum *a, ReferenceMomentum *b,
-                                  double beta) {
-    const ReferencePoint *point = &r->groups[i].points[k];
-    ReferenceNumbers *before = &r->sums_before[i], *steps = &r->steps[i], *direction = &r->direction[i];
-    double *normal = &direction->normal[k][lane], *tangent = &direction->tangent[k][lane];
-    ReferenceImpulse sum = {go_on(before->normal[k][lane], steps->normal[k][lane], normal, beta),
-                            go_on(before->tangent[k][lane], steps->tangent[k][lane], tangent, beta)};
-    ReferenceImpulse step = solve_point(a, b, point, lane, &sum);
-    r->sums[i].normal[k][lane] = sum.normal;
-    r->sums[i].tangent[k][lane] = sum.tangent;
-    steps->normal[k][lane] = step.normal;
-    steps->tangent[k][lane] = step.tangent;
-    return (ReferenceSweep){step.normal * step.normal + step.tangent * step.tangent,
-                            step.normal * *normal + step.tangent * *tangent,
-                            larger(fabs(step.normal) * point->normal.to_velocity[lane],
-                                   fabs(step.tangent) * point->tangent.to_velocity[lane])};
+/* From a pair's impulses before the visit, and those that each row alone would want by the velocities that the visit
+   meets, the impulses after it and their changes. */
+static void solve_pair(const ReferenceGroup *group, int lane, const double *before, const double *wanted, double *sums,
+                       double *steps) {
+    double limit = 0;
+    for (int row = 0, at = 0; row < REFERENCE_ROWS; row++) {
+        double total = wanted[row];
+        for (int earlier = 0; earlier < row; earlier++) total -= group->coupling[at++][lane] * steps[earlier];
+        if (row % 2 == 0) {
+            sums[row] = total > 0 ? total : 0;
+            limit = group->friction[row / 2][lane] * sums[row];
+        } else {
+            total = total < limit ? total : limit;
+            sums[row] = total > -limit ? total : -limit;
+        }
+        steps[row] = sums[row] - before[row];
+    }
 }
 
-static void visit(Reference *r, int i, int lane, double beta, ReferenceSweep *of_lane) {
+/* The pair in one lane of a group. */
+static ReferenceSweep visit(Reference *r, int i, int lane, double beta) {
     const ReferenceGroup *group = &r->groups[i];
     ReferenceMomentum a = r->momenta[group->a[lane]], b = r->momenta[group->b[lane]];
-    ReferenceSweep first = visit_point(r, i, 0, lane, &a, &b, beta), second = visit_point(r, i, 1, lane, &a, &b, beta);
+    double before[REFERENCE_ROWS], wanted[REFERENCE_ROWS], sums[REFERENCE_ROWS], steps[REFERENCE_ROWS];
+    double squares[REFERENCE_ROWS], products[REFERENCE_ROWS], change = 0;
+    for (int k = 0; k < REFERENCE_ROWS; k++) {
+        const ReferenceRow *row = &group->rows[k];
+        before[k] =
+            go_on(r->sums_before[i].rows[k][lane], r->steps[i].rows[k][lane], &r->direction[i].rows[k][lane], beta);
+        wanted[k] = (before[k] + row->target[lane]) - (along_row(&a, row->a, lane) + along_row(&b, row->b, lane));
+    }
+    solve_pair(group, lane, before, wanted, sums, steps);
+    for (int k = 0; k < REFERENCE_ROWS; k++) {
+        apply(&a, group->rows[k].a, lane, steps[k]);
+        apply(&b, group->rows[k].b, lane, steps[k]);
+        r->sums[i].rows[k][lane] = sums[k];
+        r->steps[i].rows[k][lane] = steps[k];
+        squares[k] = steps[k] * steps[k];
+        products[k] = steps[k] * r->direction[i].rows[k][lane];
+        change = larger(fabs(steps[k]) * group->rows[k].to_velocity[lane], change);
+    }
     r->momenta[group->a[lane]] = a;
     r->momenta[group->b[lane]] = b;
-    of_lane->squared += first.squared + second.squared;
-    of_lane->along += first.along + second.along;
-    of_lane->change = larger(larger(first.change, second.change), of_lane->change);
+    return (ReferenceSweep){sum_four(squares), sum_four(products), change};
 }
 
 ReferenceSweep reference_sweep_plain(Reference *r, double beta) {
     for (int i = 0; i < r->body_count; i++)
         go_on_momentum(&r->momenta[i], &r->momenta_before[i], &r->momenta_direction[i], beta);
-    ReferenceSweep of[REFERENCE_LANES] = {{0, 0, 0}};
-    for (int i = 0; i < r->group_count; i++)
-        for (int lane = 0; lane < REFERENCE_LANES && r->groups[i].contacts[0][lane] >= 0; lane++)
-            visit(r, i, lane, beta, &of[lane]);
-    return (ReferenceSweep){(of[0].squared + of[1].squared) + (of[2].squared + of[3].squared),
-                            (of[0].along + of[1].along) + (of[2].along + of[3].along),
-                            larger(larger(of[0].change, of[1].change), larger(of[2].change, of[3].change))};
+    double squared[REFERENCE_LANES] = {0}, along[REFERENCE_LANES] = {0}, change = 0;
+    for (int i = 0; i < r->group_count; i++) {
+        for (int lane = 0; lane < REFERENCE_LANES && r->groups[i].contacts[0][lane] >= 0; lane++) {
+            ReferenceSweep found = visit(r, i, lane, beta);
+            squared[lane] += found.squared;
+            along[lane] += found.along;
+            change = larger(found.change, change);
+        }
+    }
+    return (ReferenceSweep){sum_four(squared), sum_four(along), change};
 }

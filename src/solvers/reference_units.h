@@ -7,8 +7,10 @@
 #include <math.h>
 
 enum {
-    REFERENCE_LANES = 4, /* pairs in a group */
-    REFERENCE_POINTS = 2 /* contacts of a pair that are solved in one visit */
+    REFERENCE_LANES = 4,  /* pairs in a group */
+    REFERENCE_POINTS = 2, /* contacts of a pair that are solved in one visit */
+    REFERENCE_ROWS = 2 * REFERENCE_POINTS,
+    REFERENCE_COUPLINGS = REFERENCE_ROWS * (REFERENCE_ROWS - 1) / 2
 };
 
 /* Velocity times the root of the mass: one vector register. */
@@ -25,22 +27,20 @@ typedef struct ReferenceRow {
     double to_velocity[REFERENCE_LANES]; /* 1 / root of the effective mass, kg^(-1/2): q times this is in m/s */
 } ReferenceRow;
 
-typedef struct ReferencePoint {
-    ReferenceRow normal, tangent;
-    double friction[REFERENCE_LANES]; /* of impulses in the units above */
-} ReferencePoint;
-
-/* Pairs that share no moving body. A lane without a pair has zeros and the spare body, a pair with one contact zeros in
-   the second point: they change nothing. */
+/* Pairs that share no moving body. Rows: normal and tangent of the first contact, then of the second. A lane without a
+   pair has zeros and the spare body, a pair with one contact zeros in the second point: they change nothing. */
 struct ReferenceGroup {
     int a[REFERENCE_LANES], b[REFERENCE_LANES];      /* in the problem; the spare body is body_count */
     int contacts[REFERENCE_POINTS][REFERENCE_LANES]; /* in the problem; -1: none */
-    ReferencePoint points[REFERENCE_POINTS];
+    ReferenceRow rows[REFERENCE_ROWS];
+    double friction[REFERENCE_POINTS][REFERENCE_LANES]; /* of impulses in the units above */
+    double coupling[REFERENCE_COUPLINGS]
+                   [REFERENCE_LANES]; /* row * row of an earlier one: 1 0, 2 0, 2 1, 3 0, 3 1, 3 2 */
 };
 
 /* A number for each impulse of a group. */
 struct ReferenceNumbers {
-    double normal[REFERENCE_POINTS][REFERENCE_LANES], tangent[REFERENCE_POINTS][REFERENCE_LANES];
+    double rows[REFERENCE_ROWS][REFERENCE_LANES];
 };
 
 /* Roots of the effective masses, kg^(1/2): an impulse of q in the units above is scale * q in N s. */
@@ -65,7 +65,8 @@ typedef struct ReferenceSweep {
 } ReferenceSweep;
 
 /* Goes on by beta times the direction from where the sweep before ended, and sweeps once from there, `sums_before` into
-   `sums`. The plain text, and the lanes of AVX2 (only where the processor has them): the same bits, as long as all
-   numbers are finite. */
+   `sums`. A visit takes the velocities along its rows at once, and what its impulses add to them from the couplings:
+   that is Gauss-Seidel all the same, without waiting for the velocities in between. The plain text, and the lanes of
+   a processor that has them: the same bits, as long as all numbers are finite. */
 ReferenceSweep reference_sweep_plain(Reference *reference, double beta);
 ReferenceSweep reference_sweep_avx2(Reference *reference, double beta);
