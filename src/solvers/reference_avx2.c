@@ -70,7 +70,8 @@ INLINE void apply(Side *side, const double row[3][REFERENCE_LANES], Lanes impuls
 /* p = p' + beta d and d' = beta d - g. */
 INLINE Lanes go_on(Lanes value, Lanes step, double *direction, Lanes beta) {
     Lanes carried = multiply(beta, _mm256_loadu_pd(direction));
-    _mm256_storeu_pd(direction, add(carried, step));
+    Lanes tiny = _mm256_set1_pd(reference_floor);
+    _mm256_storeu_pd(direction, subtract(add(add(carried, step), tiny), tiny));
     return add(value, carried);
 }
 

@@ -17,7 +17,7 @@ static void apply(ReferenceMomentum *body, const double row[3][REFERENCE_LANES],
 /* p = p' + beta d and d' = beta d - g. */
 static double go_on(double value, double step, double *direction, double beta) {
     double carried = beta * *direction;
-    *direction = carried + step;
+    *direction = (carried + step + reference_floor) - reference_floor;
     return value + carried;
 }
 
