@@ -17,7 +17,7 @@ enum {
    take a hundred cycles for each. Added and taken away again, this makes it 0 before, and leaves all others alone. */
 static const double reference_floor = 0x1p-200;
 
-/* Velocity times the root of the mass: one vector register. */
+/* Velocity times the root of the mass: one vector register. Nothing reads the fourth number. */
 struct ReferenceMomentum {
     double x, y, spin, unused;
 };
@@ -31,15 +31,16 @@ typedef struct ReferenceRow {
     double to_velocity[REFERENCE_LANES]; /* 1 / root of the effective mass, kg^(-1/2): q times this is in m/s */
 } ReferenceRow;
 
-/* Pairs that share no moving body. Rows: normal and tangent of the first contact, then of the second. A lane without a
-   pair has zeros and the spare body, a pair with one contact zeros in the second point: they change nothing. */
+/* Pairs that share no moving body; one that does not move keeps its zeros, whoever writes them. Rows: normal and tangent
+   of the first contact, then of the second. A lane without a pair has zeros and the spare body, a pair with one contact
+   zeros in the second point: they change nothing. */
 struct ReferenceGroup {
     int a[REFERENCE_LANES], b[REFERENCE_LANES];      /* in the problem; the spare body is body_count */
     int contacts[REFERENCE_POINTS][REFERENCE_LANES]; /* in the problem; -1: none */
     ReferenceRow rows[REFERENCE_ROWS];
     double friction[REFERENCE_POINTS][REFERENCE_LANES]; /* of impulses in the units above */
-    double coupling[REFERENCE_COUPLINGS]
-                   [REFERENCE_LANES]; /* row * row of an earlier one: 1 0, 2 0, 2 1, 3 0, 3 1, 3 2 */
+    /* Row times an earlier one: rows 1 0, 2 0, 2 1, 3 0, 3 1, 3 2. */
+    double coupling[REFERENCE_COUPLINGS][REFERENCE_LANES];
 };
 
 /* A number for each impulse of a group. */
