@@ -13,8 +13,9 @@ enum {
     REFERENCE_COUPLINGS = REFERENCE_ROWS * (REFERENCE_ROWS - 1) / 2
 };
 
-/* A direction in which nothing changes any more shrinks by beta from sweep to sweep, to numbers so small that processors
-   take a hundred cycles for each. Added and taken away again, this makes it 0 before, and leaves all others alone. */
+/* A direction in which nothing changes any more shrinks by beta from sweep to sweep, to numbers so small that a
+   processor takes a hundred cycles for each. Added and taken away again, this makes it 0 before that, and leaves all
+   others alone. */
 static const double reference_floor = 0x1p-200;
 
 /* Velocity times the root of the mass: one vector register. Nothing reads the fourth number. */
@@ -22,18 +23,18 @@ struct ReferenceMomentum {
     double x, y, spin, unused;
 };
 
-/* One direction of a contact in each lane, in units in which every mass is 1: velocities are times the root of the mass,
-   impulses through the root of the contact's effective mass. There an impulse q changes the velocities by q times the
-   row, and its own relative velocity, row * velocities, by q. */
+/* One direction of a contact in each lane, in units in which every mass is 1: velocities are times the root of the
+   mass, impulses through the root of the contact's effective mass. There an impulse q changes the velocities by q times
+   the row, and its own relative velocity, row * velocities, by q. */
 typedef struct ReferenceRow {
     double a[3][REFERENCE_LANES], b[3][REFERENCE_LANES]; /* x, y, spin of the two bodies */
     double target[REFERENCE_LANES];                      /* the relative velocity that no impulse changes any more */
     double to_velocity[REFERENCE_LANES]; /* 1 / root of the effective mass, kg^(-1/2): q times this is in m/s */
 } ReferenceRow;
 
-/* Pairs that share no moving body; one that does not move keeps its zeros, whoever writes them. Rows: normal and tangent
-   of the first contact, then of the second. A lane without a pair has zeros and the spare body, a pair with one contact
-   zeros in the second point: they change nothing. */
+/* Pairs that share no moving body; one that does not move keeps its zeros, whoever writes them. Rows: normal and
+   tangent of the first contact, then of the second. A lane without a pair has zeros and the spare body, a pair with one
+   contact zeros in the second point: they change nothing. */
 struct ReferenceGroup {
     int a[REFERENCE_LANES], b[REFERENCE_LANES];      /* in the problem; the spare body is body_count */
     int contacts[REFERENCE_POINTS][REFERENCE_LANES]; /* in the problem; -1: none */
@@ -59,7 +60,8 @@ bool reference_load(Reference *reference, const ContactProblem *problem);
 /* Sets the workspace to these impulses, or to the warm start where start is NULL, and the velocities that they give. */
 void reference_start(Reference *reference, const ContactProblem *problem, const ContactImpulse *start);
 
-/* Fills velocities and impulses of the result from the impulses of the workspace, without the rounding of many sweeps. */
+/* Fills velocities and impulses of the result from the impulses of the workspace, without the rounding of many
+   sweeps. */
 void reference_hand_out(Reference *reference, const ContactProblem *problem);
 
 /* What one sweep did: |g|^2; -g d, with the direction of the sweeps before; and the largest change of a contact's
