@@ -85,10 +85,11 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
         return error_input(error, options->folder, "the name is too long");
     for (int i = 0; i < options->scene_count; i++) {
         if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
-        printf("%s: %d methods and settings, %d launches, residual of the reference at most %.2g m/s -> "
-               "%s/chart-%s.png, .svg, .pdf\n",
-               scenes[i].name, scenes[i].contenders, scenes[i].launches, scenes[i].residual, options->folder,
-               scenes[i].name);
+        printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
+               scenes[i].contenders, scenes[i].launches, options->folder, scenes[i].name);
+        printf(
+            "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
+            scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
     return true;
 }

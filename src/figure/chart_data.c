@@ -10,6 +10,7 @@
 #include <string.h>
 
 static const double error_reach = 1e-5;
+static const double lost_drift = 0.5; /* m: half a box */
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
@@ -69,10 +70,22 @@ static int panel_of(const ChartRow *row, const char *scene) {
     return row->phase == PHASE_IMPACT ? 0 : 1;
 }
 
+/* True where the boxes were elsewhere before the bomb came. */
+static bool is_lost(const ChartTable *table, const ChartRow *row) {
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *rest = &table->rows[i];
+        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
+            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
+            return true;
+    }
+    return false;
+}
+
 static double largest_error(const ChartTable *table, const char *scene) {
     double largest = 0;
     for (int i = 0; i < table->count; i++)
-        if (panel_of(&table->rows[i], scene) >= 0) largest = fmax(largest, table->rows[i].error_mean);
+        if (panel_of(&table->rows[i], scene) >= 0 && !is_lost(table, &table->rows[i]))
+            largest = fmax(largest, table->rows[i].error_mean);
     return largest;
 }
 
@@ -114,23 +127,37 @@ static int compare_marks(const void *left, const void *right) {
     return (a->error > b->error) - (a->error < b->error);
 }
 
+/* The rows of a scene in closed loop that count: those of a scene that a method lost are counted only. */
+static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
+    double largest = largest_error(table, scene);
+    int count = 0;
+    for (int i = 0; i < table->count; i++) {
+        char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
+        if (panel_of(&table->rows[i], scene) < 0) continue;
+        name_row(&table->rows[i], key, label);
+        if (is_lost(table, &table->rows[i]))
+            chart->lines[find_line(chart, key)].lost++;
+        else
+            rows[count++] = table->rows[i];
+    }
+    front_mark(rows, count, on_front);
+    for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene), largest);
+}
+
 static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
     bool *on_front = malloc((size_t)table->count * sizeof *on_front);
-    bool room = on_front != NULL;
+    ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
+    bool room = on_front != NULL && rows != NULL;
     for (int p = 0; p < CHART_PANELS; p++) {
         chart->panels[p].marks = malloc((size_t)table->count * sizeof(ChartMark));
         room = room && chart->panels[p].marks != NULL;
     }
     if (room) {
-        front_mark(table->rows, table->count, on_front);
-        double largest = largest_error(table, scene);
-        for (int i = 0; i < table->count; i++) {
-            int panel = panel_of(&table->rows[i], scene);
-            if (panel >= 0) add_mark(chart, &table->rows[i], on_front[i], panel, largest);
-        }
+        add_rows(chart, table, scene, rows, on_front);
         for (int p = 0; p < CHART_PANELS; p++)
             qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
     }
+    free(rows);
     free(on_front);
     return room || error_memory(error, path);
 }

@@ -17,6 +17,7 @@ typedef struct ChartLine {
     char key[CHART_KEY_SIZE];          /* whole, as the table has it: what tells lines apart */
     char name[CHART_TEXT_SIZE];        /* plain, and cut to fit */
     int marks[CHART_PANELS], left_out; /* how many */
+    int lost;                          /* marks of a scene that was another before the bomb came (chart_gather) */
 } ChartLine;
 
 typedef struct ChartMark {
@@ -43,7 +44,8 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts
    are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
    gnuplot. Left out and counted: rows without a time, or without an error above 0, or with one below a
-   hundred-thousandth of the largest, which a logarithmic axis cannot show. False with error set where nothing is
+   hundred-thousandth of the largest, which a logarithmic axis cannot show. So are the rows of a method which let the boxes drift half a metre before the bomb
+   came: what it was scored on then is another scene. False with error set where nothing is
    left, or more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);

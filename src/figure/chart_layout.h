@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* mm */
-#define LEFT_MARGIN 13.0
+#define LEFT_MARGIN 15.0
 #define RIGHT_MARGIN 2.0
 #define LEGEND_ROW 3.7
 #define FOOT_ROW 3.4
@@ -19,7 +19,7 @@ typedef struct ChartLayout {
     int columns, rows;   /* of the legend */
     double column_width; /* mm */
     double legend_top;   /* mm from the page's bottom, to the middle of the first row */
-    int left_out;
+    int left_out, lost;
     FILE *script;
 } ChartLayout;
 

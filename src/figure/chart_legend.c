@@ -5,9 +5,10 @@
 #include "figure/chart_script.h"
 #include "figure/chart_style.h"
 
+#include <stddef.h>
 #include <string.h>
 
-static const char front_name[] = "unbeaten front";
+static const char front_name[] = "unbeaten among solvers";
 
 static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
 
@@ -17,6 +18,7 @@ void chart_lay_out_legend(ChartLayout *layout) {
     for (int i = 0; i < layout->chart->line_count; i++) {
         const ChartLine *line = &layout->chart->lines[i];
         layout->left_out += line->left_out;
+        layout->lost += line->lost;
         if (!is_drawn(line)) continue;
         if (strlen(line->name) > longest) longest = strlen(line->name);
         entries++;
@@ -40,16 +42,25 @@ static void put_entry(const ChartLayout *layout, int entry, const char *text) {
     fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + 4, y);
 }
 
-static void put_foot(const ChartLayout *layout) {
-    if (layout->left_out == 0) return;
-    fprintf(layout->script, "set label 'Not drawn, for want of a time or an error that a logarithmic axis can show:");
-    const char *separator = " ";
+/* Names the lines that have a count, `offset` into them. */
+static void put_counts(const ChartLayout *layout, const char *why, size_t offset) {
+    const char *separator = why;
     for (int i = 0; i < layout->chart->line_count; i++) {
         const ChartLine *line = &layout->chart->lines[i];
-        if (line->left_out == 0) continue;
-        fprintf(layout->script, "%s%s (%d)", separator, line->name, line->left_out);
+        int count;
+        memcpy(&count, (const char *)line + offset, sizeof count);
+        if (count == 0) continue;
+        fprintf(layout->script, "%s%s (%d)", separator, line->name, count);
         separator = ", ";
     }
+}
+
+static void put_foot(const ChartLayout *layout) {
+    if (layout->left_out + layout->lost == 0) return;
+    fprintf(layout->script, "set label 'Not drawn");
+    if (layout->lost > 0) put_counts(layout, ", scene lost before the impact: ", offsetof(ChartLine, lost));
+    if (layout->left_out > 0)
+        put_counts(layout, layout->lost > 0 ? "; off the axes: " : ", off the axes: ", offsetof(ChartLine, left_out));
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 

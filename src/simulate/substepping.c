@@ -1,29 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Substepping: one collision pass, then n small steps of dt / n, each with gravity, k sweeps of sequential impulses and
-   integration (Macklin et al., "Small Steps in Physics Simulation", 2019; the TGS of PhysX and Box2D v3).
+/* Substepping: one collision pass, then n small steps of dt / n, each with its share of gravity, k sweeps of sequential
+   impulses and integration (Macklin et al., "Small Steps in Physics Simulation", 2019; temporal Gauss-Seidel).
 
-   Contact points stay fixed on the bodies for the whole step: normals, lever arms and effective masses are those of
-   the collision pass, and a separation changes by the velocity along its normal. The velocity that pushes an overlap
-   apart is that of the whole step, so that the step ends with the velocities that a converged solve of the whole step
-   has. The impulses handed on, and stored, are those of the last small step times n, as if
-   the whole step had been like it.
+   Normals, lever arms and effective masses stay those of the collision pass; a separation changes by the velocity along
+   its normal. Impulses add up over the whole step and are clamped as a sum, so that what stops a fall in one small step
+   is not applied again in the next; the warm start comes in n equal shares, as gravity does. The velocity that pushes an
+   overlap apart is that of the whole step: then the step ends with the velocities of a converged solve of the whole.
 
-   Fails like k sweeps of a step n times as short: what it gains is that errors of one small step are seen by the next.
-   Where a single impact has to travel through a stack it is about as good as n k sweeps, and dearer. */
+   Fails like n k sweeps of one whole step, which at rest it beats, as every small step sees what the last one left; where
+   a single impact has to travel through a stack it is no better, and dearer. */
 #include "common/array.h"
 #include "dynamics/contacts.h"
 #include "simulate/stepping.h"
-#include "solvers/solvers.h"
+#include "solvers/sweeps.h"
 
 #include <stdlib.h>
 
 typedef struct Substepping {
-    int substeps;
-    ContactSolver solver;
-    ProblemBody *bodies;    /* as they are in the small step */
-    ContactPoint *contacts; /* the same */
-    BodyPose *poses;
-    size_t body_capacity, contact_capacity, pose_capacity;
+    int substeps, sweeps_each;
+    Sweeps sweeps;
+    BodyPose *poses;       /* [bodies] */
+    ContactImpulse *share; /* [contacts] of the warm start, for each small step */
+    float *separations;    /* [contacts] now */
+    size_t pose_capacity, share_capacity, separation_capacity;
 } Substepping;
 
 static const SettingSpec settings[] = {
@@ -31,10 +30,10 @@ static const SettingSpec settings[] = {
 
 static void destroy(void *state) {
     Substepping *stepping = state;
-    if (stepping->solver.state != NULL) stepping->solver.kind->destroy(stepping->solver.state);
-    free(stepping->bodies);
-    free(stepping->contacts);
+    sweeps_free(&stepping->sweeps);
     free(stepping->poses);
+    free(stepping->share);
+    free(stepping->separations);
     free(stepping);
 }
 
@@ -46,90 +45,82 @@ static void *create(const Settings *chosen, const Scene *scene, Error *error) {
         return NULL;
     }
     stepping->substeps = 4;
-    stepping->solver.kind = &solver_sequential_impulses;
-    Settings sweeps = {0};
-    const char *k = settings_get(chosen, "k");
-    settings_default(&sweeps, "k", k == NULL ? "1" : k);
-    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error))
-        stepping->solver.state = stepping->solver.kind->create(&sweeps, error);
-    if (stepping->solver.state != NULL) return stepping;
+    stepping->sweeps_each = 1;
+    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error) &&
+        settings_int(chosen, "k", 1, SWEEPS_MAX, &stepping->sweeps_each, error))
+        return stepping;
     destroy(stepping);
     return NULL;
 }
 
-/* The bodies before gravity, the contacts as they are. */
+/* The bodies before gravity, the contacts as the collision pass found them. */
 static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem) {
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    if (!array_reserve((void **)&stepping->bodies, &stepping->body_capacity, bodies, sizeof *stepping->bodies) ||
+    if (!sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1) ||
         !array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) ||
-        !array_reserve((void **)&stepping->contacts, &stepping->contact_capacity, contacts, sizeof *stepping->contacts))
+        !array_reserve((void **)&stepping->share, &stepping->share_capacity, contacts, sizeof *stepping->share) ||
+        !array_reserve((void **)&stepping->separations, &stepping->separation_capacity, contacts,
+                       sizeof *stepping->separations))
         return false;
     const Body *now = world_bodies(world);
     for (size_t i = 0; i < bodies; i++) {
-        stepping->bodies[i] = problem->bodies[i];
-        stepping->bodies[i].velocity = now[i].velocity;
-        stepping->bodies[i].angular_velocity = now[i].angular_velocity;
+        stepping->sweeps.bodies[i].x = now[i].velocity.x;
+        stepping->sweeps.bodies[i].y = now[i].velocity.y;
+        stepping->poses[i] = (BodyPose){now[i].position, now[i].angle};
     }
-    float share = 1.0f / (float)stepping->substeps;
+    const float share = 1.0f / (float)stepping->substeps;
     for (size_t i = 0; i < contacts; i++) {
-        stepping->contacts[i] = problem->contacts[i];
-        stepping->contacts[i].warm_normal *= share;
-        stepping->contacts[i].warm_tangent *= share;
+        const ContactPoint *contact = &problem->contacts[i];
+        stepping->share[i] = (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
+        stepping->separations[i] = contact->separation;
     }
     return true;
 }
 
-static void accelerate(Substepping *stepping, int count, Vec2 gravity, float dt) {
-    for (int i = 0; i < count; i++) {
-        ProblemBody *body = &stepping->bodies[i];
-        if (body->inv_mass > 0) body->velocity = vec2_add(body->velocity, vec2_scale(dt, gravity));
+static void accelerate(Sweeps *sweeps, Vec2 change) {
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        if (body->inv_mass == 0) continue;
+        body->x += change.x;
+        body->y += change.y;
     }
 }
 
-/* The solution's velocities carry the bodies. */
-static void integrate(Substepping *stepping, const ContactProblem *problem, const ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++) {
-        ProblemBody *body = &stepping->bodies[i];
-        body->velocity = solution->velocities[i].linear;
-        body->angular_velocity = solution->velocities[i].angular;
-        body->position = vec2_add(body->position, vec2_scale(problem->dt, body->velocity));
-        body->angle += problem->dt * body->angular_velocity;
-        stepping->poses[i] = (BodyPose){body->position, body->angle};
+static void integrate(Substepping *stepping, float dt) {
+    for (int i = 0; i < stepping->sweeps.body_count; i++) {
+        const SweepBody *body = &stepping->sweeps.bodies[i];
+        BodyPose *pose = &stepping->poses[i];
+        pose->position = vec2_add(pose->position, vec2_scale(dt, vec2(body->x, body->y)));
+        pose->angle += dt * body->spin;
     }
 }
 
-/* What the small step left of the overlaps is what the next pushes apart; its impulses are what the next starts from.
-   correct_in: time, s, in which position correction would undo them; 0 without it. */
-static void carry_contacts(Substepping *stepping, const ContactProblem *problem, const ContactSolution *solution,
-                           float correct_in) {
-    for (int i = 0; i < problem->contact_count; i++) {
-        ContactPoint *contact = &stepping->contacts[i];
-        const BodyVelocity *a = &solution->velocities[contact->a], *b = &solution->velocities[contact->b];
-        Vec2 of_a = vec2_add(a->linear, scalar_cross_vec2(a->angular, contact->arm_a));
-        Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
-        float moved = problem->dt * vec2_dot(vec2_sub(of_b, of_a), contact->normal);
-        contact->separation += moved;
-        if (correct_in > 0) contact->bias = contact_bias(contact->separation, 1.0f / correct_in);
-        contact->warm_normal = solution->impulses[i].normal;
-        contact->warm_tangent = solution->impulses[i].tangent;
-    }
+/* Velocity along the normal, of b's point as seen from a's. */
+static float normal_velocity(const Sweeps *sweeps, const ContactPoint *contact) {
+    const SweepBody *a = &sweeps->bodies[contact->a], *b = &sweeps->bodies[contact->b];
+    Vec2 of_a = vec2_add(vec2(a->x, a->y), scalar_cross_vec2(a->spin, contact->arm_a));
+    Vec2 of_b = vec2_add(vec2(b->x, b->y), scalar_cross_vec2(b->spin, contact->arm_b));
+    return vec2_dot(vec2_sub(of_b, of_a), contact->normal);
 }
 
-static bool solve_small_steps(Substepping *stepping, const Scene *scene, const ContactProblem *whole,
-                              ContactSolution *solution, Error *error) {
-    ContactProblem problem = *whole;
-    problem.dt = whole->dt / (float)stepping->substeps;
-    problem.bodies = stepping->bodies;
-    problem.contacts = stepping->contacts;
+/* What the small step left of the overlaps is what the next pushes apart. inverse_dt: of the whole step. */
+static void update_biases(Substepping *stepping, const ContactProblem *problem, float dt, float inverse_dt) {
+    Sweeps *sweeps = &stepping->sweeps;
+    for (int i = 0, contact = 0; i < sweeps->pair_count; i++)
+        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++, contact++) {
+            stepping->separations[contact] += dt * normal_velocity(sweeps, &problem->contacts[contact]);
+            sweeps->pairs[i].points[k].bias = contact_bias(stepping->separations[contact], inverse_dt);
+        }
+}
+
+static bool solve(Substepping *stepping, const Scene *scene, const ContactProblem *problem) {
+    const float dt = problem->dt / (float)stepping->substeps;
     for (int i = 0; i < stepping->substeps; i++) {
-        accelerate(stepping, problem.body_count, scene->gravity, problem.dt);
-        if (!stepping->solver.kind->solve(stepping->solver.state, &problem, solution, error)) return false;
-        integrate(stepping, &problem, solution);
-        carry_contacts(stepping, &problem, solution, scene->position_correction ? whole->dt : 0);
-    }
-    for (int i = 0; i < problem.contact_count; i++) {
-        solution->impulses[i].normal *= (float)stepping->substeps;
-        solution->impulses[i].tangent *= (float)stepping->substeps;
+        accelerate(&stepping->sweeps, vec2_scale(dt, scene->gravity));
+        sweeps_push(&stepping->sweeps, stepping->share);
+        if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return false;
+        integrate(stepping, dt);
+        if (scene->position_correction) update_biases(stepping, problem, dt, 1.0f / problem->dt);
     }
     return true;
 }
@@ -140,11 +131,12 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
     ContactSolution solution;
     if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(which);
-    bool solved = begin(stepping, world, &problem);
-    if (!solved) error_memory(error, "substepping");
-    solved = solved && solve_small_steps(stepping, which->scene, &problem, &solution, error);
+    bool solved = begin(stepping, world, &problem) && solve(stepping, which->scene, &problem);
+    /* Where it is not finite the world refuses the step. */
+    if (solved) sweeps_end(&stepping->sweeps, &solution);
     step_solving_ends(which);
-    return solved && world_end_step_at(world, stepping->poses, error);
+    if (!solved) return error_memory(error, "substepping");
+    return world_end_step_at(world, stepping->poses, error);
 }
 
 const SteppingKind stepping_substepping = {

@@ -130,5 +130,10 @@ bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem);
 bool sweeps_run_blocks(Sweeps *sweeps, int count);
 
+/* Applies further impulses [contact_count] and adds them to the sums. */
+void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
+
+static inline int sweep_pair_points(const SweepPair *pair) { return pair->points[1].extra < 0.0f ? 2 : 1; }
+
 /* Hands out what was found. False where a velocity is not finite: then the order of visits may have mattered. */
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution);

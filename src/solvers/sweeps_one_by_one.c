@@ -21,21 +21,33 @@ static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const Sweep
     b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
 }
 
-static void warm_start_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k) {
-    Vec2 along_tangent = vec2_scale(pair->sums[k].tangent, vec2_cross_scalar(pair->normal, 1.0f));
-    Vec2 impulse = vec2_add(vec2_scale(pair->sums[k].normal, pair->normal), along_tangent);
+static void push_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k, ContactImpulse by) {
+    Vec2 along_tangent = vec2_scale(by.tangent, vec2_cross_scalar(pair->normal, 1.0f));
+    Vec2 impulse = vec2_add(vec2_scale(by.normal, pair->normal), along_tangent);
     apply(a, b, pair, &pair->points[k], impulse);
 }
 
+static void push_pair(Sweeps *sweeps, int i, const ContactImpulse impulses[2]) {
+    const SweepPair *pair = &sweeps->pairs[i];
+    SweepEnds ends = sweeps->ends[i];
+    SweepBody a = sweeps->bodies[body_at(ends.a)], b = sweeps->bodies[body_at(ends.b)];
+    for (int k = 0; k < sweep_pair_points(pair); k++) push_point(&a, &b, pair, k, impulses[k]);
+    if (ends.a >= 0) sweeps->bodies[ends.a] = a;
+    if (ends.b >= 0) sweeps->bodies[ends.b] = b;
+}
+
 void sweeps_warm_start(Sweeps *sweeps) {
+    for (int i = 0; i < sweeps->pair_count; i++) push_pair(sweeps, i, sweeps->pairs[i].sums);
+}
+
+void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses) {
     for (int i = 0; i < sweeps->pair_count; i++) {
-        const SweepPair *pair = &sweeps->pairs[i];
-        SweepEnds ends = sweeps->ends[i];
-        SweepBody a = sweeps->bodies[body_at(ends.a)], b = sweeps->bodies[body_at(ends.b)];
-        warm_start_point(&a, &b, pair, 0);
-        if (pair->points[1].extra < 0.0f) warm_start_point(&a, &b, pair, 1);
-        if (ends.a >= 0) sweeps->bodies[ends.a] = a;
-        if (ends.b >= 0) sweeps->bodies[ends.b] = b;
+        SweepPair *pair = &sweeps->pairs[i];
+        push_pair(sweeps, i, impulses);
+        for (int k = 0; k < sweep_pair_points(pair); k++, impulses++) {
+            pair->sums[k].normal += impulses->normal;
+            pair->sums[k].tangent += impulses->tangent;
+        }
     }
 }
 

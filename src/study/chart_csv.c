@@ -111,7 +111,7 @@ static const Column columns[] = {
 
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns, SOLVER_MEDIAN = 6 };
 
-_Static_assert(sizeof(ChartProtocol) == sizeof(unsigned) && sizeof(ChartPhase) == sizeof(unsigned),
+_Static_assert(sizeof(ChartProtocol) == sizeof(unsigned) && sizeof(Phase) == sizeof(unsigned),
                "words are read and written as unsigned");
 
 static bool figures_fit(const ChartRow *row) {

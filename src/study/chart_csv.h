@@ -2,21 +2,21 @@
 /* chart.csv: speed and accuracy of every method, one row a scene, method, setting, protocol and phase. */
 #pragma once
 #include "common/error.h"
+#include "simulate/phases.h"
 
 enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
 
 /* Frozen: all methods on the same contact problems. Closed: each on the trajectory that it makes. */
 typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
 
-/* Frames counted from the bomb's first touch: its impact, the 60 after, all others. */
-typedef enum ChartPhase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } ChartPhase;
+enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
 
 /* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve. */
 typedef struct ChartRow {
     char scene[CHART_NAME_SIZE], method[CHART_NAME_SIZE];
     char setting[CHART_SETTING_SIZE]; /* "k=20,warm=off" */
     ChartProtocol protocol;
-    ChartPhase phase;
+    Phase phase;
     int launches;
     double us_solver, us_solver_q1, us_solver_q3; /* time in the solver per step: median, quartiles; microseconds */
     double us_step;                               /* of the whole step, median; microseconds */

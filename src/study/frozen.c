@@ -26,7 +26,7 @@ static World *empty_world(const Scene *scene, Error *error) {
 
 /* Keeps the state before the step that `after` has just taken. */
 static bool keep(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
-                 ChartPhase phase, Reference *reference, Error *error) {
+                 Phase phase, Reference *reference, Error *error) {
     const ContactProblem *problem = world_problem(after);
     size_t size = (size_t)problem->body_count * sizeof(ReferenceVelocity);
     if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
@@ -55,7 +55,7 @@ static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, 
         if (!world_copy(sampler->before, sampler->world, error) ||
             !simulate_step(sampler->engine, sampler->world, &step, error))
             return false;
-        ChartPhase phase = phase_next(&tracker, world_problem(sampler->world), frame);
+        Phase phase = phase_next(&tracker, world_problem(sampler->world), frame);
         if (sampled(sampling, phase, &tracker, frame) &&
             !keep(list, launched, sampler->before, sampler->world, frame, phase, &sampler->reference, error))
             return false;

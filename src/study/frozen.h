@@ -7,7 +7,7 @@ typedef struct Snapshot {
     const Scene *scene; /* launched; the caller's */
     World *world;       /* before the step */
     int frame;          /* of the step */
-    ChartPhase phase;
+    Phase phase;
     ReferenceVelocity *reference; /* [bodies] converged end velocities */
 } Snapshot;
 

@@ -26,7 +26,7 @@ bool step_scores_add(StepScores *scores, const ContactProblem *problem, const Bo
     return true;
 }
 
-bool sampled(const Sampling *sampling, ChartPhase phase, const PhaseTracker *tracker, int frame) {
+bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
     if (phase == PHASE_IMPACT) return true;
     if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
     return frame % sampling->rest == 0;
@@ -43,7 +43,8 @@ static bool score(Rollout *rollout, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     Reference *reference = &rollout->reference;
     if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
-    if (reference->residual > rollout->residual) rollout->residual = reference->residual;
+    rollout->solves++;
+    rollout->unconverged += reference->residual > SOLVE_CONVERGED;
     if (step_scores_add(scores, problem, world_solution(rollout->world)->velocities, reference->velocities))
         return true;
     return error_memory(error, "study");
@@ -70,7 +71,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
             *error = failure;
             return false;
         }
-        ChartPhase phase = phase_next(&tracker, world_problem(rollout->world), frame);
+        Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
         if (scores != NULL && sampled(sampling, phase, &tracker, frame) && !score(rollout, &scores[phase], error))
             return false;

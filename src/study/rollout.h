@@ -25,15 +25,18 @@ typedef struct Sampling {
     int after, rest;
 } Sampling;
 
-bool sampled(const Sampling *sampling, ChartPhase phase, const PhaseTracker *tracker, int frame);
+bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
 
 /* One thread's run in progress; zero-initialise, free with rollout_free. */
 typedef struct Rollout {
     World *world;
     Reference reference;
     RunLog log;
-    double residual; /* m/s: the largest of all reference solves */
+    int solves, unconverged; /* reference solves made; those that left a residual above SOLVE_CONVERGED */
 } Rollout;
+
+/* m/s: far below what is told apart. What does not get there are states that a bad method has blown up. */
+#define SOLVE_CONVERGED 1e-3
 
 void rollout_free(Rollout *rollout);
 

@@ -47,13 +47,13 @@ bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     if (!array_reserve((void **)&log->position, &log->position_capacity, rows * (size_t)log->bodies, sizeof(Vec2)) ||
         !array_reserve((void **)&log->energy, &log->energy_capacity, rows, sizeof(double)) ||
         !array_reserve((void **)&log->penetration, &log->penetration_capacity, rows, sizeof(double)) ||
-        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(ChartPhase)))
+        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(Phase)))
         return false;
     run_log_step(log, scene, world, 0, PHASE_REST);
     return true;
 }
 
-void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, ChartPhase phase) {
+void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
     log->frames = frame;
     if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
     for (int i = 0; i < log->bodies; i++)
@@ -94,7 +94,7 @@ RunFigures run_figures(const RunLog *log, const RunLog *converged, const Scene *
     int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
     double energy[PHASES] = {0};
     for (int frame = 1; frame <= last; frame++) {
-        ChartPhase phase = log->phase[frame];
+        Phase phase = log->phase[frame];
         energy[phase] += log->energy[frame] - converged->energy[frame];
         frames[phase]++;
         if (log->penetration[frame] > figures.penetration[phase]) figures.penetration[phase] = log->penetration[frame];

@@ -2,7 +2,7 @@
 /* What a run left behind, for comparing it with another run of the same launch. */
 #pragma once
 #include "scene/scene.h"
-#include "study/phases.h"
+#include "simulate/phases.h"
 
 #include <stddef.h>
 
@@ -14,7 +14,7 @@ typedef struct RunLog {
     Vec2 *position;              /* [frames + 1, bodies] m */
     double *energy;              /* [frames + 1] J: kinetic and potential, of all that moves */
     double *penetration;         /* [frames + 1] m: of the deepest contact of the step; 0 without one */
-    ChartPhase *phase;           /* [frames + 1] of each step */
+    Phase *phase;                /* [frames + 1] of each step */
     size_t position_capacity, energy_capacity, penetration_capacity, phase_capacity;
 } RunLog;
 
@@ -24,7 +24,7 @@ void run_log_free(RunLog *log);
 bool run_log_begin(RunLog *log, const Scene *scene, const World *world);
 
 /* Adds a step. */
-void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, ChartPhase phase);
+void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase);
 
 /* What of a run is compared with the converged run of the same launch; NAN where there is nothing to compare. */
 typedef struct RunFigures {

@@ -56,11 +56,6 @@ void scene_study_end(SceneStudy *study) {
     *study = (SceneStudy){0};
 }
 
-static void keep_residual(SceneStudy *study, double residual) {
-#pragma omp critical(study_residual)
-    if (residual > study->residual) study->residual = residual;
-}
-
 static bool prepare_launch(void *context, int i, Error *error) {
     SceneStudy *study = context;
     const Scene *launched = &study->launches[i];
@@ -73,7 +68,8 @@ static bool prepare_launch(void *context, int i, Error *error) {
     rollout.log = (RunLog){0};
     rollout_free(&rollout);
     stepper_destroy(stepper);
-    keep_residual(study, study->snapshots[i].residual);
+#pragma omp critical(study_residual)
+    if (study->snapshots[i].residual > study->frozen_residual) study->frozen_residual = study->snapshots[i].residual;
     return ok;
 }
 
@@ -105,7 +101,11 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
         if (ok) scores->figures[i] = run_figures(&rollout.log, &study->converged[i], launched);
         ok = ok && snapshots_score(&study->snapshots[i], stepper, rollout.world, scores->frozen, error);
     }
-    keep_residual(study, rollout.residual);
+#pragma omp critical(study_residual)
+    {
+        study->solves += rollout.solves;
+        study->unconverged += rollout.unconverged;
+    }
     rollout_free(&rollout);
     return ok;
 }
@@ -144,7 +144,7 @@ static void fill_figures(ChartRow *row, const RunFigures *figures, int count) {
 
 static ChartRow empty_row(const SceneStudy *study, const Contender *contender, int protocol, int phase) {
     ChartRow row = {.protocol = (ChartProtocol)protocol,
-                    .phase = (ChartPhase)phase,
+                    .phase = (Phase)phase,
                     .launches = study->launch_count,
                     .us_solver = NAN,
                     .us_solver_q1 = NAN,

@@ -20,7 +20,8 @@ typedef struct SceneStudy {
     RunLog *converged;            /* [launch_count] */
     SnapshotList *snapshots;      /* [launch_count] */
     const StudySize *size;
-    double residual; /* m/s: the largest so far */
+    double frozen_residual;  /* m/s: the largest of the reference solves of frozen steps */
+    int solves, unconverged; /* in closed loop */
 } SceneStudy;
 
 /* Reads the scene and its launches. */

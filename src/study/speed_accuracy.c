@@ -16,8 +16,8 @@
 static const StudySize whole_size = {.launches = 40,
                                      .closed = {.after = 6, .rest = 30},
                                      .frozen = {.after = 6, .rest = 60},
-                                     .timed_launches = 2,
-                                     .repetitions = 9};
+                                     .timed_launches = 4,
+                                     .repetitions = 7};
 static const StudySize quick_size = {.launches = 5,
                                      .closed = {.after = 20, .rest = 120},
                                      .frozen = {.after = 20, .rest = 120},
@@ -116,8 +116,11 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     if (!ok) error_memory(error, "study");
     ok = ok && measure_scene(run, error);
     if (ok) {
-        *summary = (SpeedAccuracyScene){
-            .contenders = count, .launches = run->study.launch_count, .residual = run->study.residual};
+        *summary = (SpeedAccuracyScene){.contenders = count,
+                                        .launches = run->study.launch_count,
+                                        .frozen_residual = run->study.frozen_residual,
+                                        .solves = run->study.solves,
+                                        .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
         run->row_count = (int)rows;
     }

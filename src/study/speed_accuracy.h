@@ -28,7 +28,9 @@ typedef struct SpeedAccuracyOptions {
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    double residual; /* m/s: the largest of the reference solves that were made */
+    double frozen_residual;  /* m/s: the largest of the reference solves of frozen steps */
+    int solves, unconverged; /* in closed loop, by this run of the program: reference solves, those that left more than
+                                SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 
 /* Writes folder/chart.csv, and fills scenes[scene_count]. What is done is kept beside it in chart-KEY.part.csv, so that the

@@ -34,7 +34,7 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     return true;
 }
 
-static void count_step(Tally *tally, const Cost *cost, ChartPhase phase) {
+static void count_step(Tally *tally, const Cost *cost, Phase phase) {
     tally->solver[phase] += cost->solver;
     tally->step[phase] += cost->step;
     tally->steps[phase]++;

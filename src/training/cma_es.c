@@ -19,7 +19,7 @@ typedef struct Strategy {
     double *weights; /* [parents] */
     double mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi;
     double sigma;
-    gsl_vector *mean, *path_sigma, *path_c, *scale, *normal, *shift; /* scale: roots of the eigenvalues */
+    gsl_vector *mean, *path_sigma, *path_c, *scale, *normal, *whitened, *shift; /* scale: roots of the eigenvalues */
     gsl_matrix *covariance, *axes, *scratch;
     gsl_eigen_symmv_workspace *eigen;
     gsl_rng *generator;
@@ -28,7 +28,7 @@ typedef struct Strategy {
 } Strategy;
 
 static void strategy_free(Strategy *s) {
-    gsl_vector *vectors[] = {s->mean, s->path_sigma, s->path_c, s->scale, s->normal, s->shift};
+    gsl_vector *vectors[] = {s->mean, s->path_sigma, s->path_c, s->scale, s->normal, s->whitened, s->shift};
     gsl_matrix *matrices[] = {s->covariance, s->axes, s->scratch};
     for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++)
         if (vectors[i] != NULL) gsl_vector_free(vectors[i]);
@@ -65,7 +65,7 @@ static bool strategy_begin(Strategy *s, const CmaEs *task, const double *start) 
     size_t n = (size_t)task->dimension;
     *s = (Strategy){.n = task->dimension, .offspring = 4 + (int)(3 * log(task->dimension)), .sigma = task->step};
     s->parents = s->offspring / 2;
-    gsl_vector **vectors[] = {&s->mean, &s->path_sigma, &s->path_c, &s->scale, &s->normal, &s->shift};
+    gsl_vector **vectors[] = {&s->mean, &s->path_sigma, &s->path_c, &s->scale, &s->normal, &s->whitened, &s->shift};
     gsl_matrix **matrices[] = {&s->covariance, &s->axes, &s->scratch};
     bool ok = true;
     for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) ok &= (*vectors[i] = gsl_vector_calloc(n)) != NULL;
@@ -113,8 +113,8 @@ static void lengthen(gsl_vector *path, double c, double mu_eff, const gsl_vector
     gsl_blas_daxpy(share * sqrt(c * (2 - c) * mu_eff), by, path);
 }
 
-/* Moves mean, paths, covariance and sigma by the better half of a generation. */
-static void adapt(Strategy *s, int generation) {
+/* Moves the mean to the better half of a generation. */
+static void move_mean(Strategy *s) {
     qsort(s->candidates, (size_t)s->offspring, sizeof *s->candidates, by_cost);
     gsl_vector_set_zero(s->shift);
     for (int i = 0; i < s->parents; i++) {
@@ -122,14 +122,15 @@ static void adapt(Strategy *s, int generation) {
         gsl_blas_daxpy(s->weights[i], &step.vector, s->shift);
     }
     gsl_blas_daxpy(s->sigma, s->shift, s->mean);
+}
 
+/* Lets paths, covariance and sigma follow. */
+static void adapt(Strategy *s, int generation) {
     /* covariance^(-1/2) shift */
-    gsl_vector *whitened = gsl_vector_alloc((size_t)s->n);
     gsl_blas_dgemv(CblasTrans, 1, s->axes, s->shift, 0, s->normal);
     gsl_vector_div(s->normal, s->scale);
-    gsl_blas_dgemv(CblasNoTrans, 1, s->axes, s->normal, 0, whitened);
-    lengthen(s->path_sigma, s->c_sigma, s->mu_eff, whitened, 1);
-    gsl_vector_free(whitened);
+    gsl_blas_dgemv(CblasNoTrans, 1, s->axes, s->normal, 0, s->whitened);
+    lengthen(s->path_sigma, s->c_sigma, s->mu_eff, s->whitened, 1);
     double length = gsl_blas_dnrm2(s->path_sigma);
     double settled = sqrt(1 - pow(1 - s->c_sigma, 2.0 * (generation + 1)));
     double moving = length / settled < (1.4 + 2.0 / (s->n + 1)) * s->chi ? 1 : 0;
@@ -159,6 +160,7 @@ bool cma_es_minimize(const CmaEs *task, double *best, const Progress *progress, 
             lowest = s.candidates[i].cost;
             memcpy(best, point, (size_t)task->dimension * sizeof *best);
         }
+        move_mean(&s);
         adapt(&s, generation);
     }
     free(point);

@@ -2,16 +2,17 @@
 #include "training/impact_problems.h"
 
 #include "common/array.h"
+#include "simulate/phases.h"
 #include "simulate/simulate.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define CONVERGED 1e-4 /* m/s, residual: far below what any number of sweeps in question leaves */
+#define CONVERGED 1e-3 /* m/s, residual: far below what any number of sweeps in question leaves */
 
 typedef struct Recording {
     ImpactProblems *problems;
-    int touched; /* frames since the bomb touched, itself included; 0: not yet */
+    PhaseTracker tracker;
 } Recording;
 
 static void free_item(ImpactProblem *item) {
@@ -24,16 +25,6 @@ void impact_problems_free(ImpactProblems *problems) {
     for (size_t i = 0; i < problems->count; i++) free_item(&problems->items[i]);
     free(problems->items);
     *problems = (ImpactProblems){0};
-}
-
-/* Does the bomb touch a body that moves? */
-static bool bomb_touches(const ContactProblem *problem) {
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        bool bomb = contact->a == problem->bomb || contact->b == problem->bomb;
-        if (bomb && problem->bodies[contact->a].inv_mass > 0 && problem->bodies[contact->b].inv_mass > 0) return true;
-    }
-    return false;
 }
 
 static bool add(ImpactProblems *problems, const ContactProblem *problem, bool impact) {
@@ -53,14 +44,13 @@ static bool add(ImpactProblems *problems, const ContactProblem *problem, bool im
 }
 
 static bool observe(void *context, int frame, const World *world, Error *error) {
-    (void)frame;
     Recording *recording = context;
     const ContactProblem *problem = world_problem(world);
-    if (recording->touched == 0 && (problem->bomb < 0 || !bomb_touches(problem))) return true;
-    int since = recording->touched++;
-    bool impact = since < IMPACT_FRAMES;
-    bool after = since < IMPACT_FRAMES + AFTER_FRAMES && (since - IMPACT_FRAMES) % AFTER_STEP == AFTER_STEP - 1;
-    return (!impact && !after) || add(recording->problems, problem, impact) || error_memory(error, "recording");
+    PhaseTracker *tracker = &recording->tracker;
+    Phase phase = phase_next(tracker, problem, frame);
+    bool sampled = phase == PHASE_AFTER && (frame - tracker->touch - tracker->impact_frames) % AFTER_STEP == 0;
+    if (phase != PHASE_IMPACT && !sampled) return true;
+    return add(recording->problems, problem, phase == PHASE_IMPACT) || error_memory(error, "recording");
 }
 
 static bool run_launches(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x, Error *error) {
@@ -69,7 +59,7 @@ static bool run_launches(ImpactProblems *problems, const Scene *scene, const Flo
     for (int i = 0; i < bomb_x->count; i++) {
         Scene launch = *scene;
         launch.bomb.body.position.x = range_value(bomb_x, i);
-        Recording recording = {problems, 0};
+        Recording recording = {problems, {.impact_frames = scene->bomb.impact_frames}};
         if (!simulate_observed(&launch, &engine, &(StepObserver){observe, &recording}, error)) return false;
     }
     return problems->count > 0 || error_input(error, scene->name, "no launch touches a box");

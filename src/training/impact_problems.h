@@ -8,11 +8,7 @@
 #include "scene/scene.h"
 #include "solvers/reference.h"
 
-enum {
-    IMPACT_FRAMES = 6, /* from the first touch on, all of them */
-    AFTER_FRAMES = 60, /* that follow, every AFTER_STEP-th of them */
-    AFTER_STEP = 6
-};
+enum { AFTER_STEP = 6 }; /* all frames of the impact (simulate/phases.h), and every so many of those after */
 
 typedef struct ImpactProblem {
     ContactProblem problem; /* with arrays of its own */

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/phases.h"
+#include "simulate/phases.h"
 
 #include <stdbool.h>
 
 static bool bomb_touches(const ContactProblem *problem) {
-    for (int i = 0; problem->bomb >= 0 && i < problem->contact_count; i++)
-        if (problem->contacts[i].a == problem->bomb || problem->contacts[i].b == problem->bomb) return true;
+    for (int i = 0; problem->bomb >= 0 && i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        bool bomb = contact->a == problem->bomb || contact->b == problem->bomb;
+        if (bomb && problem->bodies[contact->a].inv_mass > 0 && problem->bodies[contact->b].inv_mass > 0) return true;
+    }
     return false;
 }
 
-ChartPhase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame) {
+Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame) {
     if (tracker->touch == 0 && bomb_touches(problem)) tracker->touch = frame;
     if (tracker->touch == 0) return PHASE_REST;
     int since = frame - tracker->touch;

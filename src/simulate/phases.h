@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The phases of a run, counted from the step in which the bomb first touches a box that can move: its impact (so many
+   frames as the scene says), the 60 frames after, and all others. */
+#pragma once
+#include "dynamics/contact_problem.h"
+
+typedef enum Phase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } Phase;
+
+enum { PHASES = PHASE_REST + 1, AFTER_FRAMES = 60 };
+
+typedef struct PhaseTracker {
+    int impact_frames; /* the scene's */
+    int touch;         /* number of the first step in which the bomb touched; 0: it has not yet */
+} PhaseTracker;
+
+/* The phase of step `frame`, which had this contact problem. Steps are shown in rising order. */
+Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame);

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scores of runs whose errors are known: the reference has none, more sweeps have less, noise has more. */
+#include "testing.h"
+
+#include "scene/launch.h"
+#include "study/frozen.h"
+#include "study/rollout.h"
+#include "study/statistics.h"
+
+static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
+
+static Scene *read_scene(const char *name) {
+    Error error = {0};
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static Stepper *make_stepper(const Scene *scene, const char *text) {
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, text, &error), error);
+    Stepper *stepper = stepper_create(&method, scene, &error);
+    assert_ok(stepper != NULL, error);
+    return stepper;
+}
+
+static void free_scores(StepScores scores[PHASES]) {
+    for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores[phase]);
+}
+
+static void the_reference_has_no_error(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    Stepper *stepper = make_stepper(scene, "reference");
+    Rollout rollout = {0};
+    StepScores scores[PHASES] = {0};
+    assert_ok(rollout_run(&rollout, stepper, scene, &few, scores, &error), error);
+    for (int phase = 0; phase < PHASES; phase++)
+        for (int i = 0; i < scores[phase].count; i++) {
+            assert_true(scores[phase].error[i] < 1e-5);
+            assert_true(scores[phase].share[i] == 1);
+        }
+    free_scores(scores);
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+/* Impact 6 frames, after 60, and every frame is in one phase. */
+static void every_frame_is_in_one_phase(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("single");
+    scene->frames = 200;
+    Stepper *stepper = make_stepper(scene, "engine");
+    Rollout rollout = {0};
+    StepScores scores[PHASES] = {0};
+    assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
+    assert_true(rollout.log.touch > 10 && rollout.log.touch < 100);
+    assert_int_equal(scores[PHASE_IMPACT].count, 6);
+    assert_int_equal(scores[PHASE_AFTER].count, 60);
+    assert_int_equal(scores[PHASE_REST].count, 200 - 66);
+    assert_int_equal(rollout.log.phase[rollout.log.touch - 1], PHASE_REST);
+    assert_int_equal(rollout.log.phase[rollout.log.touch + 65], PHASE_AFTER);
+    assert_int_equal(rollout.log.phase[rollout.log.touch + 66], PHASE_REST);
+    free_scores(scores);
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+static double frozen_error(const SnapshotList *list, const Scene *scene, const char *method) {
+    Error error = {0};
+    StepScores scores[PHASES] = {0};
+    Stepper *stepper = make_stepper(scene, method);
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    assert_ok(snapshots_score(list, stepper, world, scores, &error), error);
+    assert_int_equal(scores[PHASE_IMPACT].count, 6);
+    double mean = statistics_mean(scores[PHASE_IMPACT].error, scores[PHASE_IMPACT].count);
+    free_scores(scores);
+    world_destroy(world);
+    stepper_destroy(stepper);
+    return mean;
+}
+
+/* All take the same steps. What sweeps more is nearer; what sweeps from nothing, or guesses, is farther. */
+static void methods_rank_as_they_must_on_frozen_steps(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    SnapshotList list = {0};
+    assert_ok(snapshots_add(&list, scene, &few, &error), error);
+    assert_true(list.residual < 1e-4);
+    double by10 = frozen_error(&list, scene, "engine:k=10"), by100 = frozen_error(&list, scene, "engine:k=100");
+    double by1000 = frozen_error(&list, scene, "engine:k=1000"),
+           cold = frozen_error(&list, scene, "engine:k=10,warm=off");
+    double constant = frozen_error(&list, scene, "constant"), reference = frozen_error(&list, scene, "reference");
+    assert_true(by1000 < by100 && by100 < by10 && by10 < constant);
+    assert_true(by10 != cold);
+    assert_true(reference < 1e-5);
+    snapshots_free(&list);
+    scene_destroy(scene);
+}
+
+/* The engine's own steps, frozen, are the steps of its run in closed loop: the same errors. */
+static void frozen_steps_of_the_engine_are_its_own(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("pyramid_settled");
+    SnapshotList list = {0};
+    StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};
+    Rollout rollout = {0};
+    Stepper *stepper = make_stepper(scene, "engine");
+    assert_ok(snapshots_add(&list, scene, &few, &error), error);
+    assert_ok(rollout_run(&rollout, stepper, scene, &few, closed, &error), error);
+    assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
+    for (int phase = 0; phase < PHASES; phase++) {
+        assert_int_equal(frozen[phase].count, closed[phase].count);
+        for (int i = 0; i < frozen[phase].count; i++) assert_near(frozen[phase].error[i], closed[phase].error[i], 0);
+    }
+    assert_int_equal(closed[PHASE_IMPACT].count, 4);
+    free_scores(frozen);
+    free_scores(closed);
+    rollout_free(&rollout);
+    snapshots_free(&list);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_has_no_error),
+                                       cmocka_unit_test(every_frame_is_in_one_phase),
+                                       cmocka_unit_test(methods_rank_as_they_must_on_frozen_steps),
+                                       cmocka_unit_test(frozen_steps_of_the_engine_are_its_own)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
