@@ -70,9 +70,9 @@ static bool score(const Method *method, const Scene *scene, const ContactProblem
 }
 
 static bool score_all(const StoredProblem *stored, const Method *methods, int method_count, Error *error) {
-    /* One frame can wait: far more sweeps than a study may spend on each. */
+    /* One frame can wait: far longer than a study may spend on each. */
     const double tolerance = 1e-8;
-    const int max_sweeps = 100000;
+    const int max_visits = 20 * REFERENCE_MAX_VISITS;
     const ContactProblem *problem = &stored->problem;
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     Reference truth = {0};
@@ -80,7 +80,7 @@ static bool score_all(const StoredProblem *stored, const Method *methods, int me
                                 calloc((size_t)problem->contact_count + 1, sizeof *solution.impulses)};
     bool ok = solution.velocities != NULL && solution.impulses != NULL;
     if (!ok) error_memory(error, "solve");
-    ok = ok && reference_solve(&truth, problem, tolerance, max_sweeps, NULL, error);
+    ok = ok && reference_solve(&truth, problem, tolerance, max_visits, NULL, error);
     if (ok) {
         printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d sweeps\n", stored->scene,
                stored->frame, problem->body_count, problem->contact_count, truth.residual, truth.sweeps);

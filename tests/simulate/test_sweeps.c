@@ -4,15 +4,22 @@
 
 #include "simulate/simulate.h"
 #include "solvers/kernels.h"
+#include "solvers/reference_kernels.h"
+
+typedef struct Kernels {
+    Sweeps engine[SWEEP_KERNELS], momentum[SWEEP_KERNELS];
+    ReferenceKernels reference;
+} Kernels;
 
 static bool agree(void *context, int frame, const World *world, Error *error) {
     (void)frame, (void)error;
     const ContactProblem *problem = world_problem(world);
     static const float factors[19] = {0,    0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f,
                                       0.9f, 0.9f, 0.9f, 0,    0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
-    Sweeps(*sweeps)[SWEEP_KERNELS] = context;
-    assert_kernels_agree(sweeps[0], problem, &engine_options, 10);
-    assert_momentum_kernels_agree(sweeps[1], problem, factors, 19);
+    Kernels *kernels = context;
+    assert_kernels_agree(kernels->engine, problem, &engine_options, 10);
+    assert_momentum_kernels_agree(kernels->momentum, problem, factors, 19);
+    assert_reference_kernels_agree(&kernels->reference, problem, 6);
     return true;
 }
 
@@ -25,9 +32,11 @@ static void run_scene(const char *name, float bomb_x) {
     scene->bomb.body.position.x = bomb_x;
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
-    Sweeps sweeps[2][SWEEP_KERNELS] = {{{0}}};
-    assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, sweeps}, &error), error);
-    for (int i = 0; i < 2; i++) free_kernels(sweeps[i]);
+    Kernels kernels = {.reference = {.plain = {.plain = true}}};
+    assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, &kernels}, &error), error);
+    free_kernels(kernels.engine);
+    free_kernels(kernels.momentum);
+    reference_kernels_free(&kernels.reference);
     scene_destroy(scene);
 }
 

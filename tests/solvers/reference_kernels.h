@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference by the vectors of this processor, beside its plain text. */
+#pragma once
+#include "testing.h"
+
+#include "solvers/reference.h"
+
+/* Used again from call to call, so that what a problem before left behind is met too. plain.plain is to be set. */
+typedef struct ReferenceKernels {
+    Reference lanes, plain;
+} ReferenceKernels;
+
+static inline void reference_kernels_free(ReferenceKernels *kernels) {
+    reference_free(&kernels->lanes);
+    reference_free(&kernels->plain);
+}
+
+/* Fails where any bit of a solve of that many sweeps differs. */
+static inline void assert_reference_kernels_agree(ReferenceKernels *kernels, const ContactProblem *problem,
+                                                  int sweeps) {
+    Error error = {0};
+    int visits = sweeps * problem->contact_count;
+    Reference *lanes = &kernels->lanes, *plain = &kernels->plain;
+    assert_true(plain->plain && !lanes->plain);
+    assert_ok(reference_solve(lanes, problem, 0, visits, NULL, &error), error);
+    assert_ok(reference_solve(plain, problem, 0, visits, NULL, &error), error);
+    assert_int_equal(lanes->sweeps, plain->sweeps);
+    assert_memory_equal(&lanes->residual, &plain->residual, sizeof lanes->residual);
+    assert_memory_equal(lanes->velocities, plain->velocities, (size_t)problem->body_count * sizeof *lanes->velocities);
+    assert_memory_equal(lanes->impulses, plain->impulses, (size_t)problem->contact_count * sizeof *lanes->impulses);
+}
