@@ -72,7 +72,7 @@ static bool score(const Method *method, const Scene *scene, const ContactProblem
 static bool score_all(const StoredProblem *stored, const Method *methods, int method_count, Error *error) {
     /* One frame can wait: far longer than a study may spend on each. */
     const double tolerance = 1e-8;
-    const int max_visits = 20 * REFERENCE_MAX_VISITS;
+    const int max_visits = 10 * REFERENCE_MAX_VISITS;
     const ContactProblem *problem = &stored->problem;
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     Reference truth = {0};
