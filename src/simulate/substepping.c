@@ -20,9 +20,10 @@ typedef struct Substepping {
     int substeps, sweeps_each;
     Sweeps sweeps;
     BodyPose *poses;       /* [bodies] */
+    BodyVelocity *pushes;  /* [bodies] what gravity and the warm start change in each small step */
     ContactImpulse *share; /* [contacts] of the warm start, for each small step */
     float *separations;    /* [contacts] now */
-    size_t pose_capacity, share_capacity, separation_capacity;
+    size_t pose_capacity, push_capacity, share_capacity, separation_capacity;
 } Substepping;
 
 static const SettingSpec settings[] = {
@@ -32,6 +33,7 @@ static void destroy(void *state) {
     Substepping *stepping = state;
     sweeps_free(&stepping->sweeps);
     free(stepping->poses);
+    free(stepping->pushes);
     free(stepping->share);
     free(stepping->separations);
     free(stepping);
@@ -53,37 +55,68 @@ static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     return NULL;
 }
 
-/* The bodies before gravity, the contacts as the collision pass found them. */
-static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem) {
+static bool reserve(Substepping *stepping, const ContactProblem *problem) {
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    if (!sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1) ||
-        !array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) ||
-        !array_reserve((void **)&stepping->share, &stepping->share_capacity, contacts, sizeof *stepping->share) ||
-        !array_reserve((void **)&stepping->separations, &stepping->separation_capacity, contacts,
-                       sizeof *stepping->separations))
+    return array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) &&
+           array_reserve((void **)&stepping->pushes, &stepping->push_capacity, bodies, sizeof *stepping->pushes) &&
+           array_reserve((void **)&stepping->share, &stepping->share_capacity, contacts, sizeof *stepping->share) &&
+           array_reserve((void **)&stepping->separations, &stepping->separation_capacity, contacts,
+                         sizeof *stepping->separations);
+}
+
+/* The same in every small step: arms and masses do not change in between. */
+static void find_pushes(Substepping *stepping, Vec2 gravity) {
+    Sweeps *sweeps = &stepping->sweeps;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        Vec2 fall = body->inv_mass > 0 ? gravity : vec2(0, 0);
+        stepping->pushes[i] = (BodyVelocity){vec2(body->x, body->y), body->spin};
+        body->x += fall.x;
+        body->y += fall.y;
+    }
+    sweeps_push(sweeps, stepping->share);
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        BodyVelocity *push = &stepping->pushes[i], before = *push;
+        *push = (BodyVelocity){vec2(body->x - before.linear.x, body->y - before.linear.y), body->spin - before.angular};
+    }
+}
+
+/* The bodies before gravity, with the first small step's push; the contacts as the collision pass found them. */
+static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
+    if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1))
         return false;
     const Body *now = world_bodies(world);
-    for (size_t i = 0; i < bodies; i++) {
+    for (int i = 0; i < problem->body_count; i++) {
         stepping->sweeps.bodies[i].x = now[i].velocity.x;
         stepping->sweeps.bodies[i].y = now[i].velocity.y;
         stepping->poses[i] = (BodyPose){now[i].position, now[i].angle};
     }
     const float share = 1.0f / (float)stepping->substeps;
-    for (size_t i = 0; i < contacts; i++) {
+    for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         stepping->share[i] = (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
         stepping->separations[i] = contact->separation;
     }
+    find_pushes(stepping, vec2_scale(share * problem->dt, gravity));
     return true;
 }
 
-static void accelerate(Sweeps *sweeps, Vec2 change) {
+/* Gravity and the warm start of one more small step. */
+static void push(Substepping *stepping) {
+    Sweeps *sweeps = &stepping->sweeps;
     for (int i = 0; i < sweeps->body_count; i++) {
         SweepBody *body = &sweeps->bodies[i];
-        if (body->inv_mass == 0) continue;
-        body->x += change.x;
-        body->y += change.y;
+        body->x += stepping->pushes[i].linear.x;
+        body->y += stepping->pushes[i].linear.y;
+        body->spin += stepping->pushes[i].angular;
     }
+    const ContactImpulse *share = stepping->share;
+    for (int i = 0; i < sweeps->pair_count; i++)
+        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++, share++) {
+            sweeps->pairs[i].sums[k].normal += share->normal;
+            sweeps->pairs[i].sums[k].tangent += share->tangent;
+        }
 }
 
 static void integrate(Substepping *stepping, float dt) {
@@ -116,8 +149,7 @@ static void update_biases(Substepping *stepping, const ContactProblem *problem, 
 static bool solve(Substepping *stepping, const Scene *scene, const ContactProblem *problem) {
     const float dt = problem->dt / (float)stepping->substeps;
     for (int i = 0; i < stepping->substeps; i++) {
-        accelerate(&stepping->sweeps, vec2_scale(dt, scene->gravity));
-        sweeps_push(&stepping->sweeps, stepping->share);
+        if (i > 0) push(stepping);
         if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return false;
         integrate(stepping, dt);
         if (scene->position_correction) update_biases(stepping, problem, dt, 1.0f / problem->dt);
@@ -131,7 +163,7 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
     ContactSolution solution;
     if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(which);
-    bool solved = begin(stepping, world, &problem) && solve(stepping, which->scene, &problem);
+    bool solved = begin(stepping, world, &problem, which->scene->gravity) && solve(stepping, which->scene, &problem);
     /* Where it is not finite the world refuses the step. */
     if (solved) sweeps_end(&stepping->sweeps, &solution);
     step_solving_ends(which);

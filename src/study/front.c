@@ -9,7 +9,9 @@ static bool comparable(const ChartRow *a, const ChartRow *b) {
 }
 
 static bool takes_part(const ChartRow *row) {
-    if (strcmp(row->method, "constant") == 0 || strcmp(row->method, "playback") == 0) return false;
+    static const char *const apart[] = {"constant", "playback", "reference"};
+    for (int i = 0; i < 3; i++)
+        if (strcmp(row->method, apart[i]) == 0) return false;
     return !isnan(row->us_solver) && !isnan(row->us_solver_q1) && !isnan(row->us_solver_q3) && !isnan(row->error_mean);
 }
 

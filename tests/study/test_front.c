@@ -34,6 +34,7 @@ static void rows_without_time_or_error_neither_beat_nor_count(void **state) {
     check_front("front_missing.csv");
 }
 
+/* Nor do those that solve nothing, or have no error by definition. */
 static void scenes_protocols_and_phases_do_not_meet(void **state) {
     (void)state;
     check_front("front_apart.csv");
