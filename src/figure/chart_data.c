@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double error_reach = 1e-5;
 static const double lost_drift = 0.5; /* m: half a box */
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
@@ -81,17 +80,8 @@ static bool is_lost(const ChartTable *table, const ChartRow *row) {
     return false;
 }
 
-static double largest_error(const ChartTable *table, const char *scene) {
-    double largest = 0;
-    for (int i = 0; i < table->count; i++)
-        if (panel_of(&table->rows[i], scene) >= 0 && !is_lost(table, &table->rows[i]))
-            largest = fmax(largest, table->rows[i].error_mean);
-    return largest;
-}
-
-static bool can_be_drawn(const ChartRow *row, double largest) {
-    return row->us_solver_q1 > 0 && row->us_solver > 0 && row->us_solver_q3 > 0 && row->error_mean > 0 &&
-           row->error_mean >= error_reach * largest;
+static bool can_be_drawn(const ChartRow *row) {
+    return row->us_solver_q1 > 0 && row->us_solver > 0 && row->us_solver_q3 > 0 && !isnan(row->error_mean);
 }
 
 static void widen(Chart *chart, const ChartMark *mark) {
@@ -101,21 +91,22 @@ static void widen(Chart *chart, const ChartMark *mark) {
     chart->error_most = fmax(chart->error_most, mark->error);
 }
 
-static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel, double largest) {
+static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
     ChartMark mark = {.us = row->us_solver, .us_q1 = row->us_solver_q1, .us_q3 = row->us_solver_q3};
     char key[CHART_KEY_SIZE];
     name_row(row, key, mark.label);
     mark.line = find_line(chart, key);
-    mark.error = row->error_mean;
+    mark.error = fmax(row->error_mean, FRONT_RESOLUTION);
     mark.on_front = on_front;
     mark.shipped = strcmp(row->method, "engine") == 0 && strcmp(row->setting, "k=10") == 0;
     ChartLine *line = &chart->lines[mark.line];
     chart->launches = row->launches > chart->launches ? row->launches : chart->launches;
-    if (!can_be_drawn(row, largest)) {
+    if (!can_be_drawn(row)) {
         line->left_out++;
         return;
     }
     line->marks[panel]++;
+    chart->floored += row->error_mean < FRONT_RESOLUTION;
     widen(chart, &mark);
     chart->panels[panel].marks[chart->panels[panel].count++] = mark;
 }
@@ -129,7 +120,6 @@ static int compare_marks(const void *left, const void *right) {
 
 /* The rows of a scene in closed loop that count: those of a scene that a method lost are counted only. */
 static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
-    double largest = largest_error(table, scene);
     int count = 0;
     for (int i = 0; i < table->count; i++) {
         char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
@@ -141,7 +131,7 @@ static void add_rows(Chart *chart, const ChartTable *table, const char *scene, C
             rows[count++] = table->rows[i];
     }
     front_mark(rows, count, on_front);
-    for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene), largest);
+    for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
 }
 
 static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {

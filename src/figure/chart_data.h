@@ -36,6 +36,7 @@ typedef struct ChartPanel {
 
 typedef struct Chart {
     int line_count, launches;
+    int floored; /* marks drawn at FRONT_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS];                   /* impact frames, frames after; closed loop */
     double us_least, us_most, error_least, error_most; /* of the marks */
@@ -43,9 +44,9 @@ typedef struct Chart {
 
 /* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts
    are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
-   gnuplot. Left out and counted: rows without a time, or without an error above 0, or with one below a
-   hundred-thousandth of the largest, which a logarithmic axis cannot show. So are the rows of a method which let the boxes drift half a metre before the bomb
-   came: what it was scored on then is another scene. False with error set where nothing is
+   gnuplot. Left out and counted: rows without a time or an error, and those of a method which let the
+   boxes drift half a metre before the bomb came: what it was scored on then is another scene. Errors that the
+   reference cannot tell from 0 are drawn at FRONT_RESOLUTION (study/front.h). False with error set where nothing is
    left, or more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);

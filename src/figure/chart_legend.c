@@ -4,6 +4,7 @@
 #include "figure/chart_labels.h"
 #include "figure/chart_script.h"
 #include "figure/chart_style.h"
+#include "study/front.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -42,25 +43,34 @@ static void put_entry(const ChartLayout *layout, int entry, const char *text) {
     fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + 4, y);
 }
 
-/* Names the lines that have a count, `offset` into them. */
+/* Names the lines that have a count, `offset` into them, as far as there is room. */
 static void put_counts(const ChartLayout *layout, const char *why, size_t offset) {
+    enum { ROOM = 70 };
     const char *separator = why;
+    size_t length = 0;
     for (int i = 0; i < layout->chart->line_count; i++) {
         const ChartLine *line = &layout->chart->lines[i];
         int count;
         memcpy(&count, (const char *)line + offset, sizeof count);
         if (count == 0) continue;
+        length += strlen(line->name) + 6;
+        if (length > ROOM) {
+            fprintf(layout->script, ", ...");
+            break;
+        }
         fprintf(layout->script, "%s%s (%d)", separator, line->name, count);
         separator = ", ";
     }
+    if (separator != why) fprintf(layout->script, ". ");
 }
 
 static void put_foot(const ChartLayout *layout) {
-    if (layout->left_out + layout->lost == 0) return;
-    fprintf(layout->script, "set label 'Not drawn");
-    if (layout->lost > 0) put_counts(layout, ", scene lost before the impact: ", offsetof(ChartLine, lost));
-    if (layout->left_out > 0)
-        put_counts(layout, layout->lost > 0 ? "; off the axes: " : ", off the axes: ", offsetof(ChartLine, left_out));
+    if (layout->left_out + layout->lost + layout->chart->floored == 0) return;
+    fprintf(layout->script, "set label '");
+    put_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
+    put_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
+    if (layout->chart->floored > 0)
+        fprintf(layout->script, "Below %g m/s the reference is no better.", FRONT_RESOLUTION);
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 

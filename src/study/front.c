@@ -17,7 +17,7 @@ static bool takes_part(const ChartRow *row) {
 
 bool front_beats(const ChartRow *a, const ChartRow *b) {
     return comparable(a, b) && takes_part(a) && takes_part(b) && a->us_solver_q3 < b->us_solver_q1 &&
-           a->error_mean <= b->error_mean;
+           a->error_mean <= fmax(b->error_mean, FRONT_RESOLUTION);
 }
 
 void front_mark(const ChartRow *rows, int count, bool *on_front) {
