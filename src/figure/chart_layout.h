@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* mm */
-#define LEFT_MARGIN 15.0
+#define LEFT_MARGIN 16.5
 #define RIGHT_MARGIN 2.0
 #define LEGEND_ROW 3.7
 #define FOOT_ROW 3.4

@@ -55,8 +55,8 @@ static void put_counts(const ChartLayout *layout, const char *why, size_t offset
         if (count == 0) continue;
         length += strlen(line->name) + 6;
         if (length > ROOM) {
-            fprintf(layout->script, ", ...");
-            break;
+            fprintf(layout->script, " and others. ");
+            return;
         }
         fprintf(layout->script, "%s%s (%d)", separator, line->name, count);
         separator = ", ";

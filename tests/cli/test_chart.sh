@@ -24,6 +24,11 @@ for row in csv.DictReader(open("quick/chart.csv")):
         assert float(row["us_step"]) > 0, row
 PYTHON
 
+few=engine:k=10,momentum:k=20,learned-momentum:k=20,substepping:substeps=10,pair-net
+run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
+without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
+    fail "other figures of the pyramid: $(head -5 difference)"
+
 # What is cut off goes on where it stopped, to the same figures.
 "$twinbox" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick >out 2>err </dev/null &
 for _ in $(seq 2000); do
