@@ -3,7 +3,7 @@
 
 #include "common/parallel.h"
 #include "scene/launch.h"
-#include "study/statistics.h"
+#include "study/scene_rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,57 +110,6 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
     return ok;
 }
 
-static void fill_errors(ChartRow *row, StepScores *scores) {
-    row->error_mean = statistics_mean(scores->error, scores->count);
-    row->share_right = statistics_mean(scores->share, scores->count);
-    row->error_median = statistics_quantile(scores->error, scores->count, 0.5);
-    row->error_p95 = statistics_quantile(scores->error, scores->count, 0.95);
-}
-
-/* Mean or largest over the launches that have the figure, `offset` into their figures. */
-static double over_launches(const RunFigures *figures, int count, size_t offset, bool largest) {
-    double sum = 0, most = NAN;
-    int found = 0;
-    for (int i = 0; i < count; i++) {
-        double value;
-        memcpy(&value, (const char *)&figures[i] + offset, sizeof value);
-        if (isnan(value)) continue;
-        sum += value;
-        found++;
-        if (!(most >= value)) most = value;
-    }
-    return largest ? most : found > 0 ? sum / found : NAN;
-}
-
-static void fill_figures(ChartRow *row, const RunFigures *figures, int count) {
-    size_t phase = (size_t)row->phase;
-    row->penetration_max =
-        over_launches(figures, count, offsetof(RunFigures, penetration) + phase * sizeof(double), true);
-    row->energy = over_launches(figures, count, offsetof(RunFigures, energy) + phase * sizeof(double), false);
-    if (row->phase != PHASE_REST) return;
-    row->drift = over_launches(figures, count, offsetof(RunFigures, drift), false);
-    row->moved = over_launches(figures, count, offsetof(RunFigures, moved), false);
-}
-
-static ChartRow empty_row(const SceneStudy *study, const Contender *contender, int protocol, int phase) {
-    ChartRow row = {.protocol = (ChartProtocol)protocol,
-                    .phase = (Phase)phase,
-                    .launches = study->launch_count,
-                    .us_solver = NAN,
-                    .us_solver_q1 = NAN,
-                    .us_solver_q3 = NAN,
-                    .us_step = NAN,
-                    .instructions = NAN,
-                    .penetration_max = NAN,
-                    .drift = NAN,
-                    .energy = NAN,
-                    .moved = NAN};
-    snprintf(row.scene, sizeof row.scene, "%s", study->scene->name);
-    snprintf(row.method, sizeof row.method, "%s", contender->name);
-    snprintf(row.setting, sizeof row.setting, "%s", contender->setting);
-    return row;
-}
-
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error) {
     Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures))};
     if (scores.figures == NULL) return error_memory(error, "study");
@@ -170,22 +119,14 @@ bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *
     stepper_destroy(stepper);
     for (int phase = 0; ok && phase < PHASES; phase++) {
         ChartRow *frozen = &rows[PROTOCOL_FROZEN * PHASES + phase], *closed = &rows[PROTOCOL_CLOSED * PHASES + phase];
-        *frozen = empty_row(study, who, PROTOCOL_FROZEN, phase);
-        *closed = empty_row(study, who, PROTOCOL_CLOSED, phase);
-        fill_errors(frozen, &scores.frozen[phase]);
-        fill_errors(closed, &scores.closed[phase]);
-        fill_figures(closed, scores.figures, study->launch_count);
+        *frozen = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_FROZEN, phase);
+        *closed = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_CLOSED, phase);
+        scene_row_errors(frozen, &scores.frozen[phase]);
+        scene_row_errors(closed, &scores.closed[phase]);
+        scene_row_figures(closed, scores.figures, study->launch_count);
     }
     scores_free(&scores);
     return ok;
-}
-
-static void fill_cost(ChartRow *row, const StepCost *cost) {
-    row->us_solver = cost->solver;
-    row->us_solver_q1 = cost->solver_q1;
-    row->us_solver_q3 = cost->solver_q3;
-    row->us_step = cost->step;
-    row->instructions = cost->instructions;
 }
 
 /* The launches to time: evenly from all; each until the frames after are over, with some at rest before and behind. */
@@ -220,7 +161,7 @@ bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progres
     for (size_t i = 0; ok && i < contenders; i++)
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++)
-                fill_cost(&rows[i * ROWS_EACH + (size_t)(p * PHASES + phase)], &costs[p][i][phase]);
+                scene_row_cost(&rows[i * ROWS_EACH + (size_t)(p * PHASES + phase)], &costs[p][i][phase]);
     snapshots_free(&snapshots);
     free(launches);
     free(costs[0]);
