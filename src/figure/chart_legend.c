@@ -45,7 +45,7 @@ static void put_entry(const ChartLayout *layout, int entry, const char *text) {
 
 /* Names the lines that have a count, `offset` into them, as far as there is room. */
 static void put_counts(const ChartLayout *layout, const char *why, size_t offset) {
-    enum { ROOM = 70 };
+    enum { ROOM = 52 };
     const char *separator = why;
     size_t length = 0;
     for (int i = 0; i < layout->chart->line_count; i++) {
