@@ -3,6 +3,7 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -146,6 +147,7 @@ static void adapt(Strategy *s, int generation) {
 }
 
 bool cma_es_minimize(const CmaEs *task, double *best, const Progress *progress, Error *error) {
+    gsl_set_error_handler_off(); /* its default aborts */
     Strategy s;
     double *point = calloc((size_t)task->dimension, sizeof *point);
     bool ok = strategy_begin(&s, task, best) && point != NULL;

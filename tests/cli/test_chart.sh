@@ -29,7 +29,8 @@ run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
     fail "other figures of the pyramid: $(head -5 difference)"
 
-# What is cut off goes on where it stopped, to the same figures.
+# What is cut off goes on where it stopped, to the same figures; what was done is not done again, so a figure that was
+# changed in between stays.
 "$twinbox" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick >out 2>err </dev/null &
 for _ in $(seq 2000); do
     ls part/*.part.csv >/dev/null 2>&1 && break
@@ -41,8 +42,17 @@ equal "exit status of a chart cut off" $? 2
 complains "stopped after"
 equal "what was done is kept" "$(ls part | grep -c '\.part\.csv$')" 1
 [ -e part/chart.csv ] && fail "a chart cut off has a table"
+name=$(cd part && ls ./*.part.csv)
+cp "part/$name" part.csv
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 without_times part/chart.csv | cmp -s - figures.csv || fail "a chart gone on with has other figures"
+mkdir changed
+sed '3s/^single,\([^,]*\),\([^,]*\),frozen,after,5,\(.*\),[^,]*,[^,]*,[^,]*,[^,]*,,,,$/single,\1,\2,frozen,after,5,\3,0.375,0.25,0.5,1,,,,/' \
+    part.csv >"changed/$name"
+run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o changed --quick
+without_times changed/chart.csv | diff - figures.csv >difference
+equal "figures changed by hand that stay" "$(grep -c 'frozen,after,5,0.375' difference)" 1
+equal "other differences" "$(grep -c '^[<>]' difference)" 2
 equal "what was done is gone" "$(ls part | grep -c '\.part\.csv$')" 0
 
 # Launches of one's own.

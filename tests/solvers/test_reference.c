@@ -214,8 +214,25 @@ static void many_plain_sweeps_find_the_same(void **state) {
     }
 }
 
-/* One sweep of the engine, begun with the reference's impulses, moves nothing but the last bits of a float. */
-static void the_reference_is_a_fixed_point_of_the_engine(void **state) {
+/* What every solver that converges does with the reference's impulses as its warm start: nothing but move the last
+   bits of a float. */
+static void assert_fixed_point(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                               const Reference *reference) {
+    Error error = {0};
+    ContactSolver solver = make_solver(kind, text);
+    BodyVelocity velocities[8];
+    ContactImpulse impulses[64];
+    ContactSolution solution = {velocities, impulses};
+    assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+    for (int i = 0; i < problem->body_count; i++) {
+        assert_near(velocities[i].linear.x, reference->velocities[i].x, 2e-5);
+        assert_near(velocities[i].linear.y, reference->velocities[i].y, 2e-5);
+        assert_near(velocities[i].angular, reference->velocities[i].spin, 2e-5);
+    }
+    free_solver(&solver);
+}
+
+static void the_reference_is_a_fixed_point_of_every_convergent_solver(void **state) {
     (void)state;
     for (int steps = 2; steps < 26; steps += 4) {
         World *world = make_heap(steps);
@@ -228,16 +245,13 @@ static void the_reference_is_a_fixed_point_of_the_engine(void **state) {
             contacts[i].warm_tangent = (float)reference.impulses[i].tangent;
         }
         problem.contacts = contacts;
-        BodyVelocity velocities[8];
-        ContactImpulse impulses[64];
-        ContactSolution solution = {velocities, impulses};
-        sequential_impulses_solve(&problem, &(SequentialOptions){.accumulate = true, .warm = true, .relaxation = 1}, 1,
-                                  &solution);
-        for (int i = 0; i < problem.body_count; i++) {
-            assert_near(velocities[i].linear.x, reference.velocities[i].x, 2e-5);
-            assert_near(velocities[i].linear.y, reference.velocities[i].y, 2e-5);
-            assert_near(velocities[i].angular, reference.velocities[i].spin, 2e-5);
-        }
+        assert_fixed_point(&solver_sequential_impulses, "k=1", &problem, &reference);
+        assert_fixed_point(&solver_sequential_impulses, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_over_relaxation, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_momentum, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_nncg, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_block, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_reference, "", &problem, &reference);
         reference_free(&reference);
         world_destroy(world);
     }
@@ -381,7 +395,7 @@ int main(void) {
         cmocka_unit_test(boxes_that_crash_go_on_together),
         cmocka_unit_test(a_light_box_carries_a_heavy_one),
         cmocka_unit_test(many_plain_sweeps_find_the_same),
-        cmocka_unit_test(the_reference_is_a_fixed_point_of_the_engine),
+        cmocka_unit_test(the_reference_is_a_fixed_point_of_every_convergent_solver),
         cmocka_unit_test(the_reference_keeps_the_law_of_contact),
         cmocka_unit_test(the_residual_tells_how_far_a_solve_got),
         cmocka_unit_test(the_residual_is_what_a_plain_sweep_changes),
