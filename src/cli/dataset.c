@@ -5,19 +5,30 @@
 #include "dataset/dataset.h"
 
 #include <stdio.h>
+#include <string.h>
 
-enum { BOMB_X = 256, SEED };
+enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, SEED };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DATA.npz", 0, "Where the dataset goes", 0},
-    {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches of each scene, m (default: -5:5:0.05, the paper's)", 0},
-    {"seed", SEED, "N", 0, "Draws the fifth of the launches that is held out for testing (default: 1)", 0},
+    {"bomb-x", BOMB_X, "A:B:STEP", 0,
+     "Launches of each scene swept over x, m (default: -5:5:0.05, the paper's; none with --random alone)", 0},
+    {"random", RANDOM, "N", 0,
+     "Further launches of each scene, drawn: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)", 0},
+    {"inputs", INPUTS, "NAME", 0, "How a pair is seen: relative (default), raw, or raw-unturned, without rotations", 0},
+    {"target", TARGET, "NAME", 0,
+     "What is recorded: pair (default), what a pair's own impulses changed in the step; net, what all impulses changed "
+     "of its bodies; impulse, what one visit of the pair in one sweep changed",
+     0},
+    {"labels", LABELS, "NAME", 0, "By whom: engine (default), or the converged reference", 0},
+    {"seed", SEED, "N", 0,
+     "Draws the launches of --random, and the fifth of all that is held out for testing (default: 1)", 0},
     {0}};
 
 typedef struct Options {
     DatasetOptions dataset;
     const char *scenes[DATASET_MAX_SCENES];
-    const char *output, *bomb_x, *seed;
+    const char *output, *bomb_x, *random, *inputs, *target, *labels, *seed;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -25,6 +36,10 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     switch (key) {
     case 'o': options->output = value; break;
     case BOMB_X: options->bomb_x = value; break;
+    case RANDOM: options->random = value; break;
+    case INPUTS: options->inputs = value; break;
+    case TARGET: options->target = value; break;
+    case LABELS: options->labels = value; break;
     case SEED: options->seed = value; break;
     case ARGP_KEY_ARG:
         if (options->dataset.scene_count == DATASET_MAX_SCENES)
@@ -44,26 +59,56 @@ static const struct argp argp = {
     option_table,
     parse,
     "SCENE...",
-    "Record, for every touching pair in every step of every launch, relative position, velocities, angular "
-    "velocities and rotations before the solve, and the change that the pair's impulses made.\v"
-    "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz",
+    "Record, for every touching pair in every step of every launch, positions, velocities, angular velocities and "
+    "rotations before the solve, and the change that it made.\v"
+    "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
+    "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse",
     NULL,
     NULL,
     NULL};
 
+/* The place of a word in a list; the message names them all. */
+static bool find_word(const char *option, const char *word, const char *const *words, int count, int *place,
+                      Error *error) {
+    char known[128] = "";
+    for (*place = 0; *place < count; ++*place) {
+        if (strcmp(words[*place], word) == 0) return true;
+        size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "", words[*place]);
+    }
+    return error_input(error, option, "'%.64s' is none of %s", word, known);
+}
+
+static bool choose(Options *options, Error *error) {
+    DatasetOptions *dataset = &options->dataset;
+    const char *views[PAIR_VIEWS];
+    int view = 0, target = 0, labels = 0;
+    for (int v = 0; v < PAIR_VIEWS; v++) views[v] = pair_views[v].name;
+    if (options->bomb_x == NULL && options->random == NULL) options->bomb_x = "-5:5:0.05";
+    bool ok = (options->bomb_x == NULL || option_range("--bomb-x", options->bomb_x, &dataset->bomb_x, error)) &&
+              (options->random == NULL ||
+               option_int("--random", options->random, 1, DATASET_MAX_LAUNCHES, &dataset->random, error)) &&
+              find_word("--inputs", options->inputs, views, PAIR_VIEWS, &view, error) &&
+              find_word("--target", options->target, dataset_target_names, DATASET_TARGETS, &target, error) &&
+              find_word("--labels", options->labels, dataset_label_names, DATASET_LABELS, &labels, error) &&
+              option_seed("--seed", options->seed, &dataset->seed, error);
+    dataset->view = (PairView)view;
+    dataset->target = (DatasetTarget)target;
+    dataset->labels = (DatasetLabels)labels;
+    return ok;
+}
+
 int command_dataset(int argc, char **argv, Error *error) {
-    Options options = {.bomb_x = "-5:5:0.05", .seed = "1"};
+    Options options = {.inputs = "relative", .target = "pair", .labels = "engine", .seed = "1"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     options.dataset.scenes = options.scenes;
-    if (!option_range("--bomb-x", options.bomb_x, &options.dataset.bomb_x, error) ||
-        !option_seed("--seed", options.seed, &options.dataset.seed, error))
-        return STATUS_DIFFERENT;
+    if (!choose(&options, error)) return STATUS_DIFFERENT;
     ProgressBar bar;
     progress_bar_begin(&bar, "recording launches");
     Dataset *dataset = dataset_record(&options.dataset, &bar.progress, error);
     progress_bar_end(&bar);
     bool ok = dataset != NULL && dataset_write(dataset, options.output, error);
-    if (ok) printf("%lld pairs of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);
+    if (ok) printf("%lld rows of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);
     dataset_destroy(dataset);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;
 }

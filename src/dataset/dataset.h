@@ -1,41 +1,69 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): for every touching pair of bodies and every
-   step, what the solver saw and what it did to that pair. */
+/* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): for touching pairs of bodies, what the solver saw
+   and what it did. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
 #include "common/progress.h"
 #include "dynamics/pair.h"
+#include "scene/launch.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum { DATASET_VERSION = 1, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128 };
+enum { DATASET_VERSION = 2, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
+
+/* What of a pair is to be predicted; the paper leaves it open. A row is a pair in a step, or for DATASET_IMPULSE a pair
+   in one sweep of a step, with the velocities that it then had. */
+typedef enum DatasetTarget {
+    DATASET_PAIR,    /* what the pair's own impulses changed over the step */
+    DATASET_NET,     /* what all impulses changed of its two bodies over the step */
+    DATASET_IMPULSE, /* what one visit of the pair in one sweep changed */
+    DATASET_TARGETS
+} DatasetTarget;
+
+/* Where the changes come from: the engine's own solution, or the converged one of the same contact problem
+   (solvers/reference.h): the paper's more accurate source. */
+typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
+
+extern const char *const dataset_target_names[DATASET_TARGETS];
+extern const char *const dataset_label_names[DATASET_LABELS];
 
 typedef struct Dataset {
+    PairView view;
+    DatasetTarget target;
+    DatasetLabels labels;
     int64_t rows;
-    float *inputs;   /* [rows, PAIR_INPUTS]: pair_inputs() */
-    float *changes;  /* [rows, PAIR_CHANGES]: pair_changes() */
+    float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
+    float *changes;  /* [rows, PAIR_CHANGES] */
     int32_t *launch; /* [rows] which launch the row comes from */
     int32_t *frame;  /* [rows] number of the step */
     int32_t *bodies; /* [rows, 2] */
     int launches;
-    int32_t *launch_scene; /* [launches] index into scenes */
-    float *launch_x;       /* [launches] bomb x, m */
-    uint8_t *launch_test;  /* [launches] 1: held out for the test score (80/20, drawn with the seed) */
+    int32_t *launch_scene;                           /* [launches] index into scenes */
+    float *launch_x, *launch_rotation, *launch_spin; /* [launches] of the bomb; m, rad, rad/s */
+    uint8_t *launch_test; /* [launches] 1: held out for the test score (80/20, drawn with the seed) */
     int scene_count;
     char scenes[DATASET_MAX_SCENES][DATASET_NAME_SIZE];
 } Dataset;
 
+/* Numbers in a row of inputs. */
+static inline int dataset_inputs(const Dataset *dataset) { return pair_views[dataset->view].count; }
+
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
-    FloatRange bomb_x; /* m, of the launches; at least 5 of them, so that one can be held out */
-    uint64_t seed;     /* of the 80/20 split by launch */
+    FloatRange bomb_x; /* m: launches of each scene swept over x, rotation and spin the scene's; may have none */
+    int random;        /* further launches of each scene: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
+    PairView view;
+    DatasetTarget target;
+    DatasetLabels labels;
+    uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;
 
 /* Runs every launch of every scene by the engine and records it. The result does not depend on the number of
-   threads. ERROR_INPUT where a scene cannot be read or has no bomb, or progress asks to stop. */
+   threads. ERROR_INPUT where a scene cannot be read or has no bomb, there are less than 5 launches a scene (so that one
+   can be held out), the target has no labels, or progress asks to stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), launch_scene, launch_x,
-   launch_test [launches], inputs [rows, 10], changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
+/* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
+   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10 or 12], changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
 #include "dataset/dataset.h"
 
 #include "common/npz.h"
@@ -11,6 +11,9 @@
 #include <string.h>
 
 #define KIND "dataset"
+
+const char *const dataset_target_names[DATASET_TARGETS] = {"pair", "net", "impulse"};
+const char *const dataset_label_names[DATASET_LABELS] = {"engine", "reference"};
 
 enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
 
@@ -23,6 +26,8 @@ void dataset_destroy(Dataset *dataset) {
     free(dataset->bodies);
     free(dataset->launch_scene);
     free(dataset->launch_x);
+    free(dataset->launch_rotation);
+    free(dataset->launch_spin);
     free(dataset->launch_test);
     free(dataset);
 }
@@ -43,11 +48,16 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
     const NpzArray arrays[] = {
         {"version", NPZ_INT32, 0, {0}, &version},
         {"kind", NPZ_TEXT, 0, {0}, KIND},
+        {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
+        {"target", NPZ_TEXT, 0, {0}, dataset_target_names[dataset->target]},
+        {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
         {"scenes", NPZ_TEXT, 0, {0}, scenes},
         {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
         {"launch_x", NPZ_FLOAT32, 1, {launches}, dataset->launch_x},
+        {"launch_rotation", NPZ_FLOAT32, 1, {launches}, dataset->launch_rotation},
+        {"launch_spin", NPZ_FLOAT32, 1, {launches}, dataset->launch_spin},
         {"launch_test", NPZ_UINT8, 1, {launches}, dataset->launch_test},
-        {"inputs", NPZ_FLOAT32, 2, {rows, PAIR_INPUTS}, dataset->inputs},
+        {"inputs", NPZ_FLOAT32, 2, {rows, dataset_inputs(dataset)}, dataset->inputs},
         {"changes", NPZ_FLOAT32, 2, {rows, PAIR_CHANGES}, dataset->changes},
         {"launch", NPZ_INT32, 1, {rows}, dataset->launch},
         {"frame", NPZ_INT32, 1, {rows}, dataset->frame},
@@ -86,6 +96,30 @@ static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error
     return true;
 }
 
+/* The place of a stored word in a list. */
+static bool read_word(NpzFile *file, const char *path, const char *name, const char *const *words, int count,
+                      int *place, Error *error) {
+    char text[32];
+    if (!npz_read_text(file, name, text, sizeof text, error)) return false;
+    for (*place = 0; *place < count; ++*place)
+        if (strcmp(words[*place], text) == 0) return true;
+    return error_input(error, path, "%s: a word that is not known", name);
+}
+
+static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+    const char *views[PAIR_VIEWS];
+    int view, target, labels;
+    for (int v = 0; v < PAIR_VIEWS; v++) views[v] = pair_views[v].name;
+    if (!read_word(file, path, "view", views, PAIR_VIEWS, &view, error) ||
+        !read_word(file, path, "target", dataset_target_names, DATASET_TARGETS, &target, error) ||
+        !read_word(file, path, "labels", dataset_label_names, DATASET_LABELS, &labels, error))
+        return false;
+    dataset->view = (PairView)view;
+    dataset->target = (DatasetTarget)target;
+    dataset->labels = (DatasetLabels)labels;
+    return true;
+}
+
 static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
     int64_t launches, shape[2];
     if (!npz_shape(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) return false;
@@ -96,9 +130,11 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
-    const int64_t inputs[] = {rows, PAIR_INPUTS}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
+    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
     return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
            (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
+           (dataset->launch_rotation = npz_read(file, "launch_rotation", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
+           (dataset->launch_spin = npz_read(file, "launch_spin", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
            (dataset->launch_test = npz_read(file, "launch_test", NPZ_UINT8, 1, &launches, error)) != NULL &&
            (dataset->inputs = npz_read(file, "inputs", NPZ_FLOAT32, 2, inputs, error)) != NULL &&
            (dataset->changes = npz_read(file, "changes", NPZ_FLOAT32, 2, changes, error)) != NULL &&
@@ -141,7 +177,9 @@ static bool check_contents(const Dataset *dataset, const char *path, Error *erro
     const int64_t rows = dataset->rows, launches = dataset->launches;
     return check_indices(dataset->launch_scene, launches, dataset->scene_count, "launch_scene", path, error) &&
            check_finite(dataset->launch_x, launches, "launch_x", path, error) &&
-           check_finite(dataset->inputs, rows * PAIR_INPUTS, "inputs", path, error) &&
+           check_finite(dataset->launch_rotation, launches, "launch_rotation", path, error) &&
+           check_finite(dataset->launch_spin, launches, "launch_spin", path, error) &&
+           check_finite(dataset->inputs, rows * dataset_inputs(dataset), "inputs", path, error) &&
            check_finite(dataset->changes, rows * PAIR_CHANGES, "changes", path, error) &&
            check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
            check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
@@ -155,7 +193,8 @@ Dataset *dataset_read(const char *path, Error *error) {
     Dataset *dataset = calloc(1, sizeof *dataset);
     if (dataset == NULL) error_memory(error, path);
     if (dataset != NULL && !(check_version(file, path, error) && read_scenes(file, path, dataset, error) &&
-                             read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
+                             read_words(file, path, dataset, error) && read_arrays(file, path, dataset, error) &&
+                             check_contents(dataset, path, error))) {
         dataset_destroy(dataset);
         dataset = NULL;
     }

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/array.h"
 #include "common/parallel.h"
-#include "dataset/dataset.h"
+#include "dataset/dataset_launches.h"
 #include "simulate/simulate.h"
+#include "solvers/reference.h"
+#include "solvers/sequential_impulses.h"
 
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One touching pair in one step. */
+/* One touching pair in one step, or in one sweep of it. */
 typedef struct PairRow {
-    float inputs[PAIR_INPUTS], changes[PAIR_CHANGES];
+    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES];
     int32_t frame, bodies[2];
 } PairRow;
 
@@ -22,68 +22,113 @@ typedef struct LaunchRows {
     size_t start; /* of its rows in the dataset */
 } LaunchRows;
 
-static bool observe(void *context, int frame, const World *world, Error *error) {
-    LaunchRows *launch = context;
+/* The launch that a thread is recording. */
+typedef struct LaunchRecorder {
+    const Dataset *dataset; /* what is to be recorded */
+    const Scene *scene;
+    LaunchRows *launch;
+    Reference reference;
+    BodyVelocity *velocities;
+    ContactImpulse *impulses;
+    size_t velocity_capacity, impulse_capacity;
+} LaunchRecorder;
+
+static bool reserve(LaunchRecorder *recorder, const ContactProblem *problem) {
+    return array_reserve((void **)&recorder->velocities, &recorder->velocity_capacity, (size_t)problem->body_count,
+                         sizeof *recorder->velocities) &&
+           array_reserve((void **)&recorder->impulses, &recorder->impulse_capacity, (size_t)problem->contact_count + 1,
+                         sizeof *recorder->impulses);
+}
+
+/* The solution of the step's problem that the changes are taken from. */
+static bool label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, Error *error) {
     const ContactProblem *problem = world_problem(world);
+    *solution = *world_solution(world);
+    if (recorder->dataset->labels == DATASET_BY_ENGINE) return true;
+    Reference *reference = &recorder->reference;
+    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reserve(recorder, problem)) return error_memory(error, "dataset");
+    for (int i = 0; i < problem->body_count; i++) {
+        const ReferenceVelocity *v = &reference->velocities[i];
+        recorder->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        recorder->impulses[i] =
+            (ContactImpulse){(float)reference->impulses[i].normal, (float)reference->impulses[i].tangent};
+    *solution = (ContactSolution){recorder->velocities, recorder->impulses};
+    return true;
+}
+
+/* A new row of a pair with its inputs; velocities: NULL, or those it has now. NULL when memory is short. */
+static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProblem *problem, int first,
+                        const BodyVelocity *velocities) {
+    LaunchRows *launch = recorder->launch;
+    if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows)) return NULL;
+    PairRow *row = &launch->rows[launch->count++];
+    row->frame = frame;
+    row->bodies[0] = problem->contacts[first].a;
+    row->bodies[1] = problem->contacts[first].b;
+    pair_inputs(problem, velocities, row->bodies[0], row->bodies[1], recorder->dataset->view, row->inputs);
+    return row;
+}
+
+/* changes[3]: from one velocity to another. */
+static void difference(float *changes, const BodyVelocity *to, const BodyVelocity *from) {
+    changes[0] = to->linear.x - from->linear.x;
+    changes[1] = to->linear.y - from->linear.y;
+    changes[2] = to->angular - from->angular;
+}
+
+static void net_change(float *changes, const ContactProblem *problem, const ContactSolution *solution, int body) {
+    const ProblemBody *before = &problem->bodies[body];
+    const BodyVelocity free = {before->velocity, before->angular_velocity};
+    difference(changes, &solution->velocities[body], &free);
+}
+
+static bool record_step(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution solution;
+    if (!label(recorder, world, &solution, error)) return false;
     for (int first = 0, count; first < problem->contact_count; first += count) {
         count = pair_contact_count(problem, first);
-        if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows))
-            return error_memory(error, "dataset");
-        PairRow *row = &launch->rows[launch->count++];
-        row->frame = frame;
-        row->bodies[0] = problem->contacts[first].a;
-        row->bodies[1] = problem->contacts[first].b;
-        pair_inputs(problem, row->bodies[0], row->bodies[1], row->inputs);
-        pair_changes(problem, world_solution(world), first, count, row->changes);
+        PairRow *row = add_row(recorder, frame, problem, first, NULL);
+        if (row == NULL) return error_memory(error, "dataset");
+        if (recorder->dataset->target == DATASET_PAIR) {
+            pair_changes(problem, &solution, first, count, row->changes);
+        } else {
+            net_change(row->changes, problem, &solution, row->bodies[0]);
+            net_change(row->changes + 3, problem, &solution, row->bodies[1]);
+        }
     }
     return true;
 }
 
-/* Draws which launches are held out: a fifth of each scene's, at least one. */
-static bool split(Dataset *dataset, int launches_per_scene, uint64_t seed, Error *error) {
-    gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
-    int *order = malloc((size_t)launches_per_scene * sizeof *order);
-    if (generator == NULL || order == NULL) {
-        if (generator != NULL) gsl_rng_free(generator);
-        free(order);
-        return error_memory(error, "dataset");
-    }
-    gsl_rng_set(generator, (unsigned long)seed);
-    for (int scene = 0; scene < dataset->scene_count; scene++) {
-        for (int i = 0; i < launches_per_scene; i++) order[i] = i;
-        gsl_ran_shuffle(generator, order, (size_t)launches_per_scene, sizeof *order);
-        for (int i = 0; i < launches_per_scene / 5; i++)
-            dataset->launch_test[scene * launches_per_scene + order[i]] = 1;
-    }
-    gsl_rng_free(generator);
-    free(order);
+/* The engine's sweeps once more, in plain text, pair by pair. */
+static bool record_visits(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
+    const SequentialOptions options = {
+        .accumulate = recorder->scene->accumulate_impulses, .warm = true, .relaxation = 1};
+    if (!reserve(recorder, problem)) return error_memory(error, "dataset");
+    ContactSolution solution = {recorder->velocities, recorder->impulses};
+    sequential_impulses_begin(problem, &options, &solution);
+    for (int sweep = 0; sweep < recorder->scene->iterations; sweep++)
+        for (int first = 0, count; first < problem->contact_count; first += count) {
+            count = pair_contact_count(problem, first);
+            PairRow *row = add_row(recorder, frame, problem, first, solution.velocities);
+            if (row == NULL) return error_memory(error, "dataset");
+            const BodyVelocity *a = &solution.velocities[row->bodies[0]], *b = &solution.velocities[row->bodies[1]];
+            BodyVelocity before_a = *a, before_b = *b;
+            sequential_impulses_visit(problem, &options, first, count, &solution);
+            difference(row->changes, a, &before_a);
+            difference(row->changes + 3, b, &before_b);
+        }
     return true;
 }
 
-/* The launch tables, without rows yet. */
-static Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error) {
-    Dataset *dataset = calloc(1, sizeof *dataset);
-    if (dataset == NULL) {
-        error_memory(error, "dataset");
-        return NULL;
-    }
-    int per_scene = options->bomb_x.count;
-    size_t launches = (size_t)options->scene_count * (size_t)per_scene;
-    dataset->launch_scene = malloc(launches * sizeof *dataset->launch_scene);
-    dataset->launch_x = malloc(launches * sizeof *dataset->launch_x);
-    dataset->launch_test = calloc(launches, sizeof *dataset->launch_test);
-    dataset->launches = (int)launches;
-    dataset->scene_count = options->scene_count;
-    bool ok = dataset->launch_scene != NULL && dataset->launch_x != NULL && dataset->launch_test != NULL;
-    if (!ok) error_memory(error, "dataset");
-    for (int i = 0; ok && i < dataset->launches; i++) {
-        dataset->launch_scene[i] = i / per_scene;
-        dataset->launch_x[i] = range_value(&options->bomb_x, i % per_scene);
-    }
-    for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
-    if (ok && split(dataset, per_scene, options->seed, error)) return dataset;
-    dataset_destroy(dataset);
-    return NULL;
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    LaunchRecorder *recorder = context;
+    return recorder->dataset->target == DATASET_IMPULSE ? record_visits(recorder, frame, world, error)
+                                                        : record_step(recorder, frame, world, error);
 }
 
 /* What the threads share. */
@@ -96,18 +141,23 @@ typedef struct Recording {
 static bool record_launch(void *context, int index, Error *error) {
     const Recording *recording = context;
     const Dataset *dataset = recording->dataset;
-    Scene scene = *recording->scenes[dataset->launch_scene[index]];
-    scene.bomb.body.position.x = dataset->launch_x[index];
+    Scene scene = dataset_launch(dataset, recording->scenes, index);
+    LaunchRecorder recorder = {.dataset = dataset, .scene = &scene, .launch = &recording->launches[index]};
     Method method;
-    StepObserver observer = {observe, &recording->launches[index]};
-    return method_parse(&method, "engine", error) && simulate_observed(&scene, &method, &observer, error);
+    StepObserver observer = {observe, &recorder};
+    bool ok = method_parse(&method, "engine", error) && simulate_observed(&scene, &method, &observer, error);
+    reference_free(&recorder.reference);
+    free(recorder.velocities);
+    free(recorder.impulses);
+    return ok;
 }
 
 /* Copies the rows of launch i to row `at` and on. */
 static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t at) {
+    size_t inputs = (size_t)dataset_inputs(dataset);
     for (size_t k = 0; k < launch->count; k++, at++) {
         const PairRow *row = &launch->rows[k];
-        memcpy(dataset->inputs + at * PAIR_INPUTS, row->inputs, sizeof row->inputs);
+        memcpy(dataset->inputs + at * inputs, row->inputs, inputs * sizeof *row->inputs);
         memcpy(dataset->changes + at * PAIR_CHANGES, row->changes, sizeof row->changes);
         dataset->launch[at] = i;
         dataset->frame[at] = row->frame;
@@ -124,7 +174,7 @@ static bool gather(Dataset *dataset, LaunchRows *launches, Error *error) {
         launches[i].start = rows;
         rows += launches[i].count;
     }
-    dataset->inputs = malloc((rows + 1) * PAIR_INPUTS * sizeof *dataset->inputs);
+    dataset->inputs = malloc((rows + 1) * (size_t)dataset_inputs(dataset) * sizeof *dataset->inputs);
     dataset->changes = malloc((rows + 1) * PAIR_CHANGES * sizeof *dataset->changes);
     dataset->launch = malloc((rows + 1) * sizeof *dataset->launch);
     dataset->frame = malloc((rows + 1) * sizeof *dataset->frame);
@@ -163,9 +213,14 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
                     DATASET_MAX_SCENES);
         return NULL;
     }
-    if (options->bomb_x.count < 5) {
-        error_input(error, "dataset", "%d launches a scene; at least 5 are needed to hold out a fifth",
-                    options->bomb_x.count);
+    int launches = options->bomb_x.count + options->random;
+    if (launches < 5 || launches > DATASET_MAX_LAUNCHES) {
+        error_input(error, "dataset", "%d launches a scene; at least 5 are needed to hold out a fifth, at most %d",
+                    launches, DATASET_MAX_LAUNCHES);
+        return NULL;
+    }
+    if (options->target == DATASET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
+        error_input(error, "dataset", "the target impulse is what a sweep of the engine does; the reference has none");
         return NULL;
     }
     Scene *scenes[DATASET_MAX_SCENES] = {NULL};

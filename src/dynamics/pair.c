@@ -1,22 +1,59 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dynamics/pair.h"
 
-const char pair_input_names[] = "dx dy vxa vya vxb vyb wa wb angle_a angle_b";
+#include <string.h>
+
+const PairViewInfo pair_views[PAIR_VIEWS] = {
+    [PAIR_RELATIVE] = {"relative", 10, "dx dy vxa vya vxb vyb wa wb angle_a angle_b"},
+    [PAIR_RAW] = {"raw", 12, "xa ya xb yb vxa vya vxb vyb wa wb angle_a angle_b"},
+    [PAIR_RAW_UNTURNED] = {"raw-unturned", 10, "xa ya xb yb vxa vya vxb vyb wa wb"}};
 const char pair_change_names[] = "dvxa dvya dwa dvxb dvyb dwb";
 
-void pair_inputs(const ContactProblem *problem, int a, int b, float inputs[PAIR_INPUTS]) {
+bool pair_view_find(const char *name, PairView *view) {
+    for (PairView v = 0; v < PAIR_VIEWS; v++) {
+        if (strcmp(pair_views[v].name, name) != 0) continue;
+        *view = v;
+        return true;
+    }
+    return false;
+}
+
+bool pair_view_of_inputs(const char *inputs, PairView *view) {
+    for (PairView v = 0; v < PAIR_VIEWS; v++) {
+        if (strcmp(pair_views[v].inputs, inputs) != 0) continue;
+        *view = v;
+        return true;
+    }
+    return false;
+}
+
+void pair_inputs(const ContactProblem *problem, const BodyVelocity *velocities, int a, int b, PairView view,
+                 float *inputs) {
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
-    const float values[PAIR_INPUTS] = {body_b->position.x - body_a->position.x,
-                                       body_b->position.y - body_a->position.y,
-                                       body_a->velocity.x,
-                                       body_a->velocity.y,
-                                       body_b->velocity.x,
-                                       body_b->velocity.y,
-                                       body_a->angular_velocity,
-                                       body_b->angular_velocity,
-                                       body_a->angle,
-                                       body_b->angle};
-    for (int i = 0; i < PAIR_INPUTS; i++) inputs[i] = values[i];
+    BodyVelocity of_a = {body_a->velocity, body_a->angular_velocity};
+    BodyVelocity of_b = {body_b->velocity, body_b->angular_velocity};
+    if (velocities != NULL) {
+        of_a = velocities[a];
+        of_b = velocities[b];
+    }
+    if (view == PAIR_RELATIVE) {
+        *inputs++ = body_b->position.x - body_a->position.x;
+        *inputs++ = body_b->position.y - body_a->position.y;
+    } else {
+        *inputs++ = body_a->position.x;
+        *inputs++ = body_a->position.y;
+        *inputs++ = body_b->position.x;
+        *inputs++ = body_b->position.y;
+    }
+    *inputs++ = of_a.linear.x;
+    *inputs++ = of_a.linear.y;
+    *inputs++ = of_b.linear.x;
+    *inputs++ = of_b.linear.y;
+    *inputs++ = of_a.angular;
+    *inputs++ = of_b.angular;
+    if (view == PAIR_RAW_UNTURNED) return;
+    *inputs++ = body_a->angle;
+    *inputs++ = body_b->angle;
 }
 
 void pair_changes(const ContactProblem *problem, const ContactSolution *solution, int first, int count,

@@ -25,9 +25,10 @@
 
 typedef struct PairNet {
     Network *network;
+    PairView view;
     bool constant; /* the mean of the training data in place of what the network says */
     float *scratch;
-    float *numbers; /* inputs[PAIR_INPUTS, pairs], then outputs[.., pairs], of the step's pairs */
+    float *numbers; /* inputs[.., pairs], then outputs[.., pairs], of the step's pairs */
     size_t capacity;
 } PairNet;
 
@@ -55,10 +56,13 @@ static PairNet *create_as(const char *name, const Settings *chosen, Error *error
     }
     solver->network = network_read(path, error);
     if (solver->network == NULL) goto fail;
-    int inputs = solver->network->widths[0], outputs = solver->network->widths[solver->network->layers];
-    if (inputs != PAIR_INPUTS || (outputs != 2 && outputs != PAIR_CHANGES)) {
-        error_input(error, path, "a network with %d inputs and %d outputs; pair-net needs %d and 2 or %d", inputs,
-                    outputs, PAIR_INPUTS, PAIR_CHANGES);
+    const Network *network = solver->network;
+    int inputs = network->widths[0], outputs = network->widths[network->layers];
+    if (!pair_view_of_inputs(network->inputs, &solver->view) || inputs != pair_views[solver->view].count ||
+        (outputs != 2 && outputs != PAIR_CHANGES)) {
+        error_input(error, path, "a network with %d inputs (%.80s) and %d outputs; pair-net needs %d (%s) and 2 or %d",
+                    inputs, network->inputs, outputs, pair_views[PAIR_RELATIVE].count, pair_views[PAIR_RELATIVE].inputs,
+                    PAIR_CHANGES);
         goto fail;
     }
     solver->scratch = malloc(network_batch_scratch(solver->network) * sizeof *solver->scratch);
@@ -116,7 +120,8 @@ static int count_pairs(const ContactProblem *problem) {
 
 /* The network's outputs[.., pairs] for all pairs of the step, in the solver's numbers. NULL: no memory. */
 static const float *predict_pairs(PairNet *solver, const ContactProblem *problem, int pairs) {
-    const size_t inputs_size = (size_t)pairs * PAIR_INPUTS;
+    const int count = pair_views[solver->view].count;
+    const size_t inputs_size = (size_t)pairs * (size_t)count;
     const size_t outputs_size = (size_t)pairs * (size_t)solver->network->widths[solver->network->layers];
     if (!array_reserve((void **)&solver->numbers, &solver->capacity, inputs_size + outputs_size, sizeof(float)))
         return NULL;
@@ -126,9 +131,9 @@ static const float *predict_pairs(PairNet *solver, const ContactProblem *problem
         return outputs;
     }
     for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
-        float numbers[PAIR_INPUTS];
-        pair_inputs(problem, problem->contacts[first].a, problem->contacts[first].b, numbers);
-        for (int i = 0; i < PAIR_INPUTS; i++) inputs[i * pairs + p] = numbers[i];
+        float numbers[PAIR_INPUTS_MAX];
+        pair_inputs(problem, NULL, problem->contacts[first].a, problem->contacts[first].b, solver->view, numbers);
+        for (int i = 0; i < count; i++) inputs[i * pairs + p] = numbers[i];
     }
     network_predict_batch(solver->network, inputs, solver->scratch, outputs, pairs);
     return outputs;

@@ -94,10 +94,15 @@ void sequential_impulses_begin(const ContactProblem *problem, const SequentialOp
     if (options->accumulate) warm_start(problem, options->warm, solution);
 }
 
+void sequential_impulses_visit(const ContactProblem *problem, const SequentialOptions *options, int first, int count,
+                               ContactSolution *solution) {
+    for (int i = first; i < first + count; i++)
+        solve_contact(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i], options);
+}
+
 void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution) {
-    for (int i = 0; i < problem->contact_count; i++)
-        solve_contact(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i], options);
+    sequential_impulses_visit(problem, options, 0, problem->contact_count, solution);
 }
 
 void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,

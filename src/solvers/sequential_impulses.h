@@ -15,7 +15,11 @@ typedef struct SequentialOptions {
 void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution);
 
-/* Once over the contacts. */
+/* Once over the contacts from `first` on, `count` of them. */
+void sequential_impulses_visit(const ContactProblem *problem, const SequentialOptions *options, int first, int count,
+                               ContactSolution *solution);
+
+/* Once over all contacts. */
 void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution);
 

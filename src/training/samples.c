@@ -8,7 +8,7 @@
 static bool is_test(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
 
 static float input_at(const Dataset *dataset, int64_t row, int column) {
-    return dataset->inputs[row * PAIR_INPUTS + column];
+    return dataset->inputs[row * dataset_inputs(dataset) + column];
 }
 
 static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {

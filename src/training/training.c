@@ -30,8 +30,9 @@ static bool check_options(const Dataset *dataset, const TrainingOptions *options
         return error_input(error, "layers", "%d layers of weights; 1 to %d are possible", options->layers,
                            NETWORK_MAX_LAYERS);
     int first = options->widths[0], last = options->widths[options->layers];
-    if (first != PAIR_INPUTS)
-        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first, PAIR_INPUTS);
+    if (first != dataset_inputs(dataset))
+        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
+                           dataset_inputs(dataset));
     if (last != 2 && last != PAIR_CHANGES)
         return error_input(error, "layers", "the last width is %d; 2 (relative velocity) or %d (both bodies) are known",
                            last, PAIR_CHANGES);
@@ -71,7 +72,7 @@ static Network *new_network(const Dataset *dataset, const TrainingOptions *optio
     bool six = options->widths[options->layers] == PAIR_CHANGES;
     for (int l = 0; l < network->layers; l++) network->activations[l] = ACTIVATION_SIGMOID;
     if (six) network->activations[network->layers - 1] = ACTIVATION_LINEAR;
-    snprintf(network->inputs, sizeof network->inputs, "%s", pair_input_names);
+    snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
     snprintf(network->outputs, sizeof network->outputs, "%s", six ? pair_change_names : "dvx dvy");
     samples_fit_normalisation(dataset, network);
     if (set_random_weights(network, options->seed, error)) return network;

@@ -10,7 +10,8 @@ enum { ROWS = 4, LAUNCHES = 3 };
 
 /* Two scenes, three launches of which the second is held out, four rows. */
 static struct {
-    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], launch_x[LAUNCHES];
+    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], launch_x[LAUNCHES], launch_rotation[LAUNCHES],
+        launch_spin[LAUNCHES];
     int32_t launch[ROWS], frame[ROWS], bodies[ROWS * 2], launch_scene[LAUNCHES];
     uint8_t launch_test[LAUNCHES];
 } numbers;
@@ -23,6 +24,8 @@ static Dataset example(void) {
     memcpy(numbers.bodies, (int32_t[]){0, 1, 0, 2, 1, 2, 0, 1}, sizeof numbers.bodies);
     memcpy(numbers.launch_scene, (int32_t[]){0, 0, 1}, sizeof numbers.launch_scene);
     memcpy(numbers.launch_x, (float[]){-0.1f, 0, 0.1f}, sizeof numbers.launch_x);
+    memcpy(numbers.launch_rotation, (float[]){0.5f, -1.5f, 0}, sizeof numbers.launch_rotation);
+    memcpy(numbers.launch_spin, (float[]){20, 0, -7}, sizeof numbers.launch_spin);
     memcpy(numbers.launch_test, (uint8_t[]){0, 1, 0}, sizeof numbers.launch_test);
     return (Dataset){.rows = ROWS,
                      .inputs = numbers.inputs,
@@ -33,6 +36,8 @@ static Dataset example(void) {
                      .launches = LAUNCHES,
                      .launch_scene = numbers.launch_scene,
                      .launch_x = numbers.launch_x,
+                     .launch_rotation = numbers.launch_rotation,
+                     .launch_spin = numbers.launch_spin,
                      .launch_test = numbers.launch_test,
                      .scene_count = 2,
                      .scenes = {"single", "stack of ten"}};
@@ -41,7 +46,10 @@ static Dataset example(void) {
 static void files_keep_every_bit(void **state) {
     (void)state;
     Error error = {0};
-    const Dataset dataset = example();
+    Dataset dataset = example();
+    dataset.target = DATASET_IMPULSE;
+    dataset.labels = DATASET_BY_REFERENCE;
+    dataset.view = PAIR_RAW_UNTURNED;
     const char *path = temporary_path("data.npz");
     assert_ok(dataset_write(&dataset, path, &error), error);
     Dataset *read = dataset_read(path, &error);
@@ -55,6 +63,10 @@ static void files_keep_every_bit(void **state) {
     assert_memory_equal(read->launch_scene, numbers.launch_scene, sizeof numbers.launch_scene);
     assert_memory_equal(read->launch_x, numbers.launch_x, sizeof numbers.launch_x);
     assert_memory_equal(read->launch_test, numbers.launch_test, sizeof numbers.launch_test);
+    assert_memory_equal(read->launch_rotation, numbers.launch_rotation, sizeof numbers.launch_rotation);
+    assert_memory_equal(read->launch_spin, numbers.launch_spin, sizeof numbers.launch_spin);
+    assert_true(read->target == DATASET_IMPULSE && read->labels == DATASET_BY_REFERENCE &&
+                read->view == PAIR_RAW_UNTURNED);
     assert_int_equal(read->scene_count, 2);
     assert_string_equal(read->scenes[0], "single");
     assert_string_equal(read->scenes[1], "stack of ten");
@@ -104,6 +116,9 @@ static void numbers_that_are_not_finite_are_refused(void **state) {
     dataset = example();
     numbers.launch_x[2] = -INFINITY;
     assert_written_is_refused(&dataset, "launch_x: number 2");
+    dataset = example();
+    numbers.launch_spin[1] = NAN;
+    assert_written_is_refused(&dataset, "launch_spin: number 1");
 }
 
 static void indices_out_of_range_are_refused(void **state) {
@@ -159,9 +174,14 @@ static const char *write_with(NpzArray changed) {
     const int32_t version = DATASET_VERSION;
     const NpzArray valid[] = {{"version", NPZ_INT32, 0, {0}, &version},
                               {"kind", NPZ_TEXT, 0, {0}, "dataset"},
+                              {"view", NPZ_TEXT, 0, {0}, "relative"},
+                              {"target", NPZ_TEXT, 0, {0}, "net"},
+                              {"labels", NPZ_TEXT, 0, {0}, "engine"},
                               {"scenes", NPZ_TEXT, 0, {0}, "single\nstack"},
                               {"launch_scene", NPZ_INT32, 1, {LAUNCHES}, dataset.launch_scene},
                               {"launch_x", NPZ_FLOAT32, 1, {LAUNCHES}, dataset.launch_x},
+                              {"launch_rotation", NPZ_FLOAT32, 1, {LAUNCHES}, dataset.launch_rotation},
+                              {"launch_spin", NPZ_FLOAT32, 1, {LAUNCHES}, dataset.launch_spin},
                               {"launch_test", NPZ_UINT8, 1, {LAUNCHES}, dataset.launch_test},
                               {"inputs", NPZ_FLOAT32, 2, {ROWS, PAIR_INPUTS}, dataset.inputs},
                               {"changes", NPZ_FLOAT32, 2, {ROWS, PAIR_CHANGES}, dataset.changes},
@@ -200,7 +220,11 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
 static void other_files_are_refused(void **state) {
     (void)state;
     const int32_t future = DATASET_VERSION + 1;
-    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 2");
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
+    assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "sideways"}), "view: a word that is not known");
+    assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, ""}), "target: a word");
+    assert_refused(write_with((NpzArray){"labels", NPZ_TEXT, 0, {0}, "me"}), "labels: a word");
+    assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "raw"}), "inputs");
     assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "kind"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "changes"}), "changes");

@@ -28,8 +28,26 @@ static void inputs_are_relative_position_velocities_spins_rotations(void **state
     (void)state;
     float inputs[PAIR_INPUTS];
     const float expected[PAIR_INPUTS] = {0, 1, 3, -4, -1, -2, 5, -3, 0.25f, 0};
-    pair_inputs(&problem, 1, 2, inputs);
+    pair_inputs(&problem, NULL, 1, 2, PAIR_RELATIVE, inputs);
     for (int i = 0; i < PAIR_INPUTS; i++) assert_near(inputs[i], expected[i], 0);
+}
+
+static void views_show_what_they_are_named_for(void **state) {
+    (void)state;
+    float inputs[PAIR_INPUTS_MAX];
+    const float raw[] = {1, 0.5f, 1, 1.5f, 7, 8, -1, -2, 9, -3, 0.25f, 0};
+    const BodyVelocity velocities[3] = {{{0, 0}, 0}, {{7, 8}, 9}, {{-1, -2}, -3}};
+    pair_inputs(&problem, velocities, 1, 2, PAIR_RAW, inputs);
+    for (int i = 0; i < 12; i++) assert_near(inputs[i], raw[i], 0);
+    inputs[10] = 77;
+    pair_inputs(&problem, velocities, 1, 2, PAIR_RAW_UNTURNED, inputs);
+    for (int i = 0; i < 10; i++) assert_near(inputs[i], raw[i], 0);
+    assert_near(inputs[10], 77, 0);
+    PairView view = PAIR_RELATIVE;
+    assert_true(pair_view_find("raw-unturned", &view) && view == PAIR_RAW_UNTURNED);
+    assert_true(pair_view_of_inputs(pair_views[PAIR_RAW].inputs, &view) && view == PAIR_RAW);
+    assert_false(pair_view_find("raw ", &view));
+    assert_false(pair_view_of_inputs("", &view));
 }
 
 /* Up with 4 and 6, right with 1 and 1 (the tangent of an upward normal points right): P = (2, 10), about the box's
@@ -60,6 +78,7 @@ static void changes_keep_the_pairs_momentum(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(inputs_are_relative_position_velocities_spins_rotations),
+                                       cmocka_unit_test(views_show_what_they_are_named_for),
                                        cmocka_unit_test(changes_are_those_of_the_pairs_own_impulses),
                                        cmocka_unit_test(changes_keep_the_pairs_momentum)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,6 +11,7 @@ static const char *constant_network(int outputs, const float *values) {
     const int widths[2] = {10, outputs};
     Network *network = network_create(1, widths, &error);
     assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     for (int i = 0; i < outputs; i++) {
         network->biases[0][i] = values[i];
         network->output_mean[i] = 2 * values[i];
@@ -119,6 +120,7 @@ static void what_is_not_finite_never_reaches_a_body(void **state) {
     const int widths[2] = {10, 2};
     Network *network = network_create(1, widths, &error);
     assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     for (int i = 0; i < 20; i++) network->weights[0][i] = 1e30f;
     const char *path = temporary_path("large.npz");
     assert_ok(network_write(network, path, &error), error);
@@ -138,6 +140,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES}, &error);
     assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) network->weights[0][i] = (float)(i * i % 17) / 16 - 0.4f;
     const char *path = temporary_path("different.npz");
     assert_ok(network_write(network, path, &error), error);
@@ -151,7 +154,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
     for (int i = 0; i < 3; i++) expected[i] = (BodyVelocity){three[i].velocity, three[i].angular_velocity};
     for (int p = 0; p < 3; p++) {
         float inputs[PAIR_INPUTS], changes[PAIR_CHANGES], scratch[2 * PAIR_INPUTS];
-        pair_inputs(&problem, touching[p].a, touching[p].b, inputs);
+        pair_inputs(&problem, NULL, touching[p].a, touching[p].b, PAIR_RELATIVE, inputs);
         network_predict(network, inputs, scratch, changes);
         for (int side = 0; side < 2; side++) {
             BodyVelocity *body = &expected[side == 0 ? touching[p].a : touching[p].b];
@@ -167,19 +170,42 @@ static void every_pair_gets_its_own_prediction(void **state) {
     network_destroy(network);
 }
 
+/* A network knows how it was trained to see a pair. */
+static void a_raw_network_sees_positions(void **state) {
+    (void)state;
+    Error error = {0};
+    const int widths[2] = {12, 6};
+    Network *network = network_create(1, widths, &error);
+    assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RAW].inputs);
+    /* The change of a's velocity is b's position, that of b's a's. */
+    network->weights[0][0 * 12 + 2] = network->weights[0][1 * 12 + 3] = 1;
+    network->weights[0][3 * 12 + 0] = network->weights[0][4 * 12 + 1] = 1;
+    const char *path = temporary_path("raw.npz");
+    assert_ok(network_write(network, path, &error), error);
+    network_destroy(network);
+    BodyVelocity v[3];
+    solve(path, bodies, v);
+    assert_near(v[0].linear.x, 1 + 0.25, 1e-6);
+    assert_near(v[0].linear.y, 2 + 1, 1e-6);
+    assert_near(v[1].linear.x, 0, 1e-6);
+    assert_near(v[1].linear.y, -1, 1e-6);
+}
+
 static void a_network_of_another_shape_is_refused(void **state) {
     (void)state;
     Error error = {0};
     const int widths[2] = {10, 3};
     Network *network = network_create(1, widths, &error);
     assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     const char *path = temporary_path("three.npz");
     assert_ok(network_write(network, path, &error), error);
     network_destroy(network);
     Settings settings = {0};
     assert_true(settings_default(&settings, "network", path));
     assert_null(solver_pair_net.create(&settings, &error));
-    assert_error(error, ERROR_INPUT, "three.npz: error: a network with 10 inputs and 3 outputs");
+    assert_error(error, ERROR_INPUT, "three.npz: error: a network with 10 inputs (dx dy ");
 
     error = (Error){0};
     assert_null(solver_pair_net.create(&(Settings){0}, &error));
@@ -193,6 +219,7 @@ int main(void) {
                                        cmocka_unit_test(a_fixed_body_is_not_moved),
                                        cmocka_unit_test(what_is_not_finite_never_reaches_a_body),
                                        cmocka_unit_test(every_pair_gets_its_own_prediction),
+                                       cmocka_unit_test(a_raw_network_sees_positions),
                                        cmocka_unit_test(a_network_of_another_shape_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

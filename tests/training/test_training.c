@@ -106,7 +106,7 @@ static void networks_say_what_they_take_and_give(void **state) {
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
     Network *two = train(dataset, small("adam", 0), &scores);
-    assert_string_equal(two->inputs, pair_input_names);
+    assert_string_equal(two->inputs, pair_views[PAIR_RELATIVE].inputs);
     assert_string_equal(two->outputs, "dvx dvy");
     assert_true(two->activations[0] == ACTIVATION_SIGMOID && two->activations[1] == ACTIVATION_SIGMOID);
     TrainingOptions options = small("adam", 0);

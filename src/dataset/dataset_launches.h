@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which launches a dataset is recorded from. */
+#pragma once
+#include "dataset/dataset.h"
+
+/* The launch tables, without rows yet; a fifth of each scene's launches, at least one, is held out. */
+Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error);
+
+/* Launch i of the dataset in its scene; shares the scene's bodies. */
+Scene dataset_launch(const Dataset *dataset, Scene *const *scenes, int i);

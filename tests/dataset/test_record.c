@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is recorded, for each target: laws that tie them together. */
+#include "testing.h"
+
+#include "dataset/dataset.h"
+
+#include <math.h>
+
+static const char *const single[] = {SOURCE_DIR "/scenes/single.yaml"};
+static const char *const both[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
+
+static Dataset *record(DatasetOptions options) {
+    Error error = {0};
+    if (options.scenes == NULL) {
+        options.scenes = single;
+        options.scene_count = 1;
+    }
+    if (options.random == 0) assert_true(parse_range("-5:5:2.5", 10, &options.bomb_x));
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    return dataset;
+}
+
+/* The visits of a pair in all sweeps of a step, and its warm start, are what its impulses changed in the step. */
+static void visits_add_up_to_the_pairs_change(void **state) {
+    (void)state;
+    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
+    Dataset *visits = record((DatasetOptions){.target = DATASET_IMPULSE});
+    assert_true(visits->rows == 10 * pair->rows);
+    int first_touches = 0;
+    for (int64_t r = 0, v = 0; r < pair->rows; r++) {
+        bool fresh = r == 0 || pair->launch[r] != pair->launch[r - 1] || pair->frame[r] > pair->frame[r - 1] + 1;
+        int pairs_in_step = 0;
+        while (r + pairs_in_step < pair->rows && pair->launch[r + pairs_in_step] == pair->launch[r] &&
+               pair->frame[r + pairs_in_step] == pair->frame[r])
+            pairs_in_step++;
+        /* The first contact of all: one pair, and no warm start. */
+        if (fresh && pairs_in_step == 1) {
+            double sum = 0;
+            for (int sweep = 0; sweep < 10; sweep++) sum += visits->changes[(v + sweep) * PAIR_CHANGES + 4];
+            assert_near(sum, pair->changes[r * PAIR_CHANGES + 4], 1e-4);
+            first_touches++;
+        }
+        for (int i = 1; i < pairs_in_step; i++) r++;
+        v += 10 * pairs_in_step;
+    }
+    assert_true(first_touches >= 5);
+    dataset_destroy(pair);
+    dataset_destroy(visits);
+}
+
+/* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
+static void net_is_pair_where_there_is_one_pair(void **state) {
+    (void)state;
+    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
+    Dataset *net = record((DatasetOptions){.target = DATASET_NET});
+    assert_true(pair->rows == net->rows);
+    int compared = 0, different = 0;
+    for (int64_t r = 0; r < pair->rows; r++) {
+        bool before = r > 0 && pair->frame[r - 1] == pair->frame[r];
+        bool after = r + 1 < pair->rows && pair->frame[r + 1] == pair->frame[r];
+        for (int k = 0; k < PAIR_CHANGES; k++) {
+            double gap = fabs((double)pair->changes[r * PAIR_CHANGES + k] - (double)net->changes[r * PAIR_CHANGES + k]);
+            if (before || after)
+                different += gap > 0.01;
+            else
+                assert_true(gap < 1e-3);
+        }
+        compared += !before && !after;
+    }
+    assert_true(compared > 100 && different > 10);
+    dataset_destroy(pair);
+    dataset_destroy(net);
+}
+
+/* At rest the engine has converged: the reference says the same; at impacts it does not. */
+static void the_reference_labels_what_the_engine_met(void **state) {
+    (void)state;
+    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET});
+    Dataset *reference = record(
+        (DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET, .labels = DATASET_BY_REFERENCE});
+    assert_true(engine->rows == reference->rows);
+    int64_t near = 0, far = 0;
+    for (int64_t r = 0; r < engine->rows; r++) {
+        float gap = fabsf(engine->changes[r * PAIR_CHANGES + 4] - reference->changes[r * PAIR_CHANGES + 4]);
+        near += gap < 1e-3f;
+        far += gap > 0.5f;
+    }
+    assert_true(near > engine->rows / 2);
+    assert_true(far > 10);
+    assert_memory_equal(engine->inputs, reference->inputs, (size_t)engine->rows * PAIR_INPUTS * sizeof(float));
+    dataset_destroy(engine);
+    dataset_destroy(reference);
+}
+
+static void random_launches_lie_in_their_ranges(void **state) {
+    (void)state;
+    Dataset *a = record((DatasetOptions){.random = 50, .seed = 3}),
+            *b = record((DatasetOptions){.random = 50, .seed = 3});
+    Dataset *c = record((DatasetOptions){.random = 50, .seed = 4});
+    float least = 0, most = 0;
+    for (int i = 0; i < 50; i++) {
+        assert_true(fabsf(a->launch_x[i]) <= 15 && fabsf(a->launch_rotation[i]) <= 1.5f &&
+                    fabsf(a->launch_spin[i]) <= 20);
+        least = fminf(least, a->launch_x[i]);
+        most = fmaxf(most, a->launch_x[i]);
+    }
+    assert_true(least < -10 && most > 10);
+    assert_memory_equal(a->launch_x, b->launch_x, 50 * sizeof(float));
+    assert_memory_equal(a->changes, b->changes, (size_t)a->rows * PAIR_CHANGES * sizeof(float));
+    assert_memory_not_equal(a->launch_x, c->launch_x, 50 * sizeof(float));
+    dataset_destroy(a);
+    dataset_destroy(b);
+    dataset_destroy(c);
+}
+
+static void refuse(DatasetOptions options, const char *text) {
+    Error error = {0};
+    options.scenes = single;
+    options.scene_count = 1;
+    assert_null(dataset_record(&options, NULL, &error));
+    assert_error(error, ERROR_INPUT, text);
+}
+
+static void what_cannot_be_recorded_is_refused(void **state) {
+    (void)state;
+    refuse((DatasetOptions){.random = 4}, "4 launches a scene; at least 5");
+    refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
+    refuse((DatasetOptions){.random = 5, .target = DATASET_IMPULSE, .labels = DATASET_BY_REFERENCE},
+           "the reference has none");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(visits_add_up_to_the_pairs_change), cmocka_unit_test(net_is_pair_where_there_is_one_pair),
+        cmocka_unit_test(the_reference_labels_what_the_engine_met),
+        cmocka_unit_test(random_launches_lie_in_their_ranges), cmocka_unit_test(what_cannot_be_recorded_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
