@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rows of one launch. */
+#pragma once
+#include "dataset/dataset.h"
+
+/* One touching pair in one step, or in one sweep of it. */
+typedef struct PairRow {
+    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES];
+    int32_t frame, bodies[2];
+} PairRow;
+
+/* What one launch gave. */
+typedef struct LaunchRows {
+    PairRow *rows;
+    size_t count, capacity;
+    size_t start; /* of its rows in the dataset */
+} LaunchRows;
+
+/* Runs a launched scene by the engine, and appends the rows that the dataset's view, target and labels ask for. */
+bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error);
