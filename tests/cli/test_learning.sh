@@ -35,6 +35,34 @@ first = numpy.flatnonzero(struck & (launch == 8))[0]
 assert inputs[first, 1] > 0.5 and inputs[first, 5] < -20 and inputs[first, 2:4].tolist() == [0, inputs[first, 3]]
 PYTHON
 
+# The readings that the paper leaves open.
+run 0 dataset single.yaml -o raw.npz --random 10 --inputs raw --target net --labels reference
+says "of 10 launches -> raw.npz"
+run 0 dataset single.yaml -o mixed.npz --random 10 --bomb-x=-2:2:1 --inputs raw-unturned --target impulse
+says "of 15 launches -> mixed.npz"
+/usr/bin/python3 - <<'PYTHON' || fail "what the other datasets hold"
+import numpy
+raw, mixed = numpy.load("raw.npz"), numpy.load("mixed.npz")
+assert (str(raw["view"]), str(raw["target"]), str(raw["labels"])) == ("raw", "net", "reference")
+assert raw["inputs"].shape[1] == 12 and mixed["inputs"].shape[1] == 10
+assert abs(raw["launch_x"]).max() > 5 and abs(raw["launch_rotation"]).max() > 0.5
+assert mixed["launch_x"][:5].tolist() == [-2, -1, 0, 1, 2] and (mixed["launch_spin"][:5] == 0).all()
+PYTHON
+run 0 train raw.npz -o raw-net.npz --layers 12-8-6 --iterations 10
+run 0 simulate single.yaml --method pair-net:network=raw-net.npz -o raw-run.npz
+run 2 train raw.npz -o none.npz --layers 10-8-6
+complains "the first width is 10; a pair has 12 inputs"
+run 2 dataset single.yaml -o none.npz --inputs sideways
+complains "--inputs: error: 'sideways' is none of relative, raw, raw-unturned"
+run 2 dataset single.yaml -o none.npz --target gross
+complains "--target: error: 'gross' is none of pair, net, impulse"
+run 2 dataset single.yaml -o none.npz --target impulse --labels reference
+complains "the reference has none"
+run 2 dataset single.yaml -o none.npz --random 0
+complains "--random: error:"
+run 2 dataset single.yaml -o none.npz --random 4
+complains "4 launches a scene; at least 5"
+
 run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
 equal "iterations printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 10 50 100 "
 run 0 train pairs.npz -o same.npz --iterations 100 --seed 3
