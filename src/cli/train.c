@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM, KIND, BOMB_X };
+enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM, KIND, BOMB_X, HIDDEN, OUTPUT_ACTIVATION, SCALE };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NET.npz", 0, "Where the network goes", 0},
@@ -18,7 +18,13 @@ static const struct argp_option option_table[] = {
      "10-10-2 (default; change of relative velocity, min-max outputs, as in the paper's 3.2) or, with two hidden "
      "layers and all six changes, 10-8-8-6 (standardised, as in its 3.1)",
      0},
-    {"optimizer", OPTIMIZER, "NAME", 0, "adam (default), bfgs or lm (Levenberg-Marquardt)", 0},
+    {"optimizer", OPTIMIZER, "NAME", 0, "adam (default), bfgs, gd (plain gradient descent) or lm (Levenberg-Marquardt)",
+     0},
+    {"hidden", HIDDEN, "NAME", 0, "Activation of hidden layers: sigmoid (default), tanh or relu", 0},
+    {"output-activation", OUTPUT_ACTIVATION, "NAME", 0,
+     "sigmoid or linear (default: sigmoid for two outputs, linear for six)", 0},
+    {"scale", SCALE, "NAME", 0,
+     "Of outputs: minmax or, with linear outputs, standard (default: minmax with sigmoid, standard with linear)", 0},
     {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (100)", 0},
     {"seed", SEED, "N", 0, "Of the initial weights, or of the search (default: 1)", 0},
     {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.5)", 0},
@@ -26,7 +32,8 @@ static const struct argp_option option_table[] = {
     {0}};
 
 typedef struct Options {
-    const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x;
+    const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x, *hidden,
+        *output_activation, *scale;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -40,6 +47,9 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case FROM: options->from = value; break;
     case KIND: options->kind = value; break;
     case BOMB_X: options->bomb_x = value; break;
+    case HIDDEN: options->hidden = value; break;
+    case OUTPUT_ACTIVATION: options->output_activation = value; break;
+    case SCALE: options->scale = value; break;
     case ARGP_KEY_ARG:
         if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
         options->data = value;
@@ -103,13 +113,21 @@ static Network *train(const Dataset *dataset, TrainingOptions *training, Error *
     return network;
 }
 
+static void append(Network *network, const char *option, const char *value) {
+    size_t length = strlen(network->command);
+    if (value != NULL) snprintf(network->command + length, sizeof network->command - length, "%s%s", option, value);
+}
+
 /* The command as one would type it again. */
 static void describe(Network *network, const Options *options) {
     snprintf(network->command, sizeof network->command,
-             "twinbox train %s -o %s --layers %s --optimizer %s --iterations %s --seed %s%s%s", options->data,
+             "twinbox train %s -o %s --layers %s --optimizer %s --iterations %s --seed %s", options->data,
              options->output, options->layers, options->optimizer,
-             options->iterations != NULL ? options->iterations : "2000", options->seed,
-             options->from != NULL ? " --from " : "", options->from != NULL ? options->from : "");
+             options->iterations != NULL ? options->iterations : "2000", options->seed);
+    append(network, " --from ", options->from);
+    append(network, " --hidden ", options->hidden);
+    append(network, " --output-activation ", options->output_activation);
+    append(network, " --scale ", options->scale);
 }
 
 static bool train_and_store(const Dataset *dataset, const Options *options, TrainingOptions *training, Error *error) {
@@ -127,7 +145,10 @@ static bool train_and_store(const Dataset *dataset, const Options *options, Trai
 }
 
 static int train_pair_net(const Options *options, Error *error) {
-    TrainingOptions training = {.optimizer = options->optimizer};
+    TrainingOptions training = {.optimizer = options->optimizer,
+                                .hidden = options->hidden,
+                                .output_activation = options->output_activation,
+                                .scale = options->scale};
     const char *iterations = options->iterations != NULL ? options->iterations : "2000";
     if (!parse_layers(options->layers, &training, error) ||
         !option_int("--iterations", iterations, 0, 1000000, &training.iterations, error) ||
@@ -144,8 +165,7 @@ static int train_pair_net(const Options *options, Error *error) {
 }
 
 int command_train(int argc, char **argv, Error *error) {
-    Options options = {
-        .layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.5"};
+    Options options = {.layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.5"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     if (strcmp(options.kind, "momentum-schedule") == 0) {
         const TrainMomentum momentum = {options.data, options.output,

@@ -35,6 +35,8 @@ static void tile_activations(Activation activation, float *values, int count) {
         for (int i = 0; i < count; i++) values[i] = sigmoid_float(values[i]);
     if (activation == ACTIVATION_TANH)
         for (int i = 0; i < count; i++) values[i] = tanh_float(values[i]);
+    if (activation == ACTIVATION_RELU)
+        for (int i = 0; i < count; i++) values[i] = relu_float(values[i]);
 }
 
 static void predict(const Network *network, const float *inputs, float *scratch, float *outputs, int rows, int first,
@@ -114,15 +116,19 @@ static void activation_forward(Activation activation, double *values, size_t cou
         for (size_t i = 0; i < count; i++) values[i] = sigmoid(values[i]);
     if (activation == ACTIVATION_TANH)
         for (size_t i = 0; i < count; i++) values[i] = tangent(values[i]);
+    if (activation == ACTIVATION_RELU)
+        for (size_t i = 0; i < count; i++) values[i] = relu(values[i]);
 }
 
-/* d loss / dx = d loss / dy * dy / dx, in place; both slopes follow from y alone */
+/* d loss / dx = d loss / dy * dy / dx, in place; all slopes follow from y alone. The rectifier's at its kink is 0. */
 static void activation_backward(Activation activation, const double *restrict values, double *restrict deltas,
                                 size_t count) {
     if (activation == ACTIVATION_SIGMOID)
         for (size_t i = 0; i < count; i++) deltas[i] *= values[i] * (1 - values[i]);
     if (activation == ACTIVATION_TANH)
         for (size_t i = 0; i < count; i++) deltas[i] *= 1 - values[i] * values[i];
+    if (activation == ACTIVATION_RELU)
+        for (size_t i = 0; i < count; i++) deltas[i] = values[i] > 0 ? deltas[i] : 0;
 }
 
 /* out[outputs, B] = weights[outputs, inputs] in[inputs, B] + biases[outputs] */

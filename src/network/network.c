@@ -20,8 +20,8 @@ static bool check_widths(int layers, const int *widths, Error *error) {
 
 /* Parameters, normalisations, and the mean of the outputs. */
 static size_t number_count(const Network *network) {
-    return (size_t)network_parameter_count(network) +
-           2 * (size_t)network->widths[0] + 3 * (size_t)network->widths[network->layers];
+    return (size_t)network_parameter_count(network) + 2 * (size_t)network->widths[0] +
+           3 * (size_t)network->widths[network->layers];
 }
 
 /* One block, so that training can take the parameters as one vector. */
@@ -85,6 +85,7 @@ static float activate(Activation activation, float x) {
     switch (activation) {
     case ACTIVATION_SIGMOID: return sigmoid_float(x);
     case ACTIVATION_TANH: return tanh_float(x);
+    case ACTIVATION_RELU: return relu_float(x);
     case ACTIVATION_LINEAR: break;
     }
     return x;

@@ -11,7 +11,7 @@
 
 enum { NETWORK_VERSION = 2, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
 
-typedef enum Activation { ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH } Activation;
+typedef enum Activation { ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU } Activation;
 
 /* x -> (x - offset) * scale, number by number: min-max or standardisation. Undone on outputs:
    y / scale + offset. */

@@ -15,8 +15,10 @@
 
 enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 12 + 2 * NETWORK_MAX_LAYERS };
 
-static const char *const activation_names[] = {
-    [ACTIVATION_LINEAR] = "linear", [ACTIVATION_SIGMOID] = "sigmoid", [ACTIVATION_TANH] = "tanh"};
+static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
+                                               [ACTIVATION_SIGMOID] = "sigmoid",
+                                               [ACTIVATION_TANH] = "tanh",
+                                               [ACTIVATION_RELU] = "relu"};
 
 enum { ACTIVATION_COUNT = sizeof activation_names / sizeof activation_names[0] };
 
@@ -134,7 +136,7 @@ static bool read_activations(NpzFile *file, const char *path, Network *network, 
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL; count++) {
         if (count == network->layers) return error_input(error, path, "more activations than its %d layers", count);
         if (!parse_activation(word, &network->activations[count]))
-            return error_input(error, path, "activation %d is none of linear, sigmoid and tanh", count);
+            return error_input(error, path, "activation %d is none of linear, sigmoid, tanh and relu", count);
     }
     if (count == network->layers) return true;
     return error_input(error, path, "%d activations for %d layers", count, network->layers);

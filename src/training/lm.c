@@ -59,7 +59,7 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     const Samples *samples = trainer->train;
     long long numbers = (long long)samples->rows * samples->outputs;
     if (trainer->parameters > MAX_PARAMETERS)
-        return error_input(error, "lm", "%d weights; at most %d are possible, adam and bfgs take more",
+        return error_input(error, "lm", "%d weights; at most %d are possible, adam, bfgs and gd take more",
                            trainer->parameters, MAX_PARAMETERS);
     if (numbers < trainer->parameters)
         return error_input(error, "lm", "%lld numbers to fit with %d weights; at least as many are needed", numbers,

@@ -27,7 +27,7 @@ typedef struct Optimizer {
     bool (*minimize)(Trainer *trainer, double *parameters, Error *error);
 } Optimizer;
 
-extern const Optimizer optimizer_adam, optimizer_bfgs, optimizer_lm;
+extern const Optimizer optimizer_adam, optimizer_bfgs, optimizer_gd, optimizer_lm;
 
 /* Ends with NULL. */
 extern const Optimizer *const optimizers[];

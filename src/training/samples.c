@@ -51,7 +51,7 @@ static void set_scale(Normalisation *normalisation, int column, double offset, d
     normalisation->scale[column] = isfinite(scale) && scale > 0 ? scale : 1;
 }
 
-void samples_fit_normalisation(const Dataset *dataset, Network *network) {
+void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Network *network) {
     int outputs = network->widths[network->layers];
     for (int i = 0; i < network->widths[0]; i++) {
         Spread spread = column_spread(dataset, 0, i);
@@ -60,7 +60,7 @@ void samples_fit_normalisation(const Dataset *dataset, Network *network) {
     for (int k = 0; k < outputs; k++) {
         Spread spread = column_spread(dataset, outputs, k);
         network->output_mean[k] = (float)spread.mean;
-        if (network->activations[network->layers - 1] == ACTIVATION_LINEAR)
+        if (scale == SCALE_STANDARD)
             set_scale(&network->output, k, spread.mean, spread.deviation);
         else
             set_scale(&network->output, k, spread.minimum, spread.maximum - spread.minimum);

@@ -18,10 +18,12 @@ static inline int samples_in_block(const Samples *samples, int64_t b) {
     return left < BLOCK_ROWS ? (int)left : BLOCK_ROWS;
 }
 
-/* Sets the network's normalisations and the mean of its outputs from the rows to train on: inputs to mean 0 and standard deviation 1;
-   outputs the same way where the last layer is linear (paper, 3.1), else minimum and maximum to 0 and 1
-   (3.2). A column that never changes has scale 1. */
-void samples_fit_normalisation(const Dataset *dataset, Network *network);
+/* Minimum and maximum to 0 and 1 (paper, 3.2), or mean 0 and standard deviation 1 (3.1). */
+typedef enum OutputScale { SCALE_MINMAX, SCALE_STANDARD } OutputScale;
+
+/* Sets the network's normalisations and the mean of its outputs from the rows to train on; inputs to mean 0 and
+   standard deviation 1. A column that never changes has scale 1. */
+void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Network *network);
 
 /* The rows to train on, or those held out for the test. Two outputs: change of the velocity of b relative to
    a (x, y); six: pair_changes(). */

@@ -2,6 +2,7 @@
 /* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
 #include "training/training.h"
 
+#include "training/form.h"
 #include "training/optimizer.h"
 
 #include <float.h>
@@ -12,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_lm, NULL};
+const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_gd, &optimizer_lm, NULL};
 
 static const Optimizer *find_optimizer(const char *name, Error *error) {
     char known[128] = "";
@@ -65,26 +66,31 @@ static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
     return true;
 }
 
-/* Sigmoids throughout for the two outputs of the paper's 3.2, a linear last layer for the six of 3.1. */
 static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+    Form form;
+    if (!form_choose(&form, options, error)) return NULL;
     Network *network = network_create(options->layers, options->widths, error);
     if (network == NULL) return NULL;
     bool six = options->widths[options->layers] == PAIR_CHANGES;
-    for (int l = 0; l < network->layers; l++) network->activations[l] = ACTIVATION_SIGMOID;
-    if (six) network->activations[network->layers - 1] = ACTIVATION_LINEAR;
+    for (int l = 0; l < network->layers; l++) network->activations[l] = form.hidden;
+    network->activations[network->layers - 1] = form.output;
     snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
     snprintf(network->outputs, sizeof network->outputs, "%s", six ? pair_change_names : "dvx dvy");
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, form.scale, network);
     if (set_random_weights(network, options->seed, error)) return network;
     network_destroy(network);
     return NULL;
 }
 
-static Network *continued_network(const TrainingOptions *options, Error *error) {
+static Network *continued_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
     const Network *start = options->start;
+    if (strcmp(start->inputs, pair_views[dataset->view].inputs) != 0) {
+        error_input(error, "dataset", "the network to go on from was trained on other inputs (%.80s)", start->inputs);
+        return NULL;
+    }
     bool fits = start->layers == options->layers;
     for (int l = 0; fits && l <= options->layers; l++) fits = start->widths[l] == options->widths[l];
-    if (fits) return network_copy(start, error);
+    if (fits) return form_fits(start, options, error) ? network_copy(start, error) : NULL;
     error_input(error, "layers", "the network to go on from has other widths");
     return NULL;
 }
@@ -122,7 +128,7 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
     size_t size = (size_t)trainer->parameters * sizeof *parameters;
     trainer->iteration++;
     if (!is_finite(parameters, trainer->parameters, train_loss))
-        return error_input(error, "training", "left the finite numbers in iteration %d", trainer->iteration);
+        return error_input(error, "training", "diverged: left the finite numbers in iteration %d", trainer->iteration);
     memcpy(trainer->now, parameters, size);
     trainer->loss_now = train_loss;
     if (trainer->iteration == 0 || train_loss < trainer->best_loss) {
@@ -191,7 +197,7 @@ Network *training_run(const Dataset *dataset, const TrainingOptions *options, co
     const Optimizer *optimizer = find_optimizer(options->optimizer, error);
     if (optimizer == NULL || !check_options(dataset, options, error)) return NULL;
     Network *network =
-        options->start != NULL ? continued_network(options, error) : new_network(dataset, options, error);
+        options->start != NULL ? continued_network(dataset, options, error) : new_network(dataset, options, error);
     if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
         network_destroy(network);
         network = NULL;

@@ -92,12 +92,28 @@ grep -q "stopped early; 132 parameters -> cut.npz" cut.out || fail "Ctrl-C: $(ta
 run 0 train pairs.npz -o more.npz --iterations 1 --from cut.npz
 rm cut.npz
 
-for optimizer in bfgs lm; do
+for optimizer in bfgs gd lm; do
     run 0 train pairs.npz -o $optimizer.npz --optimizer $optimizer --iterations 5
 done
 run 0 train pairs.npz -o six.npz --layers 10-8-8-6 --optimizer lm --iterations 3
 
-for network in net lm six; do
+for hidden in sigmoid tanh relu; do
+    run 0 train pairs.npz -o $hidden.npz --iterations 5 --hidden $hidden --output-activation linear --scale minmax
+done
+run 0 train pairs.npz -o standard.npz --iterations 5 --output-activation linear
+/usr/bin/python3 - <<'PYTHON' || fail "the form of a network"
+import numpy
+read = lambda name: numpy.load(name + ".npz", allow_pickle=False)
+for hidden in ("sigmoid", "tanh", "relu"):
+    assert str(read(hidden)["activations"]) == hidden + " linear"
+    assert (read(hidden)["output_scale"] == read("net")["output_scale"]).all()
+    assert (read(hidden)["output_mean"] == read("net")["output_mean"]).all()
+assert (read("standard")["output_scale"] != read("net")["output_scale"]).all()
+assert str(read("relu")["command"]).endswith("--hidden relu --output-activation linear --scale minmax")
+assert str(read("net")["activations"]) == "sigmoid sigmoid" and str(read("net")["command"]).endswith("--seed 3")
+PYTHON
+
+for network in net lm six relu; do
     run 0 simulate single.yaml --method pair-net:network=$network.npz --hash $network.hash
     run 0 simulate single.yaml --method pair-net:network=$network.npz --hash again.hash
     cmp -s $network.hash again.hash || fail "the network's run is not repeatable"
@@ -132,6 +148,22 @@ run 2 train pairs.npz -o x.npz --layers 10-10-3
 run 2 train pairs.npz -o x.npz --optimizer magic
 complains "magic"
 run 2 train pairs.npz -o x.npz --iterations -1
+run 2 train pairs.npz -o x.npz --hidden magic
+complains "known are sigmoid, tanh, relu"
+run 2 train pairs.npz -o x.npz --output-activation tanh
+complains "known are sigmoid, linear"
+run 2 train pairs.npz -o x.npz --scale standard
+complains "standard needs linear outputs"
+run 2 train pairs.npz -o x.npz --from net.npz --hidden relu
+complains "other activations than relu"
+/usr/bin/python3 - <<'PYTHON'
+import numpy
+data = dict(numpy.load("pairs.npz", allow_pickle=False))
+data["inputs"][:] = data["inputs"][:, 5:6]  # ten inputs that are the same: too steep for the rate of gd
+numpy.savez("steep.npz", **data)
+PYTHON
+run 2 train steep.npz -o x.npz --optimizer gd --layers 10-2 --output-activation linear
+complains "training: error: diverged: left the finite numbers in iteration"
 head -c 2000 pairs.npz >cut.npz
 run 2 train cut.npz -o x.npz
 complains "cut.npz: error:"

@@ -138,6 +138,15 @@ static void many_bits_are_the_same_everywhere(void **state) {
     if (hash != UINT64_C(0x2fcf31d30316d167)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
 }
 
+static void relu_keeps_nan_and_the_sign_of_zero(void **state) {
+    (void)state;
+    assert_true(relu_float(2.5f) == 2.5f && relu_float(-2.5f) == 0 && relu(2.5) == 2.5 && relu(-2.5) == 0);
+    assert_true(relu_float(INFINITY) == INFINITY && relu_float(-INFINITY) == 0);
+    assert_true(isnan(relu_float(NAN)) && isnan(relu((double)NAN)));
+    assert_true(signbit(relu_float(-0.0f)) && signbit(relu(-0.0)));
+    assert_true(!signbit(relu_float(-FLT_MIN)) && !signbit(relu(-1e-300)));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_stays_within_three_last_places),
@@ -145,6 +154,7 @@ int main(void) {
         cmocka_unit_test(sigmoid_never_falls),
         cmocka_unit_test(limits_are_exact),
         cmocka_unit_test(tanh_is_odd),
+        cmocka_unit_test(relu_keeps_nan_and_the_sign_of_zero),
         cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(many_bits_are_the_same_everywhere),
     };

@@ -144,9 +144,30 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
     assert_refused(write_with((NpzArray){"output_offset", NPZ_FLOAT32, 2, {1, 1}, ones}), "output_offset");
 }
 
+static void every_activation_has_its_word(void **state) {
+    (void)state;
+    Error error = {0};
+    const Activation all[] = {ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
+    const char *const words[] = {"linear", "sigmoid", "tanh", "relu"};
+    for (int i = 0; i < 4; i++) {
+        Network *network = network_read(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, words[i]}), &error);
+        assert_ok(network != NULL, error);
+        assert_int_equal(network->activations[0], all[i]);
+        network_destroy(network);
+    }
+    Network *network = make_network(4, (const int[]){2, 2, 2, 2, 2}, all);
+    const char *path = temporary_path("words.npz");
+    assert_ok(network_write(network, path, &error), error);
+    Network *read = network_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_memory_equal(read->activations, all, sizeof all);
+    network_destroy(read);
+    network_destroy(network);
+}
+
 static void unknown_activations_are_refused(void **state) {
     (void)state;
-    assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "relu"}), "activation 0");
+    assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "softmax"}), "activation 0");
     assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, ""}), "0 activations for 1 layers");
     assert_refused(write_with((NpzArray){"activations", NPZ_TEXT, 0, {0}, "linear linear"}), "more activations");
 }
@@ -168,6 +189,7 @@ int main(void) {
         cmocka_unit_test(another_kind_or_version_is_refused),
         cmocka_unit_test(widths_out_of_range_are_refused),
         cmocka_unit_test(shapes_that_do_not_fit_are_refused),
+        cmocka_unit_test(every_activation_has_its_word),
         cmocka_unit_test(unknown_activations_are_refused),
         cmocka_unit_test(damaged_files_are_refused),
     };

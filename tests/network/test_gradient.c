@@ -94,6 +94,63 @@ static void backward_is_the_finite_difference(void **state) {
     check_gradient(4, (const int[]){2, 3, 4, 1, 2}, (const Activation[]){tangent, linear, sigmoid, tangent});
 }
 
+/* How many values of rectified layers are above 0. */
+static int count_active(const Case *made) {
+    int count = 0;
+    for (int l = 0; l < made->network->layers; l++) {
+        if (made->network->activations[l] != ACTIVATION_RELU) continue;
+        for (int j = 0; j < made->network->widths[l + 1]; j++)
+            for (int r = 0; r < USED_ROWS; r++) count += made->block->values[l + 1][j * BLOCK_ROWS + r] > 0;
+    }
+    return count;
+}
+
+/* As check_gradient(); but the slope of a rectifier below its kink is 0, and differences across the kink would be
+   wrong: as many values are active on both sides of each step. */
+static void check_rectified_gradient(int layers, const int *widths, const Activation *activations) {
+    Case made = make_case(layers, widths, activations);
+    double gradient[256] = {0};
+    assert_true(made.count <= 256);
+    add_gradient(&made, gradient);
+    const double step = 1e-5;
+    int slopes = 0, active = count_active(&made);
+    for (int p = 0; p < made.count; p++) {
+        double kept = made.parameters[p];
+        made.parameters[p] = kept + step;
+        double above = loss(&made);
+        assert_int_equal(count_active(&made), active);
+        made.parameters[p] = kept - step;
+        double slope = (above - loss(&made)) / (2 * step);
+        assert_int_equal(count_active(&made), active);
+        made.parameters[p] = kept;
+        assert_near(gradient[p], slope, 1e-8);
+        slopes += fabs(slope) > 1e-6;
+    }
+    assert_true(slopes > made.count / 2);
+    free_case(&made);
+}
+
+static void backward_of_the_rectifier_is_the_finite_difference(void **state) {
+    (void)state;
+    const Activation linear = ACTIVATION_LINEAR, sigmoid = ACTIVATION_SIGMOID, relu = ACTIVATION_RELU;
+    check_rectified_gradient(1, (const int[]){3, 2}, (const Activation[]){relu});
+    check_rectified_gradient(2, (const int[]){10, 10, 2}, (const Activation[]){relu, sigmoid});
+    check_rectified_gradient(2, (const int[]){4, 5, 3}, (const Activation[]){relu, linear});
+    check_rectified_gradient(3, (const int[]){10, 8, 8, 6}, (const Activation[]){relu, relu, linear});
+}
+
+/* Where a sum is exactly 0, the slope taken is 0. */
+static void the_rectifiers_slope_at_its_kink_is_zero(void **state) {
+    (void)state;
+    Case made = make_case(2, (const int[]){2, 2, 1}, (const Activation[]){ACTIVATION_RELU, ACTIVATION_LINEAR});
+    double gradient[16] = {0};
+    for (int p = 0; p < 6; p++) made.parameters[p] = 0; /* weights and biases of the hidden layer */
+    add_gradient(&made, gradient);
+    for (int p = 0; p < 8; p++) assert_true(gradient[p] == 0);
+    assert_true(gradient[8] != 0); /* the output's bias */
+    free_case(&made);
+}
+
 static void gradients_add_up(void **state) {
     (void)state;
     Case made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
@@ -141,8 +198,9 @@ static void run_by(const Kernels *kernels, Case *made, double *gradient) {
 
 static void all_instruction_sets_give_the_same_bits(void **state) {
     (void)state;
-    Case made = make_case(3, (const int[]){10, 9, 7, 2},
-                          (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_LINEAR});
+    Case made =
+        make_case(4, (const int[]){10, 9, 7, 5, 2},
+                  (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
     double expected[256] = {0};
     assert_true(made.count <= 256);
     run_by(&kernels_plain, &made, expected);
@@ -162,6 +220,8 @@ static void all_instruction_sets_give_the_same_bits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(backward_is_the_finite_difference),
+        cmocka_unit_test(backward_of_the_rectifier_is_the_finite_difference),
+        cmocka_unit_test(the_rectifiers_slope_at_its_kink_is_zero),
         cmocka_unit_test(gradients_add_up),
         cmocka_unit_test(forward_agrees_with_predict),
         cmocka_unit_test(dot_sums_every_row_once),

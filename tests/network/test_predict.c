@@ -86,6 +86,7 @@ static void layers_apply_their_activation(void **state) {
         assert_true(activated(ACTIVATION_SIGMOID, x) == sigmoid_float(x));
         assert_true(activated(ACTIVATION_TANH, x) == tanh_float(x));
         assert_true(activated(ACTIVATION_LINEAR, x) == x);
+        assert_true(activated(ACTIVATION_RELU, x) == (x > 0 ? x : 0));
     }
 }
 
@@ -162,11 +163,13 @@ static void check_batches(int layers, const int *widths, const Activation *activ
 
 static void a_batch_has_the_bits_of_single_rows_whatever_the_instructions(void **state) {
     (void)state;
-    const Activation l = ACTIVATION_LINEAR, s = ACTIVATION_SIGMOID, t = ACTIVATION_TANH;
+    const Activation l = ACTIVATION_LINEAR, s = ACTIVATION_SIGMOID, t = ACTIVATION_TANH, r = ACTIVATION_RELU;
     check_batches(2, (const int[]){10, 10, 2}, (const Activation[]){s, s});
     check_batches(3, (const int[]){10, 8, 8, 6}, (const Activation[]){s, s, l});
     check_batches(3, (const int[]){3, 37, 1, 5}, (const Activation[]){t, l, t});
     check_batches(1, (const int[]){1, 1}, (const Activation[]){t});
+    check_batches(3, (const int[]){10, 9, 7, 3}, (const Activation[]){r, r, l});
+    check_batches(1, (const int[]){1, 1}, (const Activation[]){r});
 }
 
 static void a_copy_has_numbers_of_its_own(void **state) {

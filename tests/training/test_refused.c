@@ -13,7 +13,7 @@ static void what_cannot_be_trained_is_refused(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("magic", 1);
-    assert_refused(dataset, options, "\"magic\"; known are adam, bfgs, lm");
+    assert_refused(dataset, options, "\"magic\"; known are adam, bfgs, gd, lm");
     options = small("adam", -1);
     assert_refused(dataset, options, "iterations: error: -1");
     options = small("adam", 1);
@@ -38,6 +38,8 @@ static void what_cannot_be_trained_is_refused(void **state) {
     assert_ok(start != NULL, error);
     options = small("adam", 0);
     options.start = start;
+    assert_refused(dataset, options, "trained on other inputs");
+    strcpy(start->inputs, pair_views[PAIR_RELATIVE].inputs);
     assert_refused(dataset, options, "other widths");
     network_destroy(start);
     dataset->launch_test[4] = 0;
@@ -52,13 +54,91 @@ static void leaving_the_finite_numbers_is_an_error(void **state) {
     dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
     assert_refused(dataset, small("adam", 3), "iteration 0");
     assert_refused(dataset, small("bfgs", 3), "iteration 0");
+    assert_refused(dataset, small("gd", 3), "iteration 0");
     assert_refused(dataset, small("lm", 3), "iteration 0");
+    dataset_destroy(dataset);
+}
+
+static void words_that_do_not_fit_are_refused(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    TrainingOptions options = small("adam", 1);
+    options.hidden = "linear";
+    assert_refused(dataset, options, "hidden: error: there is no \"linear\"; known are sigmoid, tanh, relu");
+    options = small("adam", 1);
+    options.output_activation = "tanh";
+    assert_refused(dataset, options, "output activation: error: there is no \"tanh\"; known are sigmoid, linear");
+    options = small("adam", 1);
+    options.scale = "none";
+    assert_refused(dataset, options, "scale: error: there is no \"none\"; known are minmax, standard");
+    options.scale = "standard";
+    assert_refused(dataset, options, "scale: error: standard needs linear outputs");
+    options.widths[2] = PAIR_CHANGES;
+    options.output_activation = "sigmoid";
+    assert_refused(dataset, options, "scale: error: standard needs linear outputs");
+    dataset_destroy(dataset);
+}
+
+/* The network to go on from keeps its form. */
+static void another_form_than_that_of_the_start_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *dataset = make_taught_dataset(100);
+    TrainingOptions options = small("adam", 1);
+    options.hidden = "tanh";
+    Network *start = training_run(dataset, &options, NULL, &error);
+    assert_ok(start != NULL, error);
+    options.start = start;
+    options.output_activation = "sigmoid";
+    Network *same = training_run(dataset, &options, NULL, &error);
+    assert_ok(same != NULL, error);
+    assert_int_equal(same->activations[0], ACTIVATION_TANH);
+    network_destroy(same);
+    options.hidden = "sigmoid";
+    assert_refused(dataset, options, "other activations than sigmoid");
+    options.hidden = NULL;
+    options.output_activation = "linear";
+    assert_refused(dataset, options, "another than linear");
+    options.output_activation = NULL;
+    options.scale = "minmax";
+    assert_refused(dataset, options, "scale: error: the network to go on from keeps its own");
+    network_destroy(start);
+    dataset_destroy(dataset);
+}
+
+/* Ten inputs that are all the same: the loss of a linear layer has curvature 10 along their sum, and a step of gradient
+   descent at rate 1/2 turns the distance from the minimum into -4 times itself. From 1 it passes the largest float,
+   2^128, in about 64 steps. */
+static void divergence_names_its_iteration(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *dataset = make_taught_dataset(100);
+    for (int i = 0; i < 100 * PAIR_INPUTS; i++) dataset->inputs[i] = dataset->inputs[i / PAIR_INPUTS * PAIR_INPUTS];
+    TrainingOptions options = {.layers = 1,
+                               .widths = {PAIR_INPUTS, 2},
+                               .optimizer = "gd",
+                               .iterations = 1000,
+                               .seed = 1,
+                               .output_activation = "linear"};
+    assert_null(training_run(dataset, &options, NULL, &error));
+    assert_error(error, ERROR_INPUT, "training: error: diverged: left the finite numbers in iteration ");
+    int iteration = 0;
+    assert_int_equal(sscanf(strstr(error.message, "iteration "), "iteration %d", &iteration), 1);
+    assert_in_range(iteration, 60, 70);
+    options.iterations = iteration - 1; /* up to there its numbers are finite */
+    error = (Error){0};
+    Network *network = training_run(dataset, &options, NULL, &error);
+    assert_ok(network != NULL, error);
+    network_destroy(network);
     dataset_destroy(dataset);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_cannot_be_trained_is_refused),
+        cmocka_unit_test(words_that_do_not_fit_are_refused),
+        cmocka_unit_test(another_form_than_that_of_the_start_is_refused),
+        cmocka_unit_test(divergence_names_its_iteration),
         cmocka_unit_test(leaving_the_finite_numbers_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,7 +32,7 @@ static void two_outputs_are_relative_and_min_max(void **state) {
     Error error = {0};
     Dataset *dataset = small_dataset();
     Network *network = make_network(2, ACTIVATION_SIGMOID);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_MINMAX, network);
     Samples *train = samples_create(dataset, network, false, &error),
             *test = samples_create(dataset, network, true, &error);
     assert_ok(train != NULL && test != NULL, error);
@@ -53,7 +53,7 @@ static void inputs_are_standardised_by_the_rows_trained_on(void **state) {
     Error error = {0};
     Dataset *dataset = small_dataset();
     Network *network = make_network(2, ACTIVATION_SIGMOID);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_MINMAX, network);
     Samples *train = samples_create(dataset, network, false, &error),
             *test = samples_create(dataset, network, true, &error);
     assert_ok(train != NULL && test != NULL, error);
@@ -76,7 +76,7 @@ static void six_outputs_are_all_changes_standardised(void **state) {
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++)
         dataset->changes[i] = 100 + (float)(i % 6 + 1) * next_number(&sequence);
     Network *network = make_network(6, ACTIVATION_LINEAR);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_STANDARD, network);
     Samples *train = samples_create(dataset, network, false, &error);
     assert_ok(train != NULL, error);
     assert_int_equal(train->blocks, 7);
@@ -102,7 +102,7 @@ static void normalisation_is_undone_by_prediction(void **state) {
     uint32_t sequence = 9;
     for (int i = 0; i < 50 * PAIR_CHANGES; i++) dataset->changes[i] = 3 + next_number(&sequence);
     Network *network = make_network(6, ACTIVATION_LINEAR);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_STANDARD, network);
     Samples *train = samples_create(dataset, network, false, &error);
     assert_ok(train != NULL, error);
     for (int row = 0, r = 0; row < 50; row++) {
@@ -125,7 +125,7 @@ static void the_constant_predictor_has_the_variance(void **state) {
     Error error = {0};
     Dataset *dataset = small_dataset();
     Network *network = make_network(2, ACTIVATION_SIGMOID);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_MINMAX, network);
     Samples *train = samples_create(dataset, network, false, &error),
             *test = samples_create(dataset, network, true, &error);
     assert_ok(train != NULL && test != NULL, error);
@@ -148,7 +148,7 @@ static void loss_of_a_constant_network_is_that_of_the_constant(void **state) {
     Dataset *dataset = make_taught_dataset(10007);
     const double parameters[22] = {0}, half[2] = {0.5, 0.5};
     Network *network = make_network(2, ACTIVATION_SIGMOID);
-    samples_fit_normalisation(dataset, network);
+    samples_fit_normalisation(dataset, SCALE_MINMAX, network);
     Samples *train = samples_create(dataset, network, false, &error);
     Loss *loss = loss_create(network, &error);
     assert_ok(train != NULL && loss != NULL, error);

@@ -69,6 +69,7 @@ static void every_optimizer_learns_what_a_network_taught(void **state) {
     check_learns("adam", 1000, 100);
     check_learns("bfgs", 200, 100);
     check_learns("lm", 20, 100);
+    check_learns("gd", 2000, 2);
 }
 
 /* Without a hidden layer and with linear outputs the loss is a parabola. Its minimum is 0 here, but for the
@@ -119,6 +120,61 @@ static void networks_say_what_they_take_and_give(void **state) {
     dataset_destroy(dataset);
 }
 
+static bool same_numbers(const Network *a, const Network *b) {
+    return memcmp(a->weights[0], b->weights[0], (size_t)network_parameter_count(a) * sizeof(float)) == 0;
+}
+
+/* Without a hidden layer and with weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias of each of the six
+   outputs, so that a step at rate 1/2 leaves 5/6 of it. */
+static void gradient_descent_steps_at_its_rate(void **state) {
+    (void)state;
+    Dataset *dataset = make_dataset(1000);
+    uint32_t sequence = 9;
+    for (int i = 0; i < 1000 * PAIR_CHANGES; i++) dataset->changes[i] = next_number(&sequence);
+    Scores scores;
+    TrainingOptions options = {.layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = "gd"};
+    Network *start = train(dataset, options, &scores);
+    for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) start->weights[0][i] = 0;
+    for (int k = 0; k < PAIR_CHANGES; k++) start->biases[0][k] = 1;
+    options.start = start;
+    options.iterations = 3;
+    Network *network = train(dataset, options, &scores);
+    for (int k = 0; k < PAIR_CHANGES; k++) assert_near(network->biases[0][k], 125.0 / 216, 1e-5);
+    network_destroy(network);
+    network_destroy(start);
+    dataset_destroy(dataset);
+}
+
+static void words_decide_the_form(void **state) {
+    (void)state;
+    Dataset *dataset = make_taught_dataset(100);
+    const char *const hidden[] = {"sigmoid", "tanh", "relu"};
+    const Activation expected[] = {ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
+    Scores scores;
+    Network *plain = train(dataset, small("adam", 5), &scores);
+    for (int h = 0; h < 3; h++)
+        for (int form = 0; form < 3; form++) {
+            TrainingOptions options = small("adam", 5);
+            options.hidden = hidden[h];
+            options.output_activation = form == 0 ? "sigmoid" : "linear";
+            options.scale = form == 2 ? "standard" : "minmax";
+            Network *network = train(dataset, options, &scores);
+            assert_int_equal(network->activations[0], expected[h]);
+            assert_int_equal(network->activations[1], form == 0 ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR);
+            /* Both scale to the units of the data; the mean predictor's error is 1 only where standardised. */
+            assert_true((fabs(last_score(&scores)->constant_train - 1) < 1e-4) == (form == 2));
+            assert_memory_equal(network->output_mean, plain->output_mean, 2 * sizeof(float));
+            assert_true(same_numbers(network, plain) == (h == 0 && form == 0));
+            network_destroy(network);
+        }
+    TrainingOptions options = small("adam", 5);
+    options.output_activation = "linear"; /* and so standard */
+    network_destroy(train(dataset, options, &scores));
+    assert_near(last_score(&scores)->constant_train, 1, 1e-4);
+    network_destroy(plain);
+    dataset_destroy(dataset);
+}
+
 /* Glorot: weights within sqrt(6 / (10 + 4)) of 0, of variance 1/3 of its square; biases 0. */
 static void first_weights_are_glorots(void **state) {
     (void)state;
@@ -143,18 +199,14 @@ static void first_weights_are_glorots(void **state) {
     dataset_destroy(dataset);
 }
 
-static bool same_numbers(const Network *a, const Network *b) {
-    return memcmp(a->weights[0], b->weights[0], (size_t)network_parameter_count(a) * sizeof(float)) == 0;
-}
-
 /* Rows enough that the work is shared out to threads. */
 static void seeds_decide_every_bit(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(6000);
     Scores scores;
-    const char *const names[] = {"adam", "bfgs", "lm"};
+    const char *const names[] = {"adam", "bfgs", "gd", "lm"};
     int threads = omp_get_max_threads();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         TrainingOptions options = small(names[i], 8);
         omp_set_num_threads(1);
         Network *first = train(dataset, options, &scores);
@@ -203,8 +255,8 @@ static bool stop_at(void *context, double done, double total) {
 static void asked_to_stop_the_best_so_far_comes_back(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(500);
-    const char *const names[] = {"adam", "bfgs", "lm"};
-    for (int i = 0; i < 3; i++) {
+    const char *const names[] = {"adam", "bfgs", "gd", "lm"};
+    for (int i = 0; i < 4; i++) {
         Error error = {0};
         Scores scores = {0};
         int stop = 7;
@@ -275,6 +327,8 @@ int main(void) {
         cmocka_unit_test(every_optimizer_learns_what_a_network_taught),
         cmocka_unit_test(linear_problems_are_solved),
         cmocka_unit_test(networks_say_what_they_take_and_give),
+        cmocka_unit_test(gradient_descent_steps_at_its_rate),
+        cmocka_unit_test(words_decide_the_form),
         cmocka_unit_test(first_weights_are_glorots),
         cmocka_unit_test(seeds_decide_every_bit),
         cmocka_unit_test(scores_come_as_in_the_papers_table),

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "training/form.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Word {
+    const char *name;
+    int value;
+} Word;
+
+/* Each ends with a name of NULL. */
+static const Word hidden_words[] = {
+    {"sigmoid", ACTIVATION_SIGMOID}, {"tanh", ACTIVATION_TANH}, {"relu", ACTIVATION_RELU}, {NULL, 0}};
+static const Word output_words[] = {{"sigmoid", ACTIVATION_SIGMOID}, {"linear", ACTIVATION_LINEAR}, {NULL, 0}};
+static const Word scale_words[] = {{"minmax", SCALE_MINMAX}, {"standard", SCALE_STANDARD}, {NULL, 0}};
+
+/* Leaves value alone where there is no name. */
+static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
+    if (name == NULL) return true;
+    char known[128] = "";
+    for (int i = 0; words[i].name != NULL; i++) {
+        if (strcmp(words[i].name, name) == 0) return *value = words[i].value, true;
+        size_t length = strlen(known);
+        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", words[i].name);
+    }
+    return error_input(error, option, "there is no \"%s\"; known are %s", name, known);
+}
+
+bool form_choose(Form *form, const TrainingOptions *options, Error *error) {
+    bool six = options->widths[options->layers] == PAIR_CHANGES;
+    int hidden = ACTIVATION_SIGMOID, output = six ? ACTIVATION_LINEAR : ACTIVATION_SIGMOID;
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
+        return false;
+    int scale = output == ACTIVATION_LINEAR ? SCALE_STANDARD : SCALE_MINMAX;
+    if (!choose("scale", options->scale, scale_words, &scale, error)) return false;
+    if (output == ACTIVATION_SIGMOID && scale == SCALE_STANDARD)
+        return error_input(error, "scale", "standard needs linear outputs: a sigmoid reaches nothing beyond 0 and 1");
+    *form = (Form){(Activation)hidden, (Activation)output, (OutputScale)scale};
+    return true;
+}
+
+bool form_fits(const Network *start, const TrainingOptions *options, Error *error) {
+    if (options->scale != NULL)
+        return error_input(error, "scale", "the network to go on from keeps its own; leave this option out");
+    int last = start->layers - 1, hidden = ACTIVATION_SIGMOID, output = (int)start->activations[last];
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
+        return false;
+    for (int l = 0; options->hidden != NULL && l < last; l++)
+        if (start->activations[l] != (Activation)hidden)
+            return error_input(error, "hidden", "the network to go on from has other activations than %s",
+                               options->hidden);
+    if (start->activations[last] == (Activation)output) return true;
+    return error_input(error, "output activation", "the network to go on from has another than %s",
+                       options->output_activation);
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the options say in words about a network's form: activations, and the scaling of its outputs. */
+#pragma once
+#include "training/samples.h"
+#include "training/training.h"
+
+typedef struct Form {
+    Activation hidden, output;
+    OutputScale scale;
+} Form;
+
+/* Words left out take the defaults of training.h. ERROR_INPUT: an unknown word, or outputs scaled to where their
+   activation does not reach. */
+bool form_choose(Form *form, const TrainingOptions *options, Error *error);
+
+/* ERROR_INPUT where the options ask for another form than that of the network to go on from. */
+bool form_fits(const Network *start, const TrainingOptions *options, Error *error);
