@@ -7,9 +7,9 @@
    plain optimiser (3.3).
    One rate for all networks, measured on pairs of the training scenes: 1000 steps at 0.1, 0.2, 0.3, 0.5, 1 and 2 for
    eight networks of 10-10-2 and 10-8-8-6, of all activations and scalings. 0.5 beat the smaller ones for six of the
-   eight; at 1 the loss of one with linear outputs rose to that of the mean, at 2 three diverged. Much wider layers, whose
-   loss is steeper, jump about or diverge at 0.5 as well. It crawls where the loss is flat along some directions and steep along
-   others. */
+   eight; at 1 the loss of one with linear outputs rose to that of the mean, at 2 three diverged. Much wider layers,
+   whose loss is steeper, jump about or diverge at 0.5 as well. It crawls where the loss is flat along some directions
+   and steep along others. */
 #include "training/optimizer.h"
 
 #include <stdlib.h>
