@@ -87,6 +87,8 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
         if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
         printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
                scenes[i].contenders, scenes[i].launches, options->folder, scenes[i].name);
+        /* Nothing was solved where an earlier run had it all. */
+        if (scenes[i].solves == 0) continue;
         printf(
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);

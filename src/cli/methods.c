@@ -10,15 +10,14 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return ARGP_ERR_UNKNOWN;
 }
 
-static const struct argp argp = {
-    NULL,
-    parse,
-    "",
-    "List the methods and their settings.\v"
-    "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz",
-    NULL,
-    NULL,
-    NULL};
+static const struct argp argp = {NULL,
+                                 parse,
+                                 "",
+                                 "List the methods and their settings.\v"
+                                 "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz",
+                                 NULL,
+                                 NULL,
+                                 NULL};
 
 int command_methods(int argc, char **argv, Error *error) {
     (void)error;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
-   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10 or 12], changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
+   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10 or 12],
+   changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
 #include "dataset/dataset.h"
 
 #include "common/npz.h"

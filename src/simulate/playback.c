@@ -9,7 +9,6 @@
    Fails away from the launches recorded: it does not see where the boxes are. */
 #include "scene/launch.h"
 #include "simulate/method.h"
-#include "solvers/solvers.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -45,8 +45,7 @@ bool simulate_observed(const Scene *scene, const Method *method, const StepObser
     if (!run_begin(&run, scene, method, error)) return false;
     bool ok = true;
     for (int frame = 1; ok && frame <= scene->frames; frame++)
-        ok = run_step(&run, frame, error) &&
-             observer->observe(observer->context, frame, run.world, error);
+        ok = run_step(&run, frame, error) && observer->observe(observer->context, frame, run.world, error);
     run_end(&run);
     return ok;
 }

@@ -7,8 +7,8 @@
    is not applied again in the next; the warm start comes in n equal shares, as gravity does. The velocity that pushes an
    overlap apart is that of the whole step: then the step ends with the velocities of a converged solve of the whole.
 
-   Fails like n k sweeps of one whole step, which at rest it beats, as every small step sees what the last one left; where
-   a single impact has to travel through a stack it is no better, and dearer. */
+   Fails like n k sweeps of one whole step: an impact that has to travel through a stack gets no further. It is dearer, as
+   sweeps of different small steps cannot overlap. */
 #include "common/array.h"
 #include "dynamics/contacts.h"
 #include "simulate/stepping.h"
