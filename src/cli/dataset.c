@@ -89,11 +89,11 @@ static bool choose(Options *options, Error *error) {
               (options->random == NULL ||
                option_int("--random", options->random, 1, DATASET_MAX_LAUNCHES, &dataset->random, error)) &&
               find_word("--inputs", options->inputs, views, PAIR_VIEWS, &view, error) &&
-              find_word("--target", options->target, dataset_target_names, DATASET_TARGETS, &target, error) &&
+              find_word("--target", options->target, pair_target_names, PAIR_TARGETS, &target, error) &&
               find_word("--labels", options->labels, dataset_label_names, DATASET_LABELS, &labels, error) &&
               option_seed("--seed", options->seed, &dataset->seed, error);
     dataset->view = (PairView)view;
-    dataset->target = (DatasetTarget)target;
+    dataset->target = (PairTarget)target;
     dataset->labels = (DatasetLabels)labels;
     return ok;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): for touching pairs of bodies, what the solver saw
-   and what it did. */
+   and what it did. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
@@ -11,31 +11,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { DATASET_VERSION = 2, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
-
-/* What of a pair is to be predicted; the paper leaves it open. A row is a pair in a step, or for DATASET_IMPULSE a pair
-   in one sweep of a step, with the velocities that it then had. */
-typedef enum DatasetTarget {
-    DATASET_PAIR,    /* what the pair's own impulses changed over the step */
-    DATASET_NET,     /* what all impulses changed of its two bodies over the step */
-    DATASET_IMPULSE, /* what one visit of the pair in one sweep changed */
-    DATASET_TARGETS
-} DatasetTarget;
+enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
 
 /* Where the changes come from: the engine's own solution, or the converged one of the same contact problem
    (solvers/reference.h): the paper's more accurate source. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
-extern const char *const dataset_target_names[DATASET_TARGETS];
 extern const char *const dataset_label_names[DATASET_LABELS];
 
 typedef struct Dataset {
     PairView view;
-    DatasetTarget target;
+    PairTarget target;
     DatasetLabels labels;
     int64_t rows;
     float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
-    float *changes;  /* [rows, PAIR_CHANGES] */
+    float *changes;  /* [rows, pair_change_count(target)]: pair_step_changes() */
     int32_t *launch; /* [rows] which launch the row comes from */
     int32_t *frame;  /* [rows] number of the step */
     int32_t *bodies; /* [rows, 2] */
@@ -56,7 +46,7 @@ typedef struct DatasetOptions {
     FloatRange bomb_x; /* m: launches of each scene swept over x, rotation and spin the scene's; may have none */
     int random;        /* further launches of each scene: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
     PairView view;
-    DatasetTarget target;
+    PairTarget target;
     DatasetLabels labels;
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
-   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10 or 12],
-   changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
+   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12 or 20],
+   changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]. */
 #include "dataset/dataset.h"
 
 #include "common/npz.h"
@@ -13,7 +13,6 @@
 
 #define KIND "dataset"
 
-const char *const dataset_target_names[DATASET_TARGETS] = {"pair", "net", "impulse"};
 const char *const dataset_label_names[DATASET_LABELS] = {"engine", "reference"};
 
 enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
@@ -50,7 +49,7 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
         {"version", NPZ_INT32, 0, {0}, &version},
         {"kind", NPZ_TEXT, 0, {0}, KIND},
         {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
-        {"target", NPZ_TEXT, 0, {0}, dataset_target_names[dataset->target]},
+        {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
         {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
         {"scenes", NPZ_TEXT, 0, {0}, scenes},
         {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
@@ -59,7 +58,7 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
         {"launch_spin", NPZ_FLOAT32, 1, {launches}, dataset->launch_spin},
         {"launch_test", NPZ_UINT8, 1, {launches}, dataset->launch_test},
         {"inputs", NPZ_FLOAT32, 2, {rows, dataset_inputs(dataset)}, dataset->inputs},
-        {"changes", NPZ_FLOAT32, 2, {rows, PAIR_CHANGES}, dataset->changes},
+        {"changes", NPZ_FLOAT32, 2, {rows, pair_change_count(dataset->target)}, dataset->changes},
         {"launch", NPZ_INT32, 1, {rows}, dataset->launch},
         {"frame", NPZ_INT32, 1, {rows}, dataset->frame},
         {"bodies", NPZ_INT32, 2, {rows, 2}, dataset->bodies},
@@ -112,11 +111,11 @@ static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error 
     int view, target, labels;
     for (int v = 0; v < PAIR_VIEWS; v++) views[v] = pair_views[v].name;
     if (!read_word(file, path, "view", views, PAIR_VIEWS, &view, error) ||
-        !read_word(file, path, "target", dataset_target_names, DATASET_TARGETS, &target, error) ||
+        !read_word(file, path, "target", pair_target_names, PAIR_TARGETS, &target, error) ||
         !read_word(file, path, "labels", dataset_label_names, DATASET_LABELS, &labels, error))
         return false;
     dataset->view = (PairView)view;
-    dataset->target = (DatasetTarget)target;
+    dataset->target = (PairTarget)target;
     dataset->labels = (DatasetLabels)labels;
     return true;
 }
@@ -131,7 +130,8 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
-    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
+    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, pair_change_count(dataset->target)},
+                  bodies[] = {rows, 2};
     return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
            (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
            (dataset->launch_rotation = npz_read(file, "launch_rotation", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
@@ -181,7 +181,7 @@ static bool check_contents(const Dataset *dataset, const char *path, Error *erro
            check_finite(dataset->launch_rotation, launches, "launch_rotation", path, error) &&
            check_finite(dataset->launch_spin, launches, "launch_spin", path, error) &&
            check_finite(dataset->inputs, rows * dataset_inputs(dataset), "inputs", path, error) &&
-           check_finite(dataset->changes, rows * PAIR_CHANGES, "changes", path, error) &&
+           check_finite(dataset->changes, rows * pair_change_count(dataset->target), "changes", path, error) &&
            check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
            check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
            check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error) &&

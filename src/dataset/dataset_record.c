@@ -21,11 +21,11 @@ static bool record_launch(void *context, int index, Error *error) {
 
 /* Copies the rows of launch i to row `at` and on. */
 static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t at) {
-    size_t inputs = (size_t)dataset_inputs(dataset);
+    size_t inputs = (size_t)dataset_inputs(dataset), changes = (size_t)pair_change_count(dataset->target);
     for (size_t k = 0; k < launch->count; k++, at++) {
         const PairRow *row = &launch->rows[k];
         memcpy(dataset->inputs + at * inputs, row->inputs, inputs * sizeof *row->inputs);
-        memcpy(dataset->changes + at * PAIR_CHANGES, row->changes, sizeof row->changes);
+        memcpy(dataset->changes + at * changes, row->changes, changes * sizeof *row->changes);
         dataset->launch[at] = i;
         dataset->frame[at] = row->frame;
         memcpy(dataset->bodies + at * 2, row->bodies, sizeof row->bodies);
@@ -42,7 +42,7 @@ static bool gather(Dataset *dataset, LaunchRows *launches, Error *error) {
         rows += launches[i].count;
     }
     dataset->inputs = malloc((rows + 1) * (size_t)dataset_inputs(dataset) * sizeof *dataset->inputs);
-    dataset->changes = malloc((rows + 1) * PAIR_CHANGES * sizeof *dataset->changes);
+    dataset->changes = malloc((rows + 1) * (size_t)pair_change_count(dataset->target) * sizeof *dataset->changes);
     dataset->launch = malloc((rows + 1) * sizeof *dataset->launch);
     dataset->frame = malloc((rows + 1) * sizeof *dataset->frame);
     dataset->bodies = malloc((rows + 1) * 2 * sizeof *dataset->bodies);
@@ -86,8 +86,17 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
                     launches, DATASET_MAX_LAUNCHES);
         return NULL;
     }
-    if (options->target == DATASET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
+    if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
         error_input(error, "dataset", "the target impulse is what a sweep of the engine does; the reference has none");
+        return NULL;
+    }
+    if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS) {
+        error_input(error, "dataset", "the target impulse has no view neighbours: they change at every visit");
+        return NULL;
+    }
+    if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact) {
+        error_input(error, "dataset",
+                    "the target points needs the view contact or neighbours, where the warm start can be seen");
         return NULL;
     }
     Scene *scenes[DATASET_MAX_SCENES] = {NULL};

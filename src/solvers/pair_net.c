@@ -132,7 +132,7 @@ static const float *predict_pairs(PairNet *solver, const ContactProblem *problem
     }
     for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
         float numbers[PAIR_INPUTS_MAX];
-        pair_inputs(problem, NULL, problem->contacts[first].a, problem->contacts[first].b, solver->view, numbers);
+        pair_inputs(problem, NULL, first, solver->view, numbers);
         for (int i = 0; i < count; i++) inputs[i * pairs + p] = numbers[i];
     }
     network_predict_batch(solver->network, inputs, solver->scratch, outputs, pairs);

@@ -28,8 +28,8 @@ static bool choose(const char *option, const char *name, const Word *words, int 
 }
 
 bool form_choose(Form *form, const TrainingOptions *options, Error *error) {
-    bool six = options->widths[options->layers] == PAIR_CHANGES;
-    int hidden = ACTIVATION_SIGMOID, output = six ? ACTIVATION_LINEAR : ACTIVATION_SIGMOID;
+    bool two = options->widths[options->layers] == 2;
+    int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
     if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
         !choose("output activation", options->output_activation, output_words, &output, error))
         return false;

@@ -12,8 +12,8 @@ static float input_at(const Dataset *dataset, int64_t row, int column) {
 }
 
 static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {
-    const float *changes = dataset->changes + row * PAIR_CHANGES;
-    return outputs == PAIR_CHANGES ? changes[column] : changes[column + 3] - changes[column];
+    const float *changes = dataset->changes + row * pair_change_count(dataset->target);
+    return outputs == pair_change_count(dataset->target) ? changes[column] : changes[column + 3] - changes[column];
 }
 
 /* What a normalisation is made from. */

@@ -34,9 +34,11 @@ static bool check_options(const Dataset *dataset, const TrainingOptions *options
     if (first != dataset_inputs(dataset))
         return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
                            dataset_inputs(dataset));
-    if (last != 2 && last != PAIR_CHANGES)
-        return error_input(error, "layers", "the last width is %d; 2 (relative velocity) or %d (both bodies) are known",
-                           last, PAIR_CHANGES);
+    if (pair_output_names(dataset->view, dataset->target, last) == NULL)
+        return error_input(error, "layers", "the last width is %d; for the target %s %s known", last,
+                           pair_target_names[dataset->target],
+                           dataset->target == TARGET_POINTS ? "4 (both points) is"
+                                                            : "2 (relative velocity) or 6 (both bodies) are");
     if (options->iterations < 0)
         return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
     int64_t test_rows = 0;
@@ -71,11 +73,12 @@ static Network *new_network(const Dataset *dataset, const TrainingOptions *optio
     if (!form_choose(&form, options, error)) return NULL;
     Network *network = network_create(options->layers, options->widths, error);
     if (network == NULL) return NULL;
-    bool six = options->widths[options->layers] == PAIR_CHANGES;
     for (int l = 0; l < network->layers; l++) network->activations[l] = form.hidden;
     network->activations[network->layers - 1] = form.output;
     snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
-    snprintf(network->outputs, sizeof network->outputs, "%s", six ? pair_change_names : "dvx dvy");
+    snprintf(network->outputs, sizeof network->outputs, "%s",
+             pair_output_names(dataset->view, dataset->target, options->widths[options->layers]));
+    snprintf(network->target, sizeof network->target, "%s", pair_target_names[dataset->target]);
     samples_fit_normalisation(dataset, form.scale, network);
     if (set_random_weights(network, options->seed, error)) return network;
     network_destroy(network);
@@ -86,6 +89,11 @@ static Network *continued_network(const Dataset *dataset, const TrainingOptions 
     const Network *start = options->start;
     if (strcmp(start->inputs, pair_views[dataset->view].inputs) != 0) {
         error_input(error, "dataset", "the network to go on from was trained on other inputs (%.80s)", start->inputs);
+        return NULL;
+    }
+    if (strcmp(start->target, pair_target_names[dataset->target]) != 0) {
+        error_input(error, "dataset", "the network to go on from was trained for another target (%.80s)",
+                    start->target);
         return NULL;
     }
     bool fits = start->layers == options->layers;

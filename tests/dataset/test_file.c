@@ -47,7 +47,7 @@ static void files_keep_every_bit(void **state) {
     (void)state;
     Error error = {0};
     Dataset dataset = example();
-    dataset.target = DATASET_IMPULSE;
+    dataset.target = TARGET_IMPULSE;
     dataset.labels = DATASET_BY_REFERENCE;
     dataset.view = PAIR_RAW_UNTURNED;
     const char *path = temporary_path("data.npz");
@@ -65,7 +65,7 @@ static void files_keep_every_bit(void **state) {
     assert_memory_equal(read->launch_test, numbers.launch_test, sizeof numbers.launch_test);
     assert_memory_equal(read->launch_rotation, numbers.launch_rotation, sizeof numbers.launch_rotation);
     assert_memory_equal(read->launch_spin, numbers.launch_spin, sizeof numbers.launch_spin);
-    assert_true(read->target == DATASET_IMPULSE && read->labels == DATASET_BY_REFERENCE &&
+    assert_true(read->target == TARGET_IMPULSE && read->labels == DATASET_BY_REFERENCE &&
                 read->view == PAIR_RAW_UNTURNED);
     assert_int_equal(read->scene_count, 2);
     assert_string_equal(read->scenes[0], "single");

@@ -24,8 +24,8 @@ static Dataset *record(DatasetOptions options) {
 /* The visits of a pair in all sweeps of a step, and its warm start, are what its impulses changed in the step. */
 static void visits_add_up_to_the_pairs_change(void **state) {
     (void)state;
-    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
-    Dataset *visits = record((DatasetOptions){.target = DATASET_IMPULSE});
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *visits = record((DatasetOptions){.target = TARGET_IMPULSE});
     assert_true(visits->rows == 10 * pair->rows);
     int first_touches = 0;
     for (int64_t r = 0, v = 0; r < pair->rows; r++) {
@@ -52,8 +52,8 @@ static void visits_add_up_to_the_pairs_change(void **state) {
 /* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
 static void net_is_pair_where_there_is_one_pair(void **state) {
     (void)state;
-    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
-    Dataset *net = record((DatasetOptions){.target = DATASET_NET});
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *net = record((DatasetOptions){.target = TARGET_NET});
     assert_true(pair->rows == net->rows);
     int compared = 0, different = 0;
     for (int64_t r = 0; r < pair->rows; r++) {
@@ -76,9 +76,9 @@ static void net_is_pair_where_there_is_one_pair(void **state) {
 /* At rest the engine has converged: the reference says the same; at impacts it does not. */
 static void the_reference_labels_what_the_engine_met(void **state) {
     (void)state;
-    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET});
+    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});
     Dataset *reference = record(
-        (DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET, .labels = DATASET_BY_REFERENCE});
+        (DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET, .labels = DATASET_BY_REFERENCE});
     assert_true(engine->rows == reference->rows);
     int64_t near = 0, far = 0;
     for (int64_t r = 0; r < engine->rows; r++) {
@@ -126,7 +126,7 @@ static void what_cannot_be_recorded_is_refused(void **state) {
     (void)state;
     refuse((DatasetOptions){.random = 4}, "4 launches a scene; at least 5");
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
-    refuse((DatasetOptions){.random = 5, .target = DATASET_IMPULSE, .labels = DATASET_BY_REFERENCE},
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
            "the reference has none");
 }
 

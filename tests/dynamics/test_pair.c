@@ -28,7 +28,7 @@ static void inputs_are_relative_position_velocities_spins_rotations(void **state
     (void)state;
     float inputs[PAIR_INPUTS];
     const float expected[PAIR_INPUTS] = {0, 1, 3, -4, -1, -2, 5, -3, 0.25f, 0};
-    pair_inputs(&problem, NULL, 1, 2, PAIR_RELATIVE, inputs);
+    pair_inputs(&problem, NULL, 2, PAIR_RELATIVE, inputs);
     for (int i = 0; i < PAIR_INPUTS; i++) assert_near(inputs[i], expected[i], 0);
 }
 
@@ -36,11 +36,12 @@ static void views_show_what_they_are_named_for(void **state) {
     (void)state;
     float inputs[PAIR_INPUTS_MAX];
     const float raw[] = {1, 0.5f, 1, 1.5f, 7, 8, -1, -2, 9, -3, 0.25f, 0};
-    const BodyVelocity velocities[3] = {{{0, 0}, 0}, {{7, 8}, 9}, {{-1, -2}, -3}};
-    pair_inputs(&problem, velocities, 1, 2, PAIR_RAW, inputs);
+    BodyVelocity velocities[3] = {{{0, 0}, 0}, {{7, 8}, 9}, {{-1, -2}, -3}};
+    const PairMoment now = {.velocities = velocities};
+    pair_inputs(&problem, &now, 2, PAIR_RAW, inputs);
     for (int i = 0; i < 12; i++) assert_near(inputs[i], raw[i], 0);
     inputs[10] = 77;
-    pair_inputs(&problem, velocities, 1, 2, PAIR_RAW_UNTURNED, inputs);
+    pair_inputs(&problem, &now, 2, PAIR_RAW_UNTURNED, inputs);
     for (int i = 0; i < 10; i++) assert_near(inputs[i], raw[i], 0);
     assert_near(inputs[10], 77, 0);
     PairView view = PAIR_RELATIVE;

@@ -154,7 +154,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
     for (int i = 0; i < 3; i++) expected[i] = (BodyVelocity){three[i].velocity, three[i].angular_velocity};
     for (int p = 0; p < 3; p++) {
         float inputs[PAIR_INPUTS], changes[PAIR_CHANGES], scratch[2 * PAIR_INPUTS];
-        pair_inputs(&problem, NULL, touching[p].a, touching[p].b, PAIR_RELATIVE, inputs);
+        pair_inputs(&problem, NULL, p, PAIR_RELATIVE, inputs);
         network_predict(network, inputs, scratch, changes);
         for (int side = 0; side < 2; side++) {
             BodyVelocity *body = &expected[side == 0 ? touching[p].a : touching[p].b];
