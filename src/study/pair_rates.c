@@ -26,7 +26,7 @@ typedef struct Rating {
     const Scene *scene;
     PairNetwork network;
     World *world;
-    bool warm;  /* no network: the warm start */
+    bool warm; /* no network: the warm start */
     double weights[PHASES];
     ContactSolver solvers[RATE_COLUMNS]; /* kind NULL: none */
     PairMoment results[RATE_COLUMNS];
@@ -37,25 +37,25 @@ typedef struct Rating {
     double right[PHASES][RATE_COLUMNS], bodies[PHASES][RATE_COLUMNS];
 } Rating;
 
-static bool add_solver(Rating *rating, RateColumn column, const char *text, Error *error) {
+static bool add_engine(Rating *rating, RateColumn column, const char *text, Error *error) {
     Method method;
     return method_parse(&method, text, error) &&
            method_create_solver(&method, rating->scene, &rating->solvers[column], error);
 }
 
+static bool add_network(Rating *rating, RateColumn column, const char *name, const char *path, Error *error) {
+    Method method;
+    return method_with_network(&method, name, path, error) &&
+           method_create_solver(&method, rating->scene, &rating->solvers[column], error);
+}
+
 static bool add_networks(Rating *rating, const char *path, Error *error) {
-    char text[METHOD_TEXT_SIZE];
     if (!pair_network_read(&rating->network, path, error)) return false;
     const PairTarget target = rating->network.target;
     /* Such a network would need the impulses of points, and says none. */
     if (target == TARGET_IMPULSE && pair_views[rating->network.view].by_contact) return true;
-    const char *names[2] = {target == TARGET_POINTS ? "contact-net" : "pair-net", "constant"};
-    for (int i = 0; i < 2; i++) {
-        if (snprintf(text, sizeof text, "%s:network=%s", names[i], path) >= (int)sizeof text)
-            return error_input(error, path, "the name is too long");
-        if (!add_solver(rating, (RateColumn)i, text, error)) return false;
-    }
-    return true;
+    return add_network(rating, RATE_NETWORK, target == TARGET_POINTS ? "contact-net" : "pair-net", path, error) &&
+           add_network(rating, RATE_CONSTANT, "constant", path, error);
 }
 
 static bool begin(Rating *rating, const char *path, const Sampling *sampling, Error *error) {
@@ -70,9 +70,9 @@ static bool begin(Rating *rating, const char *path, const Sampling *sampling, Er
         rating->network.view = PAIR_NEIGHBOURS, rating->network.target = TARGET_POINTS;
     else if (!add_networks(rating, path, error))
         return false;
-    return add_solver(rating, RATE_ENGINE1, "engine:k=1", error) &&
-           add_solver(rating, RATE_ENGINE4, "engine:k=4", error) &&
-           add_solver(rating, RATE_ENGINE10, "engine:k=10", error);
+    return add_engine(rating, RATE_ENGINE1, "engine:k=1", error) &&
+           add_engine(rating, RATE_ENGINE4, "engine:k=4", error) &&
+           add_engine(rating, RATE_ENGINE10, "engine:k=10", error);
 }
 
 static void end(Rating *rating) {

@@ -14,7 +14,14 @@
 #include "study/frozen.h"
 
 typedef enum RateDefinition { RATE_RANGE, RATE_ABSOLUTE, RATE_BODIES, RATE_DEFINITIONS } RateDefinition;
-typedef enum RateColumn { RATE_NETWORK, RATE_CONSTANT, RATE_ENGINE1, RATE_ENGINE4, RATE_ENGINE10, RATE_COLUMNS } RateColumn;
+typedef enum RateColumn {
+    RATE_NETWORK,
+    RATE_CONSTANT,
+    RATE_ENGINE1,
+    RATE_ENGINE4,
+    RATE_ENGINE10,
+    RATE_COLUMNS
+} RateColumn;
 
 enum { RATE_PHASES = PHASES + 1, RATE_ALL = PHASES };
 

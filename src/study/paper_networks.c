@@ -5,7 +5,8 @@
 
 const char *const paper_data_names[PAPER_DATA] = {"swept", "random", "mixed", "swept finely", "swept as in the paper"};
 
-#define SEARCHED(form) {.name = "layers-" form, .factor = "layers", .value = form, .layers = form}
+#define SEARCHED(form) \
+    { .name = "layers-" form, .factor = "layers", .value = form, .layers = form }
 
 /* Around 6, the mean of ten inputs and two outputs. The wider networks at the end are the best that were found for each
    target within 500 parameters: by Adam 20 to 40 forms a target, with inputs of all views. */
@@ -25,7 +26,11 @@ const PaperNetwork paper_networks[] = {
     {.name = "data-random", .factor = "data", .value = "random", .data = DATA_RANDOM},
     {.name = "data-mixed", .factor = "data", .value = "mixed", .data = DATA_MIXED},
     {.name = "data-paper", .factor = "data", .value = "201 launches", .data = DATA_PAPER},
-    {.name = "labels-reference", .factor = "labels", .value = "reference", .labels = DATASET_BY_REFERENCE, .quick = true},
+    {.name = "labels-reference",
+     .factor = "labels",
+     .value = "reference",
+     .labels = DATASET_BY_REFERENCE,
+     .quick = true},
     {.name = "scaling-linear", .factor = "scaling", .value = "min-max, linear", .output = "linear", .scale = "minmax"},
     {.name = "scaling-standard", .factor = "scaling", .value = "standard, linear", .output = "linear", .quick = true},
     {.name = "hidden-tanh", .factor = "hidden", .value = "tanh", .hidden = "tanh"},

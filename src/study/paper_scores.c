@@ -109,12 +109,9 @@ bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Err
 }
 
 static bool method_of(const PaperScoring *scoring, int i, Method *method, Error *error) {
-    char path[PAPER_PATH_SIZE], text[METHOD_TEXT_SIZE];
+    char path[PAPER_PATH_SIZE];
     const char *name = scoring->networks[i].target == TARGET_POINTS ? "contact-net" : "pair-net";
-    if (!network_path(scoring, i, path, error)) return false;
-    if (snprintf(text, sizeof text, "%s:network=%s", name, path) >= (int)sizeof text)
-        return error_input(error, scoring->folder, "the name is too long");
-    return method_parse(method, text, error);
+    return network_path(scoring, i, path, error) && method_with_network(method, name, path, error);
 }
 
 static bool close_network(void *context, int i, Error *error) {

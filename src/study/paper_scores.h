@@ -7,13 +7,13 @@
 #include <stdio.h>
 
 #define RATES_HEADER "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
-#define CLOSED_LOOP_HEADER                                                                                             \
+#define CLOSED_LOOP_HEADER \
     "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,us_step,us_step_engine"
 
 typedef struct PaperScoring {
-    const char *scene;                  /* path of its file */
-    const char *folder;                 /* of the trained networks */
-    const PaperNetwork *networks;       /* [count] */
+    const char *scene;            /* path of its file */
+    const char *folder;           /* of the trained networks */
+    const PaperNetwork *networks; /* [count] */
     int count;
     int rate_launches, closed_launches; /* scored on, none of them trained on */
     Sampling sampling;

@@ -6,8 +6,8 @@
 #include <stdio.h>
 
 #define TABLE1_HEADER "network,target,optimizer,iteration,test,train,constant"
-#define NETWORKS_HEADER                                                                                                \
-    "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,iterations,parameters,"  \
+#define NETWORKS_HEADER                                                                                               \
+    "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,iterations,parameters," \
     "test,train,constant,ratio,accuracy"
 
 typedef struct PaperTraining {
