@@ -192,7 +192,7 @@ static void rate_bodies(Rating *rating, const ContactProblem *problem, const Sna
 
 static bool rate_snapshot(Rating *rating, const Snapshot *snapshot, Error *error) {
     ContactProblem problem;
-    ContactSolution unused;
+    ContactSolution *unused;
     if (!world_copy(rating->world, snapshot->world, error) ||
         !world_begin_step(rating->world, rating->scene->dt, &problem, &unused, error) ||
         !solve_all(rating, &problem, error))

@@ -70,7 +70,7 @@ static const PaperSize quick_size = {
 
 static const char *const law_names[] = {"all", "momentum", "energy", "approach", "cone"};
 
-enum { LAWS = sizeof law_names / sizeof law_names[0], PART_NAME_SIZE = 128 };
+enum { LAW_SETS = sizeof law_names / sizeof law_names[0], PART_NAME_SIZE = 128 };
 
 /* The study in progress. */
 typedef struct Run {
@@ -157,7 +157,7 @@ static bool train_with_laws(Run *run, const char *laws, double law_weight, Error
 
 static bool study_laws(Run *run, Error *error) {
     if (!train_with_laws(run, NULL, 0, error) || !train_with_laws(run, "none", 0, error)) return false;
-    for (int law = 0; law < LAWS; law++)
+    for (int law = 0; law < LAW_SETS; law++)
         for (int w = 0; w < MOST_WEIGHTS && run->size->weights[w] > 0; w++)
             if (!train_with_laws(run, law_names[law], run->size->weights[w], error)) return false;
     return true;

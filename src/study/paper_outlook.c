@@ -23,8 +23,8 @@ bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Erro
         fprintf(lines, "laws:%s,%.6g,%" PRIu64 ",%.6g,%.6g", study->laws, study->weight, study->seed, result.test,
                 result.constant);
     }
-    const LawNumbers *broken = &result.violations;
-    fprintf(lines, ",%.6g,%.6g,%.6g,%.6g\n", broken->momentum, broken->energy, broken->approach, broken->cone);
+    for (int law = 0; law < LAWS; law++) fprintf(lines, ",%.6g", result.violations.of[law]);
+    fputc('\n', lines);
     return true;
 }
 

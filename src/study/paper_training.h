@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One network of the paper's study: trained, scored and stored. */
 #pragma once
+#include "network/network.h"
 #include "study/paper_data.h"
 
 #include <stdio.h>
