@@ -56,7 +56,7 @@ static void views_show_what_they_are_named_for(void **state) {
 static void changes_are_those_of_the_pairs_own_impulses(void **state) {
     (void)state;
     ContactImpulse impulses[3] = {{4, 1}, {6, 1}, {1000, 1000}};
-    const ContactSolution solution = {NULL, impulses};
+    const ContactSolution solution = {NULL, impulses, 0};
     float changes[PAIR_CHANGES];
     const float expected[PAIR_CHANGES] = {0, 0, 0, 1, 5, 4};
     assert_int_equal(pair_contact_count(&problem, 0), 2);
@@ -68,7 +68,7 @@ static void changes_are_those_of_the_pairs_own_impulses(void **state) {
 static void changes_keep_the_pairs_momentum(void **state) {
     (void)state;
     ContactImpulse impulses[3] = {{0, 0}, {0, 0}, {8, 2}};
-    const ContactSolution solution = {NULL, impulses};
+    const ContactSolution solution = {NULL, impulses, 0};
     float c[PAIR_CHANGES];
     assert_int_equal(pair_contact_count(&problem, 2), 1);
     pair_changes(&problem, &solution, 2, 1, c);

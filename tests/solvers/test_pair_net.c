@@ -50,7 +50,7 @@ static void solve_by(const ContactSolverKind *kind, const char *path, const Prob
     ContactSolver solver = make_network_solver(kind, path);
     ContactProblem problem = {.body_count = 3, .contact_count = 2, .bomb = -1, .bodies = with, .contacts = contacts};
     ContactImpulse impulses[2];
-    ContactSolution solution = {velocities, impulses};
+    ContactSolution solution = {velocities, impulses, 0};
     Error error = {0};
     assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
     free_solver(&solver);
@@ -163,7 +163,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
         }
     }
     ContactSolver solver = make_network_solver(&solver_pair_net, path);
-    ContactSolution solution = {found, (ContactImpulse[3]){{0}}};
+    ContactSolution solution = {found, (ContactImpulse[3]){{0}}, 0};
     assert_ok(solver.kind->solve(solver.state, &problem, &solution, &error), error);
     assert_memory_equal(found, expected, sizeof found);
     free_solver(&solver);
