@@ -114,26 +114,35 @@ static void random_launches_lie_in_their_ranges(void **state) {
     dataset_destroy(c);
 }
 
-/* A box of single.yaml at rest: what the warm start brings is what gravity takes, g dt of both points together, so that
-   nothing approaches and next to nothing is left to do. */
+/* Whether the pair of this row is one with the ground, and the two boxes of single.yaml do not touch in its step. */
+static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
+    for (int64_t r = row > 2 ? row - 2 : 0; r < dataset->rows && r <= row + 2; r++)
+        if (dataset->launch[r] == dataset->launch[row] && dataset->frame[r] == dataset->frame[row] &&
+            dataset->bodies[2 * r] != 0)
+            return false;
+    return dataset->bodies[2 * row] == 0;
+}
+
+/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that nothing
+   approaches and next to nothing is left to do. */
 static void a_box_at_rest_shows_its_warm_start(void **state) {
     (void)state;
-    enum { WIDTH = 20, ROUND = 9 }; /* numbers of a point: vn vt bias pn pt arms */
+    enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */
     Dataset *dataset = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_POINTS});
     assert_int_equal(dataset_inputs(dataset), WIDTH);
     int at_rest = 0;
     for (int64_t r = 0; r < dataset->rows; r++) {
-        if (dataset->frame[r] < 15 || dataset->frame[r] > 25) continue; /* it has landed; the bomb is on its way */
         const float *in = dataset->inputs + r * WIDTH, *changes = dataset->changes + r * PAIR_POINT_CHANGES;
-        assert_near(in[WIDTH - 1], 1, 0); /* two points */
-        assert_near(in[WIDTH - 2], 0, 0); /* on the ground, which has no inverse mass */
-        assert_near(in[3] + in[ROUND + 3], 10.0 / 60, 1e-3);
-        assert_near(in[0] - in[2], 0, 1e-3);
-        assert_near(in[ROUND] - in[ROUND + 2], 0, 1e-3);
-        for (int k = 0; k < PAIR_POINT_CHANGES; k++) assert_near(changes[k], 0, 1e-3);
+        const bool flat = in[WIDTH - 1] == 1;
+        if (dataset->frame[r] < 200 || !flat || !is_on_the_ground_alone(dataset, r)) continue;
+        assert_near(in[WIDTH - 2], 0, 0); /* the ground has no inverse mass */
+        assert_near(in[3] + in[POINT + 3], 10.0 / 60, 1e-5);
+        assert_near(in[0], in[2], 1e-5);
+        assert_near(in[POINT], in[POINT + 2], 1e-5);
+        for (int k = 0; k < PAIR_POINT_CHANGES; k++) assert_near(changes[k], 0, 1e-5);
         at_rest++;
     }
-    assert_true(at_rest > 50);
+    assert_true(at_rest > 500);
     dataset_destroy(dataset);
 }
 

@@ -239,6 +239,22 @@ static void nothing_touches_nothing_happens(void **state) {
     }
 }
 
+/* For who looks at the world after the step; the next begins with none. */
+static void the_world_tells_what_momentum_a_step_made(void **state) {
+    (void)state;
+    World *world = make_world();
+    for (int i = 0; i < 2; i++)
+        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0, 0.9f * (float)i}});
+    ContactSolver network = make_network_solver(&solver_pair_net, pair_constant(6, six), 1), engine = make_engine("");
+    run(world, &network, 1);
+    assert_near(world_solution(world)->momentum_error, sqrt(5 * 5 + 7 * 7), 1e-5);
+    run(world, &engine, 1);
+    assert_near(world_solution(world)->momentum_error, 0, 0);
+    free_solver(&network);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_outputs_act_as_one_impulse_in_the_middle),
@@ -252,6 +268,7 @@ int main(void) {
         cmocka_unit_test(a_raw_network_sees_positions),
         cmocka_unit_test(a_network_by_contact_sees_the_moment_after_the_warm_start),
         cmocka_unit_test(nothing_touches_nothing_happens),
+        cmocka_unit_test(the_world_tells_what_momentum_a_step_made),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
