@@ -130,10 +130,10 @@ void stepper_destroy(Stepper *stepper) {
 /* The step of Box2D-Lite around a contact solver. */
 static bool standard_step(const ContactSolver *solver, World *world, const Step *step, Error *error) {
     ContactProblem problem;
-    ContactSolution solution;
+    ContactSolution *solution;
     if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(step);
-    bool solved = solver->kind->solve(solver->state, &problem, &solution, error);
+    bool solved = solver->kind->solve(solver->state, &problem, solution, error);
     step_solving_ends(step);
     return solved && world_end_step(world, error);
 }
