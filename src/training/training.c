@@ -42,7 +42,7 @@ static bool check_options(const Dataset *dataset, const TrainingOptions *options
     if (options->iterations < 0)
         return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
     int64_t test_rows = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset->launch_test[dataset->launch[row]] != 0;
+    for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset_is_test(dataset, row);
     if (test_rows > 0 && test_rows < dataset->rows) return true;
     return error_input(error, "dataset", "%lld rows to train on and %lld to test on; at least one of each is needed",
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
@@ -116,9 +116,12 @@ static bool is_scored(int iteration) {
 static void report_score(Trainer *trainer) {
     if (trainer->scored == trainer->iteration || trainer->options->on_score == NULL) return;
     trainer->scored = trainer->iteration;
+    const double *now = trainer->now;
+    const double train =
+        trainer->laws == NULL ? trainer->loss_now : loss_value(trainer->loss, trainer->train, NULL, now);
     TrainingScore score = {.iteration = trainer->iteration,
-                           .test = loss_value(trainer->loss, trainer->test, trainer->now),
-                           .train = trainer->loss_now,
+                           .test = loss_value(trainer->loss, trainer->test, NULL, now),
+                           .train = train,
                            .constant_test = trainer->constant_test,
                            .constant_train = trainer->constant_train};
     trainer->options->on_score(trainer->options->context, &score);
@@ -153,8 +156,8 @@ static bool score_constant(Trainer *trainer, Error *error) {
     double *mean = malloc((size_t)trainer->train->outputs * sizeof *mean);
     if (mean == NULL) return error_memory(error, "training");
     samples_mean(trainer->train, mean);
-    trainer->constant_test = samples_constant_error(trainer->test, mean);
-    trainer->constant_train = samples_constant_error(trainer->train, mean);
+    trainer->constant_test = loss_of_constant(trainer->loss, trainer->test, mean);
+    trainer->constant_train = loss_of_constant(trainer->loss, trainer->train, mean);
     free(mean);
     return true;
 }
@@ -179,7 +182,10 @@ static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *netw
 
 static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
                   const Progress *progress, Error *error) {
-    Loss *loss = loss_create(network, error);
+    const bool with_laws = law_weights_any(&options->laws);
+    Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
+    LossKind kind = LOSS_MSE;
+    Loss *loss = form_choose_loss(&kind, options, error) ? loss_create(network, kind, error) : NULL;
     Samples *train_samples = samples_create(dataset, network, false, error);
     Samples *test_samples = samples_create(dataset, network, true, error);
     Trainer trainer = {.options = options,
@@ -187,15 +193,18 @@ static bool train(Network *network, const Dataset *dataset, const Optimizer *opt
                        .network = network,
                        .train = train_samples,
                        .test = test_samples,
+                       .loss_kind = kind,
                        .loss = loss,
+                       .laws = laws,
                        .parameters = network_parameter_count(network),
                        .iteration = -1,
                        .scored = -1};
-    bool ok = loss != NULL && train_samples != NULL && test_samples != NULL && score_constant(&trainer, error) &&
-              minimize(&trainer, optimizer, network, error);
+    bool ok = (laws != NULL || !with_laws) && loss != NULL && train_samples != NULL && test_samples != NULL &&
+              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
     samples_destroy(test_samples);
     samples_destroy(train_samples);
     loss_destroy(loss);
+    laws_destroy(laws);
     return ok;
 }
 

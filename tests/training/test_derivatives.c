@@ -27,7 +27,7 @@ static Case make_case(int layers, const int *widths, Activation hidden, Activati
     for (int l = 0; l < layers; l++) made.network->activations[l] = l < layers - 1 ? hidden : last;
     samples_fit_normalisation(made.dataset, scale, made.network);
     made.train = samples_create(made.dataset, made.network, false, &error);
-    made.loss = loss_create(made.network, &error);
+    made.loss = loss_create(made.network, LOSS_MSE, &error);
     made.gauss_newton = gauss_newton_create(made.network, &error);
     assert_ok(made.train != NULL && made.loss != NULL && made.gauss_newton != NULL, error);
     made.count = network_parameter_count(made.network);
@@ -60,14 +60,14 @@ static size_t residual_count(const Case *made) {
 static void check_gradient(Case made) {
     const double step = 1e-5;
     double *gradient = numbers((size_t)made.count);
-    double value = loss_gradient(made.loss, made.train, made.parameters, gradient);
-    assert_true(value == loss_value(made.loss, made.train, made.parameters));
+    double value = loss_gradient(made.loss, made.train, NULL, made.parameters, gradient);
+    assert_true(value == loss_value(made.loss, made.train, NULL, made.parameters));
     for (int p = 0; p < made.count; p++) {
         double kept = made.parameters[p];
         made.parameters[p] = kept + step;
-        double above = loss_value(made.loss, made.train, made.parameters);
+        double above = loss_value(made.loss, made.train, NULL, made.parameters);
         made.parameters[p] = kept - step;
-        double slope = (above - loss_value(made.loss, made.train, made.parameters)) / (2 * step);
+        double slope = (above - loss_value(made.loss, made.train, NULL, made.parameters)) / (2 * step);
         made.parameters[p] = kept;
         assert_near(gradient[p], slope, 1e-9 + 1e-6 * fabs(slope));
     }
@@ -94,7 +94,7 @@ static void residuals_make_up_the_loss(void **state) {
     double *residuals = numbers(count), sum = 0;
     loss_residuals(made.loss, made.train, made.parameters, residuals);
     for (size_t i = 0; i < count; i++) sum += residuals[i] * residuals[i];
-    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, made.parameters), 1e-12);
+    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, NULL, made.parameters), 1e-12);
     free(residuals);
     free_case(&made);
 }
@@ -161,7 +161,7 @@ static void sums_do_not_depend_on_threads(void **state) {
     loss_residuals(made.loss, made.train, made.parameters, u);
     for (size_t i = 0; i < 2; i++) {
         omp_set_num_threads(i == 0 ? 1 : 3);
-        value[i] = loss_gradient(made.loss, made.train, made.parameters, gradient + i * size);
+        value[i] = loss_gradient(made.loss, made.train, NULL, made.parameters, gradient + i * size);
         gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + i * size, jtj + i * size * size);
     }
     omp_set_num_threads(threads);
