@@ -32,14 +32,14 @@ static double impulse_mass(const LawPair *pair) { return pair->mass[3] > 0 ? pai
 
 static double impulse_size(const LawPair *pair, const double change[PAIR_CHANGES]) {
     const double *given = change + impulse_body(pair);
-    return fabs(impulse_mass(pair)) * hypot(given[0], given[1]);
+    return fabs(impulse_mass(pair)) * sqrt(given[0] * given[0] + given[1] * given[1]);
 }
 
 static double momentum_violation(const LawPair *pair, const double change[PAIR_CHANGES], double slope[PAIR_CHANGES]) {
     const double a = pair->mass[0], b = pair->mass[3];
     memset(slope, 0, PAIR_CHANGES * sizeof *slope);
     if (a == 0 || b == 0) return 0;
-    const double x = a * change[0] + b * change[3], y = a * change[1] + b * change[4], size = hypot(x, y);
+    const double x = a * change[0] + b * change[3], y = a * change[1] + b * change[4], size = sqrt(x * x + y * y);
     if (size == 0) return 0;
     slope[0] = a * x / size, slope[1] = a * y / size;
     slope[3] = b * x / size, slope[4] = b * y / size;

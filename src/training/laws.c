@@ -57,7 +57,6 @@ static void fill(Laws *laws, const Dataset *dataset, const LawNumbers *weights) 
 }
 
 Laws *laws_create(const Dataset *dataset, const Network *network, const LawNumbers *weights, Error *error) {
-    if (!laws_check(dataset, network->widths[network->layers], weights, error)) return NULL;
     int64_t count = 0;
     for (int64_t row = 0; row < dataset->rows; row++) count += !dataset_is_test(dataset, row);
     Laws *laws = calloc(1, sizeof *laws);

@@ -2,6 +2,7 @@
 /* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
 #include "training/training.h"
 
+#include "training/checks.h"
 #include "training/form.h"
 #include "training/optimizer.h"
 
@@ -24,28 +25,6 @@ static const Optimizer *find_optimizer(const char *name, Error *error) {
     }
     error_input(error, "optimizer", "there is no \"%s\"; known are %s", name, known);
     return NULL;
-}
-
-static bool check_options(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    if (options->layers < 1 || options->layers > NETWORK_MAX_LAYERS)
-        return error_input(error, "layers", "%d layers of weights; 1 to %d are possible", options->layers,
-                           NETWORK_MAX_LAYERS);
-    int first = options->widths[0], last = options->widths[options->layers];
-    if (first != dataset_inputs(dataset))
-        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
-                           dataset_inputs(dataset));
-    if (pair_output_names(dataset->view, dataset->target, last) == NULL)
-        return error_input(error, "layers", "the last width is %d; for the target %s %s known", last,
-                           pair_target_names[dataset->target],
-                           dataset->target == TARGET_POINTS ? "4 (both points) is"
-                                                            : "2 (relative velocity) or 6 (both bodies) are");
-    if (options->iterations < 0)
-        return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
-    int64_t test_rows = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset_is_test(dataset, row);
-    if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, "dataset", "%lld rows to train on and %lld to test on; at least one of each is needed",
-                       (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 
 /* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
@@ -82,24 +61,6 @@ static Network *new_network(const Dataset *dataset, const TrainingOptions *optio
     samples_fit_normalisation(dataset, form.scale, network);
     if (set_random_weights(network, options->seed, error)) return network;
     network_destroy(network);
-    return NULL;
-}
-
-static Network *continued_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    const Network *start = options->start;
-    if (strcmp(start->inputs, pair_views[dataset->view].inputs) != 0) {
-        error_input(error, "dataset", "the network to go on from was trained on other inputs (%.80s)", start->inputs);
-        return NULL;
-    }
-    if (strcmp(start->target, pair_target_names[dataset->target]) != 0) {
-        error_input(error, "dataset", "the network to go on from was trained for another target (%.80s)",
-                    start->target);
-        return NULL;
-    }
-    bool fits = start->layers == options->layers;
-    for (int l = 0; fits && l <= options->layers; l++) fits = start->widths[l] == options->widths[l];
-    if (fits) return form_fits(start, options, error) ? network_copy(start, error) : NULL;
-    error_input(error, "layers", "the network to go on from has other widths");
     return NULL;
 }
 
@@ -212,12 +173,28 @@ Network *training_run(const Dataset *dataset, const TrainingOptions *options, co
     /* GSL's default handler ends the process. */
     gsl_set_error_handler_off();
     const Optimizer *optimizer = find_optimizer(options->optimizer, error);
-    if (optimizer == NULL || !check_options(dataset, options, error)) return NULL;
+    if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;
     Network *network =
-        options->start != NULL ? continued_network(dataset, options, error) : new_network(dataset, options, error);
+        options->start != NULL ? network_copy(options->start, error) : new_network(dataset, options, error);
     if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
         network_destroy(network);
         network = NULL;
     }
     return network;
+}
+
+static void keep_score(void *context, const TrainingScore *score) { *(TrainingScore *)context = *score; }
+
+bool training_score(const Dataset *dataset, const Network *network, const char *loss, TrainingScore *score,
+                    Error *error) {
+    TrainingOptions options = {.layers = network->layers,
+                               .optimizer = optimizers[0]->name,
+                               .loss = loss,
+                               .on_score = keep_score,
+                               .context = score,
+                               .start = network};
+    memcpy(options.widths, network->widths, sizeof options.widths);
+    Network *same = training_run(dataset, &options, NULL, error);
+    network_destroy(same);
+    return same != NULL;
 }

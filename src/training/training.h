@@ -46,3 +46,9 @@ typedef struct TrainingOptions {
    NULL with error set: shapes or words that do not fit, laws that the dataset cannot say (laws_check), no rows to train on or to test on, memory, or training that
    diverged: left the finite numbers (with the iteration). */
 Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error);
+
+/* Scores of a network, in the units of its own normalisation, by a loss in words (NULL: mse); iteration 0. The scores
+   that a training reports are those of its last weights, not of the best that it returns. Errors as training_run, of
+   going on from this network. */
+bool training_score(const Dataset *dataset, const Network *network, const char *loss, TrainingScore *score,
+                    Error *error);
