@@ -5,7 +5,7 @@
 #include "common/progress.h"
 #include "dataset/dataset.h"
 
-/* Of one view, by world axes, and the target pair; those of single and stack may be NULL from scratch. */
+/* Of one view and the target pair; those of single and stack may be NULL from scratch. */
 typedef struct TransferData {
     const Dataset *single, *stack, *pyramid;
 } TransferData;
