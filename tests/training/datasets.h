@@ -63,7 +63,7 @@ static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_
     context[CONTEXT_FRICTION] = 0.4f + 0.3f * context[CONTEXT_FRICTION];
 }
 
-/* Six changes that the inputs do not tell, and a context. The impulses are equal and opposite and within the cone; what
+/* Six changes and a context, of which the inputs tell the normal and the velocities. The impulses are equal and opposite and within the cone; what
    they do to spins is random. */
 static inline Dataset *make_pushed_dataset(int rows) {
     Dataset *dataset = make_dataset(rows);
@@ -73,6 +73,8 @@ static inline Dataset *make_pushed_dataset(int rows) {
     for (int r = 0; r < rows; r++) {
         float *context = dataset->context + r * PAIR_CONTEXT, *change = dataset->changes + r * PAIR_CHANGES;
         draw_context(&sequence, r, context);
+        memcpy(dataset->inputs + r * PAIR_INPUTS, context + CONTEXT_NORMAL, 2 * sizeof(float));
+        memcpy(dataset->inputs + r * PAIR_INPUTS + 2, context + CONTEXT_VELOCITIES, PAIR_CHANGES * sizeof(float));
         const float along = 2 + next_number(&sequence),
                     across = along * context[CONTEXT_FRICTION] * next_number(&sequence);
         const float n[2] = {context[CONTEXT_NORMAL], context[CONTEXT_NORMAL + 1]};

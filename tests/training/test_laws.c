@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { ROWS = 700 };
+enum { ROWS = 2000 };
 
 /* A network without hidden layers and with weights 0: it says its biases for every row. */
 static Network *make_constant(const Dataset *dataset) {
@@ -141,7 +141,7 @@ static Network *train(const Dataset *dataset, const char *laws, int iterations, 
     options.widths[2] = PAIR_CHANGES;
     options.on_score = keep_score;
     options.context = score;
-    assert_ok(law_weights_named(laws, 1, &options.laws, &error), error);
+    assert_ok(law_weights_named(laws, 10, &options.laws, &error), error);
     Network *network = training_run(dataset, &options, NULL, &error);
     assert_ok(network != NULL, error);
     return network;
@@ -153,11 +153,11 @@ static void a_law_in_the_loss_is_broken_less(void **state) {
     Dataset *dataset = make_pushed_dataset(ROWS);
     TrainingScore score;
     LawNumbers without, with;
-    Network *network = train(dataset, "none", 100, &score);
+    Network *network = train(dataset, "none", 30, &score);
     assert_ok(laws_measure(dataset, network, &without, &error), error);
     network_destroy(network);
     for (int law = 0; law < LAWS; law++) {
-        network = train(dataset, laws_known[law].name, 100, &score);
+        network = train(dataset, laws_known[law].name, 30, &score);
         assert_ok(laws_measure(dataset, network, &with, &error), error);
         if (!(with.of[law] < 0.9 * without.of[law]))
             fail_msg("%s: %g with it, %g without", laws_known[law].name, with.of[law], without.of[law]);
