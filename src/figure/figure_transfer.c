@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One column wide: does it help to have learned smaller scenes first? */
+#include "figure/csv_columns.h"
+#include "figure/figure_axis.h"
+#include "figure/figure_seeds.h"
+#include "figure/figures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { STARTS = 2 };
+
+typedef struct Row {
+    int start;
+    double seed, launches, error, constant;
+} Row;
+
+static const char *const starts[] = {"scratch", "transfer", NULL};
+
+static const CsvColumn columns[] = {
+    {"start", CSV_WORD, offsetof(Row, start), starts, 0, 0},
+    {"seed", CSV_NUMBER, offsetof(Row, seed), NULL, 0, 1e9},
+    {"launches", CSV_NUMBER, offsetof(Row, launches), NULL, 1, 1 << 20},
+    {"error", CSV_MAYBE, offsetof(Row, error), NULL, 0, 1e6},
+    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e6},
+};
+
+/* mm */
+static const double height = 66, left = 13, right = 2, bottom = 20, top = 3, legend_top = 6.2;
+
+typedef struct Transfer {
+    FigurePage *page;
+    const Row *rows;
+    int count;
+    SeedPoint *points; /* [count] room */
+} Transfer;
+
+static FigureLook look_of(int start) {
+    static const char *const names[STARTS] = {"from scratch", "after single and stack"};
+    return figure_look(start, names[start]);
+}
+
+/* Points of a start's errors; or of all constants. */
+static int gather(const Transfer *transfer, int start) {
+    int count = 0;
+    for (int i = 0; i < transfer->count; i++) {
+        const Row *row = &transfer->rows[i];
+        double value = start < STARTS ? row->error : row->constant;
+        if ((start < STARTS && row->start != start) || isnan(value)) continue;
+        transfer->points[count++] = (SeedPoint){row->seed, row->launches, value};
+    }
+    return count;
+}
+
+static void put_axes(const Transfer *transfer) {
+    double least = 1 << 20, most = 1, error = 0;
+    for (int i = 0; i < transfer->count; i++) {
+        const Row *row = &transfer->rows[i];
+        least = fmin(least, row->launches);
+        most = fmax(most, row->launches);
+        error = fmax(error, fmax(row->error, row->constant)); /* of a number and NAN, the number */
+    }
+    FILE *script = transfer->page->script;
+    fprintf(script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", least / 1.3, most * 1.3);
+    const char *separator = "";
+    for (int k = 1; k <= 1 << 20; k *= 2) {
+        if (k < least / 1.3 || k > most * 1.3) continue;
+        fprintf(script, "%s'%d' %d", separator, k, k);
+        separator = ", ";
+    }
+    fprintf(script, ")\nset xlabel 'Launches of the pyramid' offset 0,0.6\n");
+    figure_linear(transfer->page, 'y', 0, error > 0 ? error * 1.08 : 1, NULL, "RMS velocity error (m/s)");
+}
+
+static void draw(Transfer *transfer) {
+    FigurePage *page = transfer->page;
+    FigureLook looks[STARTS + 1] = {look_of(0), look_of(1), figure_dashed("predicting the mean")};
+    figure_begin(page, FIGURE_COLUMN_WIDTH, height);
+    figure_panel(page, (FigureBox){left, bottom, page->width - left - right, height - bottom - top}, "");
+    put_axes(transfer);
+    figure_seed_median(page, transfer->points, gather(transfer, STARTS), &looks[STARTS]);
+    for (int start = 0; start < STARTS; start++)
+        figure_seed_lines(page, transfer->points, gather(transfer, start), &looks[start]);
+    for (int start = 0; start < STARTS; start++)
+        figure_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
+    figure_panel_end(page);
+    figure_legend(page, looks, STARTS + 1, 2, left, legend_top);
+    fprintf(page->caption,
+            "Error on launches of the pyramid kept apart, over how many others a network was trained on: from scratch, "
+            "and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: always "
+            "predicting the mean.");
+    figure_end(page);
+}
+
+bool figure_transfer(const char *folder, FigurePage *page, Error *error) {
+    int count;
+    Row *rows = csv_columns_read(folder, "transfer", columns, sizeof columns / sizeof *columns, sizeof *rows,
+                                 CSV_MAX_ROWS, &count, error);
+    if (rows == NULL) return false;
+    Transfer transfer = {page, rows, count, malloc((size_t)count * sizeof *transfer.points)};
+    bool room = transfer.points != NULL;
+    if (room) draw(&transfer);
+    free(transfer.points);
+    free(rows);
+    return room || error_memory(error, folder);
+}
