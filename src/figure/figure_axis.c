@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* How far left of the least value 0 lies, as a factor. */
-static const double to_zero = 3;
+/* How far left of the least value 0 lies: decades, or a share of all if that is more. */
+static const double to_zero = 0.5, share_to_zero = 0.18;
 
 /* Beyond these, decades are named as powers of ten. */
 static const double plain_least = 1e-3, plain_most = 1e4;
@@ -19,7 +19,8 @@ void figure_widen(FigureRange *range, double value) {
 
 FigureAxis figure_axis(FigureRange range, double lowest, double highest, bool with_zero) {
     double most = fmin(fmax(range.most, lowest), highest), least = fmin(fmax(range.least, lowest), most);
-    FigureAxis axis = {.zero = with_zero ? least / to_zero : 0};
+    double decades = fmax(to_zero, share_to_zero * log10(most / least));
+    FigureAxis axis = {.zero = with_zero ? least / pow(10, decades) : 0};
     axis.log = log_axis(with_zero ? axis.zero : least, most);
     axis.log.powers = axis.log.low < plain_least || axis.log.high > plain_most;
     axis.least = with_zero ? least * 0.999 : axis.log.low;
@@ -32,8 +33,7 @@ void figure_log(FigurePage *page, char letter, const FigureAxis *axis, const cha
     fprintf(page->script, "set logscale %c\nset %crange [%.8g:%.8g]\n", letter, letter, axis->log.low, axis->log.high);
     log_axis_put_tics(&tics, letter, label != NULL, page->script);
     if (axis->zero > 0 && label != NULL) fprintf(page->script, "set %ctics add ('0' %.8g)\n", letter, axis->zero);
-    if (label != NULL)
-        fprintf(page->script, "set %clabel '%s' offset %s\n", letter, label, letter == 'x' ? "0,0.6" : "0.6,0");
+    if (label != NULL) figure_axis_label(page, letter, label);
 }
 
 double figure_on(FigurePage *page, const FigureAxis *axis, double value) {

@@ -25,7 +25,7 @@ static const CsvColumn columns[] = {
 };
 
 /* mm */
-static const double row_height = 5, left = 36, frames_width = 76, gap = 6, right = 3, bottom = 15, top = 6,
+static const double row_height = 6, left = 36, frames_width = 76, gap = 6, right = 3, bottom = 15, top = 6,
                     legend_top = 2.7;
 
 typedef struct Loop {
@@ -47,7 +47,7 @@ static void number_lines(Loop *loop) {
 }
 
 /* Scenes a little above each other: equal values must not hide each other. */
-static double place(const Row *row) { return row->line + 0.2 * (row->scene - (FIGURE_SCENES - 1) / 2.0); }
+static double place(const Row *row) { return row->line + 0.23 * (row->scene - (FIGURE_SCENES - 1) / 2.0); }
 
 static FigureLook scene_look(int scene) {
     static const char *const names[FIGURE_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
@@ -55,18 +55,14 @@ static FigureLook scene_look(int scene) {
 }
 
 static void put_guides(const Loop *loop, const FigureAxis *axis, double mark) {
-    FigureLook guide = {"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false};
+    FigureLook guide = {"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false, 0, false};
     FigureLook dashed = figure_dashed("");
     figure_series(loop->page);
-    for (int line = 0; line + 1 < loop->lines; line++) {
-        figure_point(loop->page, axis->log.low, line + 0.5);
-        figure_point(loop->page, axis->log.high, line + 0.5);
-        figure_gap(loop->page);
-    }
+    for (int line = 0; line + 1 < loop->lines; line++)
+        figure_segment(loop->page, axis->log.low, line + 0.5, axis->log.high, line + 0.5);
     figure_draw(loop->page, &guide);
     figure_series(loop->page);
-    figure_point(loop->page, mark, -0.5);
-    figure_point(loop->page, mark, loop->lines - 0.5);
+    figure_segment(loop->page, mark, -0.5, mark, loop->lines - 0.5);
     figure_draw(loop->page, &dashed);
 }
 
@@ -77,7 +73,7 @@ static void put_panel(Loop *loop, bool costs) {
     figure_panel(page, (FigureBox){left + costs * (frames_width + gap), bottom, width, loop->lines * row_height},
                  costs ? "Cost" : "In place of the solver");
     figure_log(page, 'x', axis, costs ? "Step time / the engine's" : "Frames until apart by 0.1 m (600: never)");
-    figure_linear(page, 'y', loop->lines - 0.5, -0.5, "()", NULL);
+    figure_linear(page, 'y', loop->lines - 0.5, -0.5, "", NULL);
     put_guides(loop, axis, costs ? 1 : LAST_FRAME);
     for (int scene = 0; scene < FIGURE_SCENES; scene++) {
         FigureLook look = scene_look(scene);

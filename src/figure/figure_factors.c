@@ -30,7 +30,7 @@ static const double aims[FIGURE_TARGETS] = {0.4, 0.4, 0.1, 0};
 
 /* mm */
 static const double row_height = 3.3, half_width = FIGURE_PAGE_WIDTH / HALVES, plot_left = 36, plot_width = 39,
-                    numbers_right = 85, bottom = 18.5, top = 6, legend_top = 5.2;
+                    numbers_right = 85, bottom = 17.5, top = 6, legend_top = 6, aim_width = 0.6;
 
 /* In rows. */
 static const double group_gap = 0.7;
@@ -83,15 +83,12 @@ typedef struct Factors {
 } Factors;
 
 static FigureLook guide_look(void) {
-    return (FigureLook){"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false};
+    return (FigureLook){"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false, 0, false};
 }
 
 static FigureLook aim_look(void) {
-    FigureLook look = figure_marks(figure_look(10, "aim for the best"));
-    look.style.symbol = 10;
-    look.style.filled = 11;
-    look.style.colour = "black";
-    return look;
+    return (FigureLook){
+        "aim for the best", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, aim_width, true};
 }
 
 /* Places of rows, downwards from 0. */
@@ -106,14 +103,12 @@ static void put_guides(const Factors *factors) {
     figure_series(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         place = next_place(factors, i, place);
-        figure_point(factors->page, factors->x.log.low, place);
-        figure_point(factors->page, factors->x.log.high, place);
-        figure_gap(factors->page);
+        if (isnan(factors->rows[i].ratio)) continue;
+        figure_segment(factors->page, factors->x.log.low, place, factors->x.log.high, place);
     }
     figure_draw(factors->page, &guide);
     figure_series(factors->page);
-    figure_point(factors->page, 1, 0);
-    figure_point(factors->page, 1, factors->span);
+    figure_segment(factors->page, 1, 0, 1, factors->span);
     figure_draw(factors->page, &constant);
 }
 
@@ -130,15 +125,17 @@ static void put_dots(const Factors *factors, int target) {
     figure_draw(factors->page, &dot);
 }
 
+/* Higher than a dot, so that they show behind one. */
 static void put_aims(const Factors *factors) {
     FigureLook look = aim_look();
-    double place = 0;
+    double half = pow(factors->x.log.high / factors->x.log.low, aim_width / 2 / plot_width), place = 0;
     figure_series(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         const Row *row = &factors->rows[i];
         place = next_place(factors, i, place);
-        if (strcmp(row->factor, "best") == 0 && aims[row->target] > 0)
-            figure_point(factors->page, aims[row->target], place);
+        double aim = aims[row->target];
+        if (strcmp(row->factor, "best") == 0 && aim > 0)
+            figure_bar(factors->page, aim / half, place - 0.5, aim * half, place + 0.5);
     }
     figure_draw(factors->page, &look);
 }
@@ -165,7 +162,7 @@ static void put_half(Factors *factors, int half) {
     double left = half * half_width;
     figure_panel(page, (FigureBox){left + plot_left, bottom, plot_width, factors->span * row_height}, "");
     figure_log(page, 'x', &factors->x, "Test error / that of predicting the mean");
-    figure_linear(page, 'y', factors->span, 0, "()", NULL);
+    figure_linear(page, 'y', factors->span, 0, "", NULL);
     figure_text(page, left + numbers_right, page->height - top / 2, "right", 6.5, "parameters");
     put_names(factors, left);
     put_guides(factors);
@@ -208,7 +205,7 @@ bool figure_factors(const char *folder, FigurePage *page, Error *error) {
     fprintf(
         page->caption,
         "Test error of every network, as a share of that of always predicting the mean (dashed: 1), by what differs "
-        "from the baseline; on the right the number of parameters. Open triangles: the aims for the best networks, "
+        "from the baseline; on the right the number of parameters. Upright bars: the aims for the best networks, "
         "0.4 for the targets pair and net and 0.1 for impulse.");
     figure_end(page);
     free(rows);

@@ -32,8 +32,8 @@ static const CsvColumn columns[] = {
 static const char *const titles[LAWS] = {"Momentum (kg m/s)", "Energy (J)", "Approach (m/s)", "Friction cone (N s)"};
 
 /* mm */
-static const double height = 100, left = 13.5, error_width = 56, small_left = 84, small_width = 38.5, small_gap = 10,
-                    right_bottom = 21, row_gap = 7.5, top = 6, legend_top = 6.2;
+static const double height = 97, left = 13.5, error_width = 56, small_left = 84, small_width = 38.5, small_gap = 10,
+                    right_bottom = 17.8, row_gap = 7.5, top = 6, legend_top = 6.2;
 
 /* Of violations: what is smaller is nothing. */
 static const double decades_shown = 1e-6;
@@ -93,8 +93,8 @@ static void put_dashed(const Laws *laws, int panel, const FigureAxis *y) {
     for (int i = 0; i < laws->count; i++)
         if (panel != ALL && laws->rows[i].laws == ENGINE) value = laws->rows[i].violation[panel];
     figure_series(laws->page);
-    figure_point(laws->page, laws->x.log.low, figure_on(laws->page, y, value));
-    figure_point(laws->page, laws->x.log.high, figure_on(laws->page, y, value));
+    value = figure_on(laws->page, y, value);
+    figure_segment(laws->page, laws->x.log.low, value, laws->x.log.high, value);
     figure_draw(laws->page, &look);
 }
 
@@ -105,12 +105,17 @@ static FigureAxis error_axis(FigureRange range) {
 
 static FigureAxis axis_of(const Laws *laws, int panel) {
     FigureRange range = figure_range();
-    for (int i = 0; i < laws->count; i++)
-        if (panel == ALL || laws->rows[i].laws == panel || laws->rows[i].laws >= ALL)
-            figure_widen(&range, measure(&laws->rows[i], panel));
+    bool zero = false;
+    for (int i = 0; i < laws->count; i++) {
+        if (panel != ALL && laws->rows[i].laws != panel && laws->rows[i].laws < ALL) continue;
+        figure_widen(&range, measure(&laws->rows[i], panel));
+        zero |= measure(&laws->rows[i], panel) == 0;
+    }
     if (panel == ALL) return error_axis(range);
     if (!(range.most > 0)) range = (FigureRange){0.1, 1};
-    return figure_axis(range, range.most * decades_shown, range.most, false);
+    FigureAxis axis = figure_axis(range, range.most * decades_shown, range.most, zero);
+    axis.log.powers = true;
+    return axis;
 }
 
 static void put_panel(const Laws *laws, int panel) {
@@ -123,7 +128,10 @@ static void put_panel(const Laws *laws, int panel) {
                           right_bottom + (panel < 2) * (small + row_gap), small_width, small};
     figure_panel(page, box, panel == ALL ? "Error" : titles[panel]);
     figure_log(page, 'x', &laws->x, panel == ALL || panel >= 2 ? "Weight in the loss" : NULL);
-    figure_log(page, 'y', &y, panel == ALL ? "Test error / that of predicting the mean" : "");
+    figure_log(page, 'y', &y,
+               panel == ALL     ? "Test error / that of predicting the mean"
+               : panel % 2 == 0 ? "Mean violation"
+                                : "");
     put_dashed(laws, panel, &y);
     put_lines(laws, panel, &y);
     figure_panel_end(page);
@@ -134,7 +142,7 @@ static void put_legend(const Laws *laws) {
     int count = 0;
     for (int line = 0; line <= ALL; line++)
         if (is_used(laws, line)) looks[count++] = look_of(line);
-    looks[count++] = figure_dashed("left: predicting the mean; right: the engine");
+    looks[count++] = figure_dashed("predicting the mean / the engine");
     figure_legend(laws->page, looks, count, 3, left, legend_top);
 }
 

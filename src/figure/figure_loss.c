@@ -40,7 +40,7 @@ static const char *const titles[PANELS] = {"Pair: change by its own impulses", "
                                            "Impulse: change in one sweep"};
 
 /* mm */
-static const double height = 74, left = 13.5, right = 2, gap = 4.5, bottom = 19.5, top = 6, legend_top = 6;
+static const double height = 72, left = 13.5, right = 2, gap = 4.5, bottom = 17.5, top = 6, legend_top = 6;
 
 /* Beyond these a training that went astray would press the others together. */
 static const double least_error = 1e-8, most_error = 10;
@@ -89,8 +89,8 @@ static void put_constant(Loss *loss, int target) {
     for (int i = 0; i < loss->count; i++) {
         const Row *row = &loss->rows[i];
         if (row->target != target || isnan(row->constant)) continue;
-        figure_point(loss->page, loss->x.log.low, figure_on(loss->page, &loss->y, row->constant));
-        figure_point(loss->page, loss->x.log.high, figure_on(loss->page, &loss->y, row->constant));
+        double y = figure_on(loss->page, &loss->y, row->constant);
+        figure_segment(loss->page, loss->x.log.low, y, loss->x.log.high, y);
         break;
     }
     figure_draw(loss->page, &look);
@@ -131,8 +131,8 @@ static void put_panel(Loss *loss, int target) {
     figure_log(page, 'x', &loss->x, "Training iteration");
     figure_log(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
     put_constant(loss, target);
-    put_paper(loss);
     put_networks(loss, target);
+    put_paper(loss);
     figure_panel_end(page);
 }
 

@@ -25,6 +25,7 @@ typedef struct FigurePage {
     size_t plot_size;
     int block;      /* number of the last data block */
     int points;     /* in that block */
+    bool bars;      /* are what is in that block */
     bool beyond;    /* a value lies beyond its axis and is drawn at the edge */
     bool no_memory; /* a panel could not be written */
 } FigurePage;
@@ -39,6 +40,8 @@ typedef struct FigureLook {
     ChartStyle style;
     double line; /* width; 0: none */
     bool marks;
+    double bar;   /* height of the bar that is its sample in the legend, mm; 0: no bar */
+    bool upright; /* that bar */
 } FigureLook;
 
 /* Line and marks of chart_style(i); a grey dashed line without marks, for what is compared with. */
@@ -56,15 +59,22 @@ void figure_end(FigurePage *page);
 void figure_panel(FigurePage *page, FigureBox box, const char *title);
 void figure_panel_end(FigurePage *page);
 
-/* A linear axis: tics of gnuplot's choice where `tics` is NULL, else as in `set xtics TICS`; label NULL: none. */
+/* A linear axis: tics of gnuplot's choice where `tics` is NULL, none where it is empty, else as in `set xtics TICS`;
+   label NULL: none. */
 void figure_linear(FigurePage *page, char letter, double low, double high, const char *tics, const char *label);
 
-/* A series: its points, then its looks, in the order in which they cover each other. figure_gap() interrupts the
-   line. What is NAN is left out; a series without points is not drawn. */
+/* A series: its points, segments or bars, then its look; each covers those before. figure_gap() interrupts the line. A
+   bar fills a rectangle: gnuplot 5.4 gives the start of a thick line a tip. What is NAN is left out; a series without
+   points is not drawn. */
 void figure_series(FigurePage *page);
 void figure_point(FigurePage *page, double x, double y);
 void figure_gap(FigurePage *page);
+void figure_segment(FigurePage *page, double x0, double y0, double x1, double y1);
+void figure_bar(FigurePage *page, double x0, double y0, double x1, double y1);
 void figure_draw(FigurePage *page, const FigureLook *look);
+
+/* An axis's label. */
+void figure_axis_label(FigurePage *page, char letter, const char *label);
 
 /* A text on the page at (x, y) mm: align is "left", "center" or "right". */
 void figure_text(FigurePage *page, double x, double y, const char *align, double points, const char *text);

@@ -37,7 +37,7 @@ static const char *const titles[DEFINITIONS] = {"Within 5% of the output's range
 static const char *const labels[SHOWN_PHASES] = {"Right at impacts (%)", "Right at rest (%)"};
 
 /* mm */
-static const double panel_height = 37, left = 13.5, right = 2, gap = 4, row_gap = 5, bottom = 22, top = 6,
+static const double panel_height = 37, left = 13.5, right = 2, gap = 4, row_gap = 5, bottom = 20.5, top = 6,
                     legend_top = 6;
 
 /* The paper's prediction rates, %. */
@@ -77,11 +77,20 @@ static FigureLook engine_look(int i) {
 }
 
 static FigureLook constant_look(void) {
-    return (FigureLook){"predicting the mean", {.colour = "black", .ink = "black", .dashes = "solid"}, 3, false};
+    return (FigureLook){
+        "predicting the mean", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, 0.6, false};
 }
 
 static FigureLook band_look(void) {
-    return (FigureLook){"the paper's 60 to 91%", {.colour = "#E4E4E4", .ink = "#E4E4E4", .dashes = "solid"}, 12, false};
+    return (FigureLook){
+        "the paper's 60 to 91%", {.colour = "#E4E4E4", .ink = "#E4E4E4", .dashes = "solid"}, 0, false, 2.4, false};
+}
+
+static void put_band(const Rates *rates) {
+    FigureLook look = band_look();
+    figure_series(rates->page);
+    figure_bar(rates->page, -0.5, paper_least, FIGURE_SCENES - 0.5, paper_most);
+    figure_draw(rates->page, &look);
 }
 
 static void put_network(const Rates *rates, int network, int definition, int phase) {
@@ -92,10 +101,12 @@ static void put_network(const Rates *rates, int network, int definition, int pha
         for (int i = 0; i < rates->count; i++) {
             const Row *row = &rates->rows[i];
             if (!is_in(row, definition, phase) || find_network(row->network) != network) continue;
-            figure_point(rates->page, place(row), 100 * row->rate);
-            if (heads == 0) figure_point(rates->page, place(row), row->rate * 0), figure_gap(rates->page);
+            if (heads)
+                figure_point(rates->page, place(row), 100 * row->rate);
+            else
+                figure_segment(rates->page, place(row), 0, place(row), 100 * row->rate);
         }
-        figure_draw(rates->page, heads == 0 ? &stems : &marks);
+        figure_draw(rates->page, heads ? &marks : &stems);
     }
 }
 
@@ -105,9 +116,8 @@ static void put_constants(const Rates *rates, int definition, int phase) {
     for (int i = 0; i < rates->count; i++) {
         const Row *row = &rates->rows[i];
         if (!is_in(row, definition, phase)) continue;
-        figure_point(rates->page, place(row) - 0.08, 100 * row->constant);
-        figure_point(rates->page, place(row) + 0.08, 100 * row->constant);
-        figure_gap(rates->page);
+        figure_bar(rates->page, place(row) - 0.08, 100 * row->constant - 0.8, place(row) + 0.08,
+                   100 * row->constant + 0.8);
     }
     figure_draw(rates->page, &look);
 }
@@ -133,17 +143,13 @@ static void put_panel(const Rates *rates, int definition, int phase) {
                   phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
                              : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
                   NULL);
-    figure_linear(page, 'y', 0, 103, definition == 0 ? "0,20,100" : "format '' 0,20,100",
+    figure_linear(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
                   definition == 0 ? labels[phase] : NULL);
-    fprintf(page->script,
-            "set object 1 rectangle from graph 0, first %g to graph 1, first %g behind fc rgb '%s' "
-            "fs solid noborder\n",
-            paper_least, paper_most, band_look().style.colour);
+    put_band(rates);
     for (int i = 0; i < NETWORKS; i++) put_network(rates, i, definition, phase);
     put_constants(rates, definition, phase);
     put_engines(rates, definition, phase);
     figure_panel_end(page);
-    fprintf(page->script, "unset object 1\nset format\n");
 }
 
 static void put_legend(const Rates *rates) {
@@ -151,10 +157,10 @@ static void put_legend(const Rates *rates) {
     int count = 0;
     for (int i = 0; i < NETWORKS; i++)
         if (rates->used[i]) looks[count++] = stem_look(i);
-    looks[count++] = constant_look();
     for (int k = 0; k < SWEEPS; k++) looks[count++] = engine_look(k);
+    looks[count++] = constant_look();
     looks[count++] = band_look();
-    figure_legend(rates->page, looks, count, (count + 2) / 3, left, legend_top + FIGURE_LEGEND_ROW);
+    figure_legend(rates->page, looks, count, NETWORKS, left, legend_top + FIGURE_LEGEND_ROW);
 }
 
 static void keep_shown(Rates *rates, Row *rows, int count) {

@@ -26,7 +26,7 @@ static const CsvColumn columns[] = {
 };
 
 /* mm */
-static const double height = 66, left = 13, right = 2, bottom = 20, top = 3, legend_top = 6.2;
+static const double height = 64, left = 13, right = 2, bottom = 17.8, top = 3, legend_left = 3, legend_top = 6.2;
 
 typedef struct Transfer {
     FigurePage *page;
@@ -84,7 +84,7 @@ static void draw(Transfer *transfer) {
     for (int start = 0; start < STARTS; start++)
         figure_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
     figure_panel_end(page);
-    figure_legend(page, looks, STARTS + 1, 2, left, legend_top);
+    figure_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
     fprintf(page->caption,
             "Error on launches of the pyramid kept apart, over how many others a network was trained on: from scratch, "
             "and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: always "
