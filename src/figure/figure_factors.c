@@ -33,7 +33,7 @@ static const double row_height = 3.3, half_width = FIGURE_PAGE_WIDTH / HALVES, p
                     numbers_right = 85, bottom = 17.5, top = 6, legend_top = 6, aim_width = 0.6;
 
 /* In rows. */
-static const double group_gap = 0.7;
+static const double group_gap = 0.7, aim_height = 0.86;
 
 static const double least_ratio = 1e-4, most_ratio = 100;
 
@@ -135,7 +135,7 @@ static void put_aims(const Factors *factors) {
         place = next_place(factors, i, place);
         double aim = aims[row->target];
         if (strcmp(row->factor, "best") == 0 && aim > 0)
-            figure_bar(factors->page, aim / half, place - 0.5, aim * half, place + 0.5);
+            figure_bar(factors->page, aim / half, place - aim_height / 2, aim * half, place + aim_height / 2);
     }
     figure_draw(factors->page, &look);
 }

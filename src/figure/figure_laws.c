@@ -35,8 +35,8 @@ static const char *const titles[LAWS] = {"Momentum (kg m/s)", "Energy (J)", "App
 static const double height = 97, left = 13.5, error_width = 56, small_left = 84, small_width = 38.5, small_gap = 10,
                     right_bottom = 17.8, row_gap = 7.5, top = 6, legend_top = 6.2;
 
-/* Of violations: what is smaller is nothing. */
-static const double decades_shown = 1e-6;
+/* Of violations; and what is smaller than this share of the largest is nothing. */
+static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
 
 typedef struct Laws {
     FigurePage *page;
@@ -113,7 +113,8 @@ static FigureAxis axis_of(const Laws *laws, int panel) {
     }
     if (panel == ALL) return error_axis(range);
     if (!(range.most > 0)) range = (FigureRange){0.1, 1};
-    FigureAxis axis = figure_axis(range, range.most * decades_shown, range.most, zero);
+    double lowest = fmax(least_violation, fmin(range.most, most_violation) * share_shown);
+    FigureAxis axis = figure_axis(range, lowest, most_violation, zero);
     axis.log.powers = true;
     return axis;
 }

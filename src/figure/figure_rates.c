@@ -43,6 +43,9 @@ static const double panel_height = 37, left = 13.5, right = 2, gap = 4, row_gap 
 /* The paper's prediction rates, %. */
 static const double paper_least = 60, paper_most = 91;
 
+/* Halves of what is drawn at a rate, in units of the axes: a stem, the constant's bar. */
+static const double stem = 0.017, bar_width = 0.08, bar_height = 0.8;
+
 typedef struct Rates {
     FigurePage *page;
     const Row *rows;
@@ -104,7 +107,7 @@ static void put_network(const Rates *rates, int network, int definition, int pha
             if (heads)
                 figure_point(rates->page, place(row), 100 * row->rate);
             else
-                figure_segment(rates->page, place(row), 0, place(row), 100 * row->rate);
+                figure_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->rate);
         }
         figure_draw(rates->page, heads ? &marks : &stems);
     }
@@ -116,8 +119,8 @@ static void put_constants(const Rates *rates, int definition, int phase) {
     for (int i = 0; i < rates->count; i++) {
         const Row *row = &rates->rows[i];
         if (!is_in(row, definition, phase)) continue;
-        figure_bar(rates->page, place(row) - 0.08, 100 * row->constant - 0.8, place(row) + 0.08,
-                   100 * row->constant + 0.8);
+        figure_bar(rates->page, place(row) - bar_width, 100 * row->constant - bar_height, place(row) + bar_width,
+                   100 * row->constant + bar_height);
     }
     figure_draw(rates->page, &look);
 }

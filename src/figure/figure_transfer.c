@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { STARTS = 2 };
+enum { STARTS = 2, MAX_POWER = 20 };
 
 typedef struct Row {
     int start;
@@ -20,13 +20,15 @@ static const char *const starts[] = {"scratch", "transfer", NULL};
 static const CsvColumn columns[] = {
     {"start", CSV_WORD, offsetof(Row, start), starts, 0, 0},
     {"seed", CSV_NUMBER, offsetof(Row, seed), NULL, 0, 1e9},
-    {"launches", CSV_NUMBER, offsetof(Row, launches), NULL, 1, 1 << 20},
+    {"launches", CSV_NUMBER, offsetof(Row, launches), NULL, 1, 1 << MAX_POWER},
     {"error", CSV_MAYBE, offsetof(Row, error), NULL, 0, 1e6},
     {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e6},
 };
 
 /* mm */
 static const double height = 64, left = 13, right = 2, bottom = 17.8, top = 3, legend_left = 3, legend_top = 6.2;
+
+static const double most_labels = 8, least_error = 1e-6;
 
 typedef struct Transfer {
     FigurePage *page;
@@ -52,24 +54,31 @@ static int gather(const Transfer *transfer, int start) {
     return count;
 }
 
+/* Powers of two, as many as have room. */
+static void put_launches(FigurePage *page, double low, double high) {
+    int step = (int)(log2(high / low) / most_labels) + 1;
+    const char *separator = "";
+    fprintf(page->script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", low, high);
+    for (int power = 0; power <= MAX_POWER; power += step) {
+        if (1 << power < low || 1 << power > high) continue;
+        fprintf(page->script, "%s'%d' %d", separator, 1 << power, 1 << power);
+        separator = ", ";
+    }
+    fprintf(page->script, ")\n");
+    figure_axis_label(page, 'x', "Launches of the pyramid");
+}
+
 static void put_axes(const Transfer *transfer) {
-    double least = 1 << 20, most = 1, error = 0;
+    double least = 1 << MAX_POWER, most = 1, error = least_error;
     for (int i = 0; i < transfer->count; i++) {
         const Row *row = &transfer->rows[i];
         least = fmin(least, row->launches);
         most = fmax(most, row->launches);
         error = fmax(error, fmax(row->error, row->constant)); /* of a number and NAN, the number */
     }
-    FILE *script = transfer->page->script;
-    fprintf(script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", least / 1.3, most * 1.3);
-    const char *separator = "";
-    for (int k = 1; k <= 1 << 20; k *= 2) {
-        if (k < least / 1.3 || k > most * 1.3) continue;
-        fprintf(script, "%s'%d' %d", separator, k, k);
-        separator = ", ";
-    }
-    fprintf(script, ")\nset xlabel 'Launches of the pyramid' offset 0,0.6\n");
-    figure_linear(transfer->page, 'y', 0, error > 0 ? error * 1.08 : 1, NULL, "RMS velocity error (m/s)");
+    double margin = most > 4 * least ? 1.3 : 2;
+    put_launches(transfer->page, least / margin, most * margin);
+    figure_linear(transfer->page, 'y', 0, error * 1.08, NULL, "RMS velocity error (m/s)");
 }
 
 static void draw(Transfer *transfer) {

@@ -15,6 +15,7 @@
    paper wide (174 or 85 mm); told apart by the colour-blind and in grey.
 
    Each of the six tables has to be there and in order: else "path:line:column: error: text", and nothing is drawn. A
-   table may lack the rows that its figure shows: then that figure is left out. ERROR_SYSTEM where gnuplot is missing or
+   table may lack the rows that its figure shows: then that figure is left out (one
+   of an earlier run stays). ERROR_SYSTEM where gnuplot is missing or
    fails; figures already drawn stay. */
 bool result_figures_draw(const char *folder, Error *error);
