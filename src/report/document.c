@@ -16,7 +16,6 @@ void document_free(Document *document) {
         free(document->blocks[i].text);
         free(document->blocks[i].address);
         free(document->blocks[i].alt);
-        free(document->blocks[i].png);
     }
     free(document->blocks);
     free(document->cells);
@@ -79,10 +78,9 @@ void document_link(Document *document, const char *text, const char *address) {
 
 void document_cell(Document *document, const char *format, ...) {
     void *cells = document->cells;
-    bool room = document->cell_count < DOCUMENT_MAX_CELLS &&
-                array_reserve(&cells, &document->cell_capacity, document->cell_count + 1, sizeof *document->cells);
+    bool room = array_reserve(&cells, &document->cell_capacity, document->cell_count + 1, sizeof *document->cells);
     document->cells = cells;
-    if (!room || document->block_count == 0) {
+    if (!room || document->failed) {
         document->failed = true;
         return;
     }
@@ -91,7 +89,7 @@ void document_cell(Document *document, const char *format, ...) {
     vsnprintf(document->cells[document->cell_count++], sizeof *document->cells, format, arguments);
     va_end(arguments);
     Block *table = &document->blocks[document->block_count - 1];
-    assert(table->kind == BLOCK_TABLE || document->failed);
+    assert(table->kind == BLOCK_TABLE);
     table->cells++;
 }
 
@@ -121,12 +119,7 @@ void document_figure(Document *document, const DocumentFigure *figure) {
     block->number = ++document->figures;
     block->width = figure->width;
     block->height = figure->height;
-    block->png = malloc(figure->png_size);
-    if (block->png == NULL) {
-        document->failed = true;
-        return;
-    }
-    memcpy(block->png, figure->png, figure->png_size);
+    block->png = figure->png;
     block->png_size = figure->png_size;
 }
 

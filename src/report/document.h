@@ -6,31 +6,31 @@
 
 #include <stddef.h>
 
-enum { DOCUMENT_TEXT_SIZE = 4096, DOCUMENT_CELL_SIZE = 64, DOCUMENT_MAX_CELLS = 400000 };
+enum { DOCUMENT_TEXT_SIZE = 4096, DOCUMENT_CELL_SIZE = 64 };
 
 typedef enum BlockKind { BLOCK_HEADING, BLOCK_PARAGRAPH, BLOCK_ITEM, BLOCK_LINK, BLOCK_TABLE, BLOCK_FIGURE } BlockKind;
 
 typedef struct DocumentFigure {
-    const char *path;     /* from where the document lies */
-    const char *alt;      /* what it shows, for who cannot see it */
+    const char *path; /* from where the document lies */
+    const char *alt;  /* what it shows, for who cannot see it */
     const char *caption;
-    int width, height;    /* pixels */
-    const void *png;      /* the file's bytes */
+    int width, height; /* pixels */
+    const void *png;   /* the file's bytes; to outlive the document */
     size_t png_size;
 } DocumentFigure;
 
 typedef struct Block {
     BlockKind kind;
-    int level;            /* of a heading: 1 is the title */
-    char *text;           /* of a table or figure: its caption */
-    char *address;        /* of a link; of a figure: its path */
-    char *alt;            /* of a figure */
-    int columns, cells;   /* of a table; the header's are the first */
-    int first_cell;       /* in the document */
-    unsigned numbers;     /* bit i: column i holds numbers */
-    int number;           /* of a figure, from 1 */
-    int width, height;    /* of a figure */
-    void *png;
+    int level;          /* of a heading: 1 is the title */
+    char *text;         /* of a table or figure: its caption */
+    char *address;      /* of a link; of a figure: its path */
+    char *alt;          /* of a figure */
+    int columns, cells; /* of a table; the header's are the first */
+    int first_cell;     /* in the document */
+    unsigned numbers;   /* bit i: column i holds numbers */
+    int number;         /* of a figure, from 1 */
+    int width, height;  /* of a figure */
+    const void *png;
     size_t png_size;
 } Block;
 
@@ -67,7 +67,7 @@ void document_name(Document *document, const char *text);
 void document_number(Document *document, double value);
 void document_percent(Document *document, double share);
 
-/* Numbered in the order of the calls. Copies what it is given. */
+/* Numbered in the order of the calls. */
 void document_figure(Document *document, const DocumentFigure *figure);
 
 /* The same numbers for sentences. */

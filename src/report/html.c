@@ -56,9 +56,8 @@ static void put_table(const Document *document, const Block *table, FILE *file) 
 
 static void put_figure(const Block *figure, FILE *file) {
     /* Never larger than its pixels: it would only blur. */
-    fprintf(file,
-            "<figure><img width=\"%d\" height=\"%d\" style=\"max-width:%dpx\" alt=\"", figure->width, figure->height,
-            figure->width);
+    fprintf(file, "<figure><img width=\"%d\" height=\"%d\" style=\"max-width:%dpx\" alt=\"", figure->width,
+            figure->height, figure->width);
     put(file, figure->alt);
     fputs("\" src=\"data:image/png;base64,", file);
     base64_put(file, figure->png, figure->png_size);

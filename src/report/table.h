@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-enum { TABLE_MAX_ROWS = 10000, TABLE_MAX_SIZE = TABLE_MAX_ROWS * 512, TABLE_MAX_COLUMNS = 16 };
+enum { TABLE_MAX_ROWS = 5000, TABLE_MAX_SIZE = TABLE_MAX_ROWS * 512, TABLE_MAX_COLUMNS = 16 };
 
 typedef enum TableKind {
     TABLE_TEXT,    /* const char *, pointing into the table */
