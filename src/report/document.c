@@ -126,7 +126,7 @@ void document_figure(Document *document, const DocumentFigure *figure) {
 Shown show_number(double value) {
     Shown shown;
     double size = fabs(value);
-    if (isnan(value))
+    if (!isfinite(value))
         strcpy(shown.text, "–");
     else if (size >= 1000 && size < 1e7)
         snprintf(shown.text, sizeof shown.text, "%.0f", value);
@@ -137,7 +137,7 @@ Shown show_number(double value) {
 
 Shown show_percent(double share) {
     Shown shown;
-    if (isnan(share))
+    if (!isfinite(share))
         strcpy(shown.text, "–");
     else
         snprintf(shown.text, sizeof shown.text, "%.1f%%", 100 * share);

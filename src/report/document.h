@@ -63,7 +63,7 @@ void document_cell(Document *document, const char *format, ...) PRINTF_LIKE(2, 3
 /* A text of foreign origin: plain, and cut to a name's length. */
 void document_name(Document *document, const char *text);
 
-/* A number with three digits that count; a dash for NAN. */
+/* A number with three digits that count; a dash for what is not finite. */
 void document_number(Document *document, double value);
 void document_percent(Document *document, double share);
 

@@ -75,6 +75,7 @@ static void put_constant(Document *document, const PaperFiles *files, const Poin
         scratch = fmin(scratch, points[i].scratch);
         transfer = fmin(transfer, points[i].transfer);
     }
+    if (isinf(scratch) || isinf(transfer)) return;
     document_paragraph(
         document,
         "The constant's error is %s m/s. From scratch the least is %s m/s (%s it), after transfer %s m/s (%s "
