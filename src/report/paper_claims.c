@@ -103,6 +103,9 @@ static void put_runs(Document *document, const PaperFiles *files) {
 
 void paper_put_claims(Document *document, const PaperFiles *files) {
     document_heading(document, 2, "The paper's claims, and what was found");
+    document_paragraph(document,
+                       "In brackets: the paper's section. Compared are the baseline and the networks that differ "
+                       "from it in that one thing.");
     for (int i = 0; i < CLAIMS; i++) put_claim(document, files, &claims[i]);
     put_rates(document, files);
     put_runs(document, files);

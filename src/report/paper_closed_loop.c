@@ -74,16 +74,29 @@ void paper_put_closed_loop(Document *document, const PaperFiles *files) {
     document_figure(document, &files->figures[FIGURE_CLOSED_LOOP]);
 }
 
+/* NAN where none was measured. */
+static double largest_momentum(const PaperFiles *files, const char *factor) {
+    double largest = NAN;
+    for (int i = 0; i < files->closed_loop_count; i++)
+        if (paper_has_factor(files, files->closed_loop[i].network, factor))
+            largest = fmax(largest, files->closed_loop[i].momentum); /* of a number and NAN, the number */
+    return largest;
+}
+
 void paper_put_contact_net(Document *document, const PaperFiles *files) {
     if (paper_network(files, "contact-net") == NULL) return;
     document_heading(document, 2, "Outputs that obey the laws: contact-net");
     document_paragraph(document, "Beyond the paper: the network gives impulses along the contact's normal and tangent, "
                                  "projected on the friction cone, and both bodies get the same with opposite signs. "
-                                 "Momentum is then kept to rounding, whatever the network says.");
+                                 "So no step makes momentum from nothing, beyond rounding, whatever the network says.");
     document_table(document, "contact-net and baseline, closed loop", columns);
     for (int i = 0; i < files->closed_loop_count; i++) {
         const ClosedLoopRow *row = &files->closed_loop[i];
         if (paper_has_factor(files, row->network, "contact-net") || paper_has_factor(files, row->network, "baseline"))
             put_row(document, row);
     }
+    double momentum = largest_momentum(files, "contact-net"), baseline = largest_momentum(files, "baseline");
+    if (isnan(momentum) || isnan(baseline)) return;
+    document_paragraph(document, "The largest momentum error of its runs is %s N s, of the baseline's %s N s.",
+                       show_number(momentum).text, show_number(baseline).text);
 }

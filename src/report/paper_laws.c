@@ -50,7 +50,11 @@ static void put_row(Document *document, const LawsRow *row, const LawsMedians *m
     document_number(document, row->weight);
     document_cell(document, "%d", medians->seeds);
     document_number(document, medians->medians[0]);
-    document_cell(document, "%s to %s", show_number(medians->least_test).text, show_number(medians->most_test).text);
+    if (isnan(medians->least_test))
+        document_number(document, NAN);
+    else
+        document_cell(document, "%s to %s", show_number(medians->least_test).text,
+                      show_number(medians->most_test).text);
     for (int i = 1; i < LAWS_FIGURES; i++) document_number(document, medians->medians[i]);
 }
 
@@ -89,7 +93,7 @@ static const LawsRow *row_without(const PaperFiles *files) {
 static void put_table(Document *document, const PaperFiles *files, double *values) {
     document_table(
         document, "Laws in the loss, medians over seeds",
-        "Laws|>Weight|>Seeds|>Test|>least to most|>Test / constant|>Momentum (kg m/s)|>Energy (J)|>Approach (m/s)|"
+        "Laws|>Weight|>Seeds|>Test|>Least to most|>Test / constant|>Momentum (kg m/s)|>Energy (J)|>Approach (m/s)|"
         ">Cone (N s)");
     const LawsRow *without = row_without(files);
     LawsMedians none = {0};
@@ -114,8 +118,7 @@ void paper_put_laws(Document *document, const PaperFiles *files) {
     document_paragraph(document,
                        "The paper's outlook: violations of physical laws are added to the loss. The table has "
                        "the mean violation of each law on the test rows. The row \"engine\" is what the labels "
-                       "themselves violate: ten sweeps do not solve a step to the end, so no network trained on "
-                       "them is asked for less.");
+                       "themselves violate: what is less than that was not learned from them.");
     double *values = malloc((size_t)files->law_count * sizeof *values);
     if (values == NULL)
         document->failed = true;

@@ -51,6 +51,24 @@ bool paper_has_factor(const PaperFiles *files, const char *network, const char *
     return false;
 }
 
+double paper_constant(const PaperFiles *files, const char *target) {
+    for (int i = 0; i < files->network_count; i++) {
+        const NetworkRow *row = &files->networks[i];
+        if (strcmp(row->target, target) == 0 && strcmp(row->scale, "minmax") == 0 && !isnan(row->constant))
+            return row->constant;
+    }
+    return NAN;
+}
+
+bool paper_comparable(const PaperFiles *files, const char *network, const char *target) {
+    bool asked = false;
+    for (int i = 0; i < PAPER_TARGETS; i++) asked |= strcmp(paper_targets[i].name, target) == 0;
+    for (int i = 0; i < files->network_count; i++)
+        if (strcmp(files->networks[i].network, network) == 0)
+            return asked && strcmp(files->networks[i].scale, "minmax") == 0;
+    return false;
+}
+
 const RateRow *paper_contact_net_rate(const PaperFiles *files, const char *scene) {
     const RateRow *best = NULL;
     for (int i = 0; i < files->network_count; i++) {

@@ -47,6 +47,12 @@ const NetworkRow *paper_best(const PaperFiles *files, const char *target, int *a
 const RateRow *paper_rate(const PaperFiles *files, const char *network, const char *scene, const char *definition,
                           const char *phase);
 
+/* The constant's error for a target on the paper's scale, outputs scaled to [0, 1]; NAN where no network has that. */
+double paper_constant(const PaperFiles *files, const char *target);
+
+/* Whether scores of this network may stand beside the paper's: a target of the paper's, on its scale. */
+bool paper_comparable(const PaperFiles *files, const char *network, const char *target);
+
 /* The contact-net with the highest rate within 0.1 m/s in a scene; NULL where there is none. */
 const RateRow *paper_contact_net_rate(const PaperFiles *files, const char *scene);
 

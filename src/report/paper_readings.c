@@ -19,7 +19,7 @@ static const char *const readings[][3] = {
     {"Output layer", "Linear, outputs standardised (3.1); sigmoid, outputs scaled to [0, 1] (3.2)",
      "Both. Errors of different scales are compared by their ratio to the constant's"},
     {"Launches",
-     "X in +-15 m, printed as [15, 15], with random rotation and spin; then X in +-5 m in steps of 0.05 m (3.3)",
+     "X in ±15 m, printed as [15, 15], with random rotation and spin; then X in ±5 m in steps of 0.05 m (3.3)",
      "swept, random, and a mix"},
     {"Loss",
      "Aim below 0.001 (3.2); 0.000728 after 2000 iterations (Table 1); \"within the 10^-4 range\" after 5000 (3.3)",

@@ -20,11 +20,11 @@ static void put_score(Document *document, double score) {
 }
 
 typedef struct Tally {
-    int rows, above_constant, below_paper, useful; /* useful: below the paper and below the constant */
+    int rows, above_constant, compared, below_paper, useful; /* useful: below the paper and below the constant */
 } Tally;
 
-static void put_row(Document *document, const Table1Row *row, Tally *tally) {
-    double paper = paper_test(row->iteration);
+static void put_row(Document *document, const PaperFiles *files, const Table1Row *row, Tally *tally) {
+    double paper = paper_comparable(files, row->network, row->target) ? paper_test(row->iteration) : NAN;
     document_name(document, row->network);
     document_name(document, row->optimizer);
     document_cell(document, "%.0f", row->iteration);
@@ -35,6 +35,7 @@ static void put_row(Document *document, const Table1Row *row, Tally *tally) {
     put_score(document, paper);
     tally->rows++;
     tally->above_constant += row->test >= row->constant;
+    tally->compared += !isnan(paper);
     tally->below_paper += row->test < paper;
     tally->useful += row->test < paper && row->test < row->constant;
 }
@@ -46,12 +47,15 @@ static void put_target(Document *document, const PaperFiles *files, const char *
                    "Network|Optimiser|>Iteration|>Test|>Train|>Constant|>Test / constant|>The paper's test");
     Tally tally = {0};
     for (int i = 0; i < files->table1_count; i++)
-        if (strcmp(files->table1[i].target, target) == 0) put_row(document, &files->table1[i], &tally);
+        if (strcmp(files->table1[i].target, target) == 0) put_row(document, files, &files->table1[i], &tally);
+    document_paragraph(document, "Of these %d rows, %d are no better than the constant.", tally.rows,
+                       tally.above_constant);
+    if (tally.compared == 0) return;
     document_paragraph(
         document,
-        "Of these %d rows, %d are no better than the constant. %d are below the paper's score for the same "
-        "iteration; %d of them are below the constant too, and only they count.",
-        tally.rows, tally.above_constant, tally.below_paper, tally.useful);
+        "%d of the %d rows with a counterpart are below the paper's score; %d of them are below the constant "
+        "too, and only those count.",
+        tally.below_paper, tally.compared, tally.useful);
 }
 
 static bool is_first(const PaperFiles *files, int row) {
@@ -74,7 +78,8 @@ void paper_put_table1(Document *document, const PaperFiles *files) {
     document_paragraph(document,
                        "Mean squared error of the normalised outputs; an iteration is one step on all training "
                        "rows. Launches, not rows, are divided into training and test, or nearly the same rows "
-                       "would lie on both sides.");
+                       "would lie on both sides. The paper's scores stand only beside its own targets with outputs "
+                       "scaled as it scales them, to [0, 1].");
     put_paper(document);
     for (int i = 0; i < files->table1_count; i++)
         if (is_first(files, i)) put_target(document, files, files->table1[i].target);
