@@ -21,6 +21,7 @@ static const Entry entries[] = {
     {"nncg", "k=5 k=10 k=20 k=50 k=100", "k=20"},
     {"substepping", "substeps=2 substeps=4 substeps=10 substeps=20 substeps=50", "substeps=10"},
     {"pair-net", NULL, NULL},
+    {"contact-net", NULL, NULL},
     {"constant", NULL, NULL},
     {"playback", "launches=25 launches=100", "launches=25"},
     {"reference", NULL, NULL}};
