@@ -122,6 +122,13 @@ static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
     assert_near(v[2].linear.y, 5, 1e-6);
     assert_near(v[2].angular, 6, 1e-6);
     assert_near(made, sqrt(4 * 4 + 6.5 * 6.5) + sqrt(16.5 * 16.5 + 21 * 21), 1e-4);
+    /* Two outputs: 2 and 2.4 N s, of which the middle body gets half, so that 1 N s is lost and 1.2 N s are made. */
+    made = solve_by(&solver_pair_net, constant_network(PAIR_RELATIVE, TARGET_NET, 2, (const float[]){0, 3}), 1, &chain,
+                    v, impulses);
+    assert_near(v[0].linear.y, -0.5 * 2, 1e-6);
+    assert_near(v[1].linear.y, (2 - 2.4) / 2, 1e-6);
+    assert_near(v[2].linear.y, 0.25 * 2.4, 1e-6);
+    assert_near(made, 1 + 1.2, 1e-5);
 }
 
 /* b gets a's velocity: 1 in the first pair, then what the first pair made of it in the second. */
