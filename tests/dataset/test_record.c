@@ -123,8 +123,8 @@ static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
     return dataset->bodies[2 * row] == 0;
 }
 
-/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that nothing
-   approaches and next to nothing is left to do. */
+/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that
+   nothing approaches and next to nothing is left to do. */
 static void a_box_at_rest_shows_its_warm_start(void **state) {
     (void)state;
     enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */

@@ -36,8 +36,8 @@ static ContactPoint random_contact(const Example *example, uint32_t *seed, int a
     return contact;
 }
 
-/* Bodies of any masses, the first of them fixed, and about every second pair in one point or two; the pair of `left_out`
-   not (-1: none). Velocities and impulses so far are in the moment. */
+/* Bodies of any masses, the first of them fixed, and about every second pair in one point or two; but not pair number
+   left_out (-1: none). Velocities and impulses so far are in the moment. */
 static void make_example(Example *example, uint32_t seed, int left_out) {
     Error error = {0};
     *example = (Example){.problem = {.body_count = BODIES, .bodies = example->bodies, .contacts = example->contacts}};
@@ -66,7 +66,7 @@ static void make_example(Example *example, uint32_t seed, int left_out) {
             (BodyVelocity){{uniform(&seed, -3, 3), uniform(&seed, -3, 3)}, uniform(&seed, -3, 3)};
 }
 
-/* The relative velocity at a contact after what it does to its two bodies when there is no other; *push: its impulse. */
+/* The relative velocity at a contact after what it does to its bodies when there is no other; *push: its impulse. */
 static Vec2 velocity_after(const Example *example, int i, ContactImpulse *push) {
     const ContactPoint *contact = &example->contacts[i];
     const ContactProblem alone = {

@@ -80,7 +80,7 @@ static void a_fixed_body_is_not_moved(void **state) {
     assert_near(v[1].linear.y, -1 + 6, 1e-6);
 }
 
-/* Against a contact along (0.6, 0.8), tangent (0.8, -0.6): 5 along the normal is (3, 4), 5 along the tangent (4, -3). */
+/* By a contact along (0.6, 0.8), tangent (0.8, -0.6): 5 along the normal is (3, 4), 5 along the tangent (4, -3). */
 static void outputs_by_contact_are_turned_into_the_world(void **state) {
     (void)state;
     BodyVelocity v[3];
@@ -106,8 +106,8 @@ static void outputs_by_contact_are_turned_into_the_world(void **state) {
     assert_near(v[1].linear.y, -1 + 8 / 3.0, 1e-6);
 }
 
-/* The middle body is b of one pair, where it gets (4, 5), 6, and a of the other, where it gets (1, 2), 3. The pairs make
-   2 (1, 2) + 1 (2, 2.5) = (4, 6.5), and 1 (0.5, 1) + 4 (4, 5) = (16.5, 21). */
+/* The middle body is b of one pair, where it gets (4, 5), 6, and a of the other, where it gets (1, 2), 3. The pairs
+   make 2 (1, 2) + 1 (2, 2.5) = (4, 6.5), and 1 (0.5, 1) + 4 (4, 5) = (16.5, 21). */
 static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
     (void)state;
     BodyVelocity v[3];
