@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, SEED };
+enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, CONTEXT, SEED };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DATA.npz", 0, "Where the dataset goes", 0},
@@ -27,6 +27,7 @@ static const struct argp_option option_table[] = {
      "the impulses at its points went beyond the warm start",
      0},
     {"labels", LABELS, "NAME", 0, "By whom: engine (default), or the converged reference", 0},
+    {"context", CONTEXT, NULL, 0, "Record masses, normals, friction and arms too: what train --laws needs", 0},
     {"seed", SEED, "N", 0,
      "Draws the launches of --random, and the fifth of all that is held out for testing (default: 1)", 0},
     {0}};
@@ -46,6 +47,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case INPUTS: options->inputs = value; break;
     case TARGET: options->target = value; break;
     case LABELS: options->labels = value; break;
+    case CONTEXT: options->dataset.context = true; break;
     case SEED: options->seed = value; break;
     case ARGP_KEY_ARG:
         if (options->dataset.scene_count == DATASET_MAX_SCENES)

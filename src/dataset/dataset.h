@@ -6,6 +6,7 @@
 #include "common/parse.h"
 #include "common/progress.h"
 #include "dynamics/pair.h"
+#include "dynamics/pair_context.h"
 #include "scene/launch.h"
 
 #include <stddef.h>
@@ -26,6 +27,7 @@ typedef struct Dataset {
     int64_t rows;
     float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
     float *changes;  /* [rows, pair_change_count(target)]: pair_step_changes() */
+    float *context;  /* [rows, PAIR_CONTEXT]: pair_context(), what laws in the loss need; NULL where not recorded */
     int32_t *launch; /* [rows] which launch the row comes from */
     int32_t *frame;  /* [rows] number of the step */
     int32_t *bodies; /* [rows, 2] */
@@ -40,6 +42,11 @@ typedef struct Dataset {
 /* Numbers in a row of inputs. */
 static inline int dataset_inputs(const Dataset *dataset) { return pair_views[dataset->view].count; }
 
+/* Whether a row is of a launch that is held out. */
+static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
+    return dataset->launch_test[dataset->launch[row]] != 0;
+}
+
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
@@ -48,6 +55,7 @@ typedef struct DatasetOptions {
     PairView view;
     PairTarget target;
     DatasetLabels labels;
+    bool context;  /* record it too; for TARGET_PAIR */
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;
 

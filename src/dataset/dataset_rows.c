@@ -80,6 +80,7 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
         PairRow *row = add_row(recorder, frame, problem, first, by_contact ? &recorder->now : NULL);
         if (row == NULL) return error_memory(error, "dataset");
         pair_step_changes(problem, &solution, first, dataset->view, dataset->target, row->changes);
+        pair_context(problem, first, row->context);
     }
     return true;
 }

@@ -10,8 +10,8 @@ enum { ROWS = 4, LAUNCHES = 3 };
 
 /* Two scenes, three launches of which the second is held out, four rows. */
 static struct {
-    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], launch_x[LAUNCHES], launch_rotation[LAUNCHES],
-        launch_spin[LAUNCHES];
+    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], context[ROWS * PAIR_CONTEXT], launch_x[LAUNCHES],
+        launch_rotation[LAUNCHES], launch_spin[LAUNCHES];
     int32_t launch[ROWS], frame[ROWS], bodies[ROWS * 2], launch_scene[LAUNCHES];
     uint8_t launch_test[LAUNCHES];
 } numbers;
@@ -115,6 +115,36 @@ static void the_most_and_longest_scene_names_are_kept(void **state) {
     dataset_destroy(read);
 }
 
+/* The example with a context: one body moves, and the normal points up. */
+static Dataset example_with_context(void) {
+    Dataset dataset = example();
+    for (int i = 0; i < ROWS * PAIR_CONTEXT; i++) numbers.context[i] = 0.01f * (float)i;
+    for (int r = 0; r < ROWS; r++) {
+        numbers.context[r * PAIR_CONTEXT + CONTEXT_NORMAL] = 0;
+        numbers.context[r * PAIR_CONTEXT + CONTEXT_NORMAL + 1] = 1;
+    }
+    dataset.context = numbers.context;
+    return dataset;
+}
+
+static void a_context_is_kept_where_there_is_one(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset with = example_with_context();
+    const char *path = temporary_path("context.npz");
+    assert_ok(dataset_write(&with, path, &error), error);
+    Dataset *read = dataset_read(path, &error);
+    assert_ok(read != NULL && read->context != NULL, error);
+    assert_memory_equal(read->context, numbers.context, sizeof numbers.context);
+    dataset_destroy(read);
+    const Dataset without = example();
+    assert_ok(dataset_write(&without, path, &error), error);
+    read = dataset_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_null(read->context);
+    dataset_destroy(read);
+}
+
 static void assert_refused(const char *path, const char *text) {
     Error error = {0};
     assert_null(dataset_read(path, &error));
@@ -143,6 +173,19 @@ static void numbers_that_are_not_finite_are_refused(void **state) {
     dataset = example();
     numbers.launch_spin[1] = NAN;
     assert_written_is_refused(&dataset, "launch_spin: number 1");
+}
+
+static void contexts_that_no_pair_has_are_refused(void **state) {
+    (void)state;
+    Dataset dataset = example_with_context();
+    numbers.context[PAIR_CONTEXT + 3] = NAN;
+    assert_written_is_refused(&dataset, "context: number 20 is nan");
+    dataset = example_with_context();
+    numbers.context[2 * PAIR_CONTEXT + CONTEXT_INV_MASS_B] = -1;
+    assert_written_is_refused(&dataset, "context: row 2 has an inverse mass or inertia below 0");
+    dataset = example_with_context();
+    numbers.context[3 * PAIR_CONTEXT + CONTEXT_NORMAL] = 1;
+    assert_written_is_refused(&dataset, "context: row 3 has a normal whose length is not 1");
 }
 
 static void indices_out_of_range_are_refused(void **state) {
@@ -192,7 +235,7 @@ static void scene_names_out_of_range_are_refused(void **state) {
     assert_written_is_refused(&dataset, "scenes: a name of 0 bytes");
 }
 
-/* Replaces one array of the example's file, or leaves it out where its data is NULL. */
+/* Replaces one array of the example's file, adds a context, or leaves it out where its data is NULL. */
 static const char *write_with(NpzArray changed) {
     const Dataset dataset = example();
     const int32_t version = DATASET_VERSION;
@@ -213,12 +256,13 @@ static const char *write_with(NpzArray changed) {
                               {"frame", NPZ_INT32, 1, {ROWS}, dataset.frame},
                               {"bodies", NPZ_INT32, 2, {ROWS, 2}, dataset.bodies}};
     enum { COUNT = sizeof valid / sizeof valid[0] };
-    NpzArray arrays[COUNT];
+    NpzArray arrays[COUNT + 1];
     size_t count = 0;
     for (size_t i = 0; i < COUNT; i++) {
         bool same = strcmp(valid[i].name, changed.name) == 0;
         if (!same || changed.data != NULL) arrays[count++] = same ? changed : valid[i];
     }
+    if (strcmp(changed.name, "context") == 0) arrays[count++] = changed;
     Error error = {0};
     const char *path = temporary_path("changed.npz");
     assert_ok(npz_write(path, arrays, count, &error), error);
@@ -227,12 +271,15 @@ static const char *write_with(NpzArray changed) {
 
 static void shapes_that_do_not_fit_are_refused(void **state) {
     (void)state;
-    static const float floats[64];
+    static const float floats[128];
     static const int32_t integers[16];
     static const uint8_t bytes[4];
     assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS, 9}, floats}), "inputs");
     assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS - 1, 10}, floats}), "changes");
     assert_refused(write_with((NpzArray){"changes", NPZ_FLOAT32, 2, {ROWS, 5}, floats}), "changes");
+    assert_refused(write_with((NpzArray){"context", NPZ_FLOAT32, 2, {ROWS, PAIR_CONTEXT - 1}, floats}), "context");
+    assert_refused(write_with((NpzArray){"context", NPZ_FLOAT32, 2, {ROWS + 1, PAIR_CONTEXT}, floats}), "context");
+    assert_refused(write_with((NpzArray){"context", NPZ_INT32, 2, {ROWS, 3}, integers}), "context");
     assert_refused(write_with((NpzArray){"launch", NPZ_INT32, 1, {ROWS + 1}, integers}), "launch");
     assert_refused(write_with((NpzArray){"frame", NPZ_INT32, 2, {ROWS, 1}, integers}), "frame");
     assert_refused(write_with((NpzArray){"bodies", NPZ_INT32, 2, {ROWS, 3}, integers}), "bodies");
@@ -266,8 +313,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_keep_every_bit),
         cmocka_unit_test(widths_are_those_of_view_and_target),
+        cmocka_unit_test(a_context_is_kept_where_there_is_one),
         cmocka_unit_test(the_most_and_longest_scene_names_are_kept),
         cmocka_unit_test(numbers_that_are_not_finite_are_refused),
+        cmocka_unit_test(contexts_that_no_pair_has_are_refused),
         cmocka_unit_test(indices_out_of_range_are_refused),
         cmocka_unit_test(both_sides_of_the_split_need_rows),
         cmocka_unit_test(scene_names_out_of_range_are_refused),

@@ -93,6 +93,38 @@ static void the_reference_labels_what_the_engine_met(void **state) {
     dataset_destroy(reference);
 }
 
+/* The ground is static, the box has 200 kg, the bomb 50. What an impulse at the middle of the points does to a body is
+   what it did, but for how it was shared among the points. */
+static void contexts_tell_what_made_the_changes(void **state) {
+    (void)state;
+    Dataset *plain = record((DatasetOptions){0}), *dataset = record((DatasetOptions){.context = true});
+    assert_null(plain->context);
+    assert_non_null(dataset->context);
+    assert_memory_equal(plain->changes, dataset->changes, (size_t)plain->rows * PAIR_CHANGES * sizeof(float));
+    static const float inverse_masses[] = {0, 1.0f / 200, 1.0f / 50};
+    int struck = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *context = dataset->context + r * PAIR_CONTEXT, *inputs = dataset->inputs + r * PAIR_INPUTS;
+        const float *change = dataset->changes + r * PAIR_CHANGES;
+        assert_null(pair_context_fault(context));
+        assert_near(context[CONTEXT_INV_MASS_A], inverse_masses[dataset->bodies[2 * r]], 1e-7);
+        assert_near(context[CONTEXT_INV_MASS_B], inverse_masses[dataset->bodies[2 * r + 1]], 1e-7);
+        /* Velocities as the relative view has them: vxa vya vxb vyb wa wb. */
+        static const int place[] = {2, 3, 6, 4, 5, 7};
+        for (int k = 0; k < PAIR_CHANGES; k++) assert_true(context[CONTEXT_VELOCITIES + k] == inputs[place[k]]);
+        /* Both arms end in the same point. */
+        for (int i = 0; i < 2; i++)
+            assert_near(context[CONTEXT_ARM_A + i], inputs[i] + context[CONTEXT_ARM_B + i], 0.05);
+        if (context[CONTEXT_INV_MASS_A] == 0) continue;
+        for (int i = 0; i < 2; i++)
+            assert_near(change[i] / context[CONTEXT_INV_MASS_A], -change[3 + i] / context[CONTEXT_INV_MASS_B], 0.01);
+        struck++;
+    }
+    assert_true(struck > 5);
+    dataset_destroy(dataset);
+    dataset_destroy(plain);
+}
+
 static void random_launches_lie_in_their_ranges(void **state) {
     (void)state;
     Dataset *a = record((DatasetOptions){.random = 50, .seed = 3}),
@@ -187,6 +219,7 @@ static void what_cannot_be_recorded_is_refused(void **state) {
            "the target impulse has no view neighbours");
     refuse((DatasetOptions){.random = 5, .target = TARGET_POINTS, .view = PAIR_RAW},
            "the target points needs the view contact or neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
 }
 
 int main(void) {
@@ -195,6 +228,7 @@ int main(void) {
                                        cmocka_unit_test(the_reference_labels_what_the_engine_met),
                                        cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
                                        cmocka_unit_test(neighbours_are_seen_beside_the_contact),
+                                       cmocka_unit_test(contexts_tell_what_made_the_changes),
                                        cmocka_unit_test(random_launches_lie_in_their_ranges),
                                        cmocka_unit_test(what_cannot_be_recorded_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
