@@ -2,6 +2,10 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "common/file.h"
+#include "figure/engine_figures.h"
+#include "figure/result_figures.h"
+#include "report/paper_report.h"
 #include "study/paper.h"
 
 #include <stdio.h>
@@ -52,6 +56,19 @@ static const struct argp argp = {
     NULL,
     NULL};
 
+static bool draw_and_report(const PaperOptions *study, Error *error) {
+    enum { PATH_SIZE = 4096 };
+    char figures[PATH_SIZE];
+    if (snprintf(figures, sizeof figures, "%s/figures", study->folder) >= (int)sizeof figures)
+        return error_input(error, study->folder, "the name is too long");
+    if (!file_make_directory(figures, error) || !engine_figures_draw(study->scenes, figures, error) ||
+        !result_figures_draw(study->folder, error) || !paper_report_write(study->folder, error))
+        return false;
+    printf("tables, figures, networks -> %s\nreport -> %s/report.md, %s/report.html\n", study->folder, study->folder,
+           study->folder);
+    return true;
+}
+
 int command_paper(int argc, char **argv, Error *error) {
     Options options = {.study = {.scenes = "scenes"}, .seed = "1"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
@@ -60,5 +77,5 @@ int command_paper(int argc, char **argv, Error *error) {
     progress_bar_begin(&bar, "paper");
     bool ok = paper_run(&options.study, &bar.progress, error);
     progress_bar_end(&bar);
-    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+    return ok && draw_and_report(&options.study, error) ? STATUS_SAME : STATUS_DIFFERENT;
 }

@@ -18,7 +18,7 @@ typedef struct Row {
 
 static const CsvColumn columns[] = {
     {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
-    {"scene", CSV_WORD, offsetof(Row, scene), figure_scenes, 0, 0},
+    {"scene", CSV_WORD, offsetof(Row, scene), figure_scene_names, 0, 0},
     {"frames_until_apart", CSV_NUMBER, offsetof(Row, frames), NULL, 0, LAST_FRAME},
     {"us_step", CSV_MAYBE, offsetof(Row, us_step), NULL, 0, 1e12},
     {"us_step_engine", CSV_MAYBE, offsetof(Row, us_step_engine), NULL, 1e-6, 1e12},

@@ -36,7 +36,7 @@ typedef struct Sweep {
 
 /* As twinbox dataset records them. */
 static void fill_row(Row *row, const ContactProblem *problem, const ContactSolution *solution, int first) {
-    pair_inputs(problem, NULL, row->bodies[0], row->bodies[1], PAIR_RELATIVE, row->inputs);
+    pair_inputs(problem, NULL, first, PAIR_RELATIVE, row->inputs);
     pair_changes(problem, solution, first, pair_contact_count(problem, first), row->changes);
 }
 

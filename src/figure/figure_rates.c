@@ -20,7 +20,7 @@ static const char *const phases[] = {"impact", "rest", "all", "after", NULL};
 
 static const CsvColumn columns[] = {
     {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
-    {"scene", CSV_WORD, offsetof(Row, scene), figure_scenes, 0, 0},
+    {"scene", CSV_WORD, offsetof(Row, scene), figure_scene_names, 0, 0},
     {"definition", CSV_WORD, offsetof(Row, definition), definitions, 0, 0},
     {"phase", CSV_WORD, offsetof(Row, phase), phases, 0, 0},
     {"rate", CSV_MAYBE, offsetof(Row, rate), NULL, 0, 1},

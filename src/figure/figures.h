@@ -14,4 +14,4 @@ bool figure_transfer(const char *folder, FigurePage *page, Error *error);
 /* Words of the tables. */
 enum { FIGURE_TARGETS = 4, FIGURE_SCENES = 4 };
 extern const char *const figure_targets[FIGURE_TARGETS + 1];
-extern const char *const figure_scenes[FIGURE_SCENES + 1];
+extern const char *const figure_scene_names[FIGURE_SCENES + 1];

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 const char *const figure_targets[] = {"pair", "net", "impulse", "points", NULL};
-const char *const figure_scenes[] = {"single", "stack", "pyramid", "pyramid_settled", NULL};
+const char *const figure_scene_names[] = {"single", "stack", "pyramid", "pyramid_settled", NULL};
 
 static const struct {
     const char *name;
@@ -46,7 +46,8 @@ static bool draw_page(int i, const char *folder, const Written *written, Error *
     int length = snprintf(stem, sizeof stem, "%s/figures/%s", folder, figures[i].name);
     if (length < 0 || length >= (int)sizeof stem) return error_input(error, folder, "this path is too long");
     snprintf(caption, sizeof caption, "%s.txt", stem);
-    const GnuplotDrawing drawing = {written->width, written->height, written->script, written->script_size};
+    const GnuplotDrawing drawing = {written->width, written->height, written->script, written->script_size,
+                                    .without_pdf = true};
     return gnuplot_draw(&drawing, stem, error) && file_write(caption, written->caption, written->caption_size, error);
 }
 

@@ -3,6 +3,7 @@
    start, one that always says the mean is the constant. */
 #include "testing.h"
 
+#include "dynamics/pair.h"
 #include "network/network.h"
 #include "scene/launch.h"
 #include "study/pair_rates.h"
