@@ -2,8 +2,8 @@
 /* A network of contact points, beyond the paper: its outputs are impulses, so what one body gains the other loses.
 
    All pairs see the moment after the warm start, each in the frame of its contact. For each of its points the network
-   says how far the impulse p = (normal, tangent) should go beyond the warm start p0, as a change d of relative velocity,
-   which is projected on the friction cone:
+   says how far the impulse p = (normal, tangent) should go beyond the warm start p0, as a change d of the relative
+   velocity; what comes of it is projected on the friction cone:
 
        p = P(p0 + d / (1/ma + 1/mb)),   P: pn' = max(pn, 0), pt' = clamp(pt, -mu pn', mu pn')
 

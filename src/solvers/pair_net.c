@@ -13,8 +13,12 @@
      impulse  k sweeps over the pairs, each from the velocities that those before it left. The network knows no warm
               start, so they begin from the velocities before the solve.
 
+   The momentum that six outputs or shares of net changes make from nothing is counted pair by pair, and visit by visit
+   (momentum_error). Of net changes even the right ones count: a pair's two bodies owe theirs to other pairs too.
+
    Fails on stacks: it sees one pair and no other, so no impulse can be carried through a chain of boxes; and what
-   it leaves of a velocity that should be zero adds up to sinking. */
+   it leaves of a velocity that should be zero adds up to sinking. Seen from the contact, it also meets warm starts of 0
+   in its own run, for it gives no impulses, where its training data had the engine's. */
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 

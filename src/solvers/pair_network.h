@@ -38,7 +38,7 @@ void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, 
                               float *outputs);
 
 /* What its outputs (one number every `stride`) mean for the two bodies, in world axes: change of velocity (2) and
-   angular velocity (1) of a, then of b. Six outputs are these changes. Two are the change of the relative velocity: here
-   by the impulse that makes it, acting at the middle of the contact points. Not for TARGET_POINTS. */
+   angular velocity (1) of a, then of b. Six outputs are these changes. Two are the change of the relative velocity,
+   here by the impulse that makes it, acting at the middle of the contact points. Not for TARGET_POINTS. */
 void pair_network_changes(const PairNetwork *pair, const ContactProblem *problem, int first, const float *outputs,
                           int stride, float changes[PAIR_CHANGES]);

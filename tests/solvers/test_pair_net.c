@@ -80,7 +80,7 @@ static void a_fixed_body_is_not_moved(void **state) {
     assert_near(v[1].linear.y, -1 + 6, 1e-6);
 }
 
-/* Against a contact along (0.6, 0.8), tangent (0.8, -0.6): 5 along the normal is (3, 4), 5 along the tangent (4, -3). */
+/* By a contact along (0.6, 0.8), tangent (0.8, -0.6): 5 along the normal is (3, 4), 5 along the tangent (4, -3). */
 static void outputs_by_contact_are_turned_into_the_world(void **state) {
     (void)state;
     BodyVelocity v[3];
@@ -106,8 +106,8 @@ static void outputs_by_contact_are_turned_into_the_world(void **state) {
     assert_near(v[1].linear.y, -1 + 8 / 3.0, 1e-6);
 }
 
-/* The middle body is b of one pair, where it gets (4, 5), 6, and a of the other, where it gets (1, 2), 3. The pairs make
-   2 (1, 2) + 1 (2, 2.5) = (4, 6.5), and 1 (0.5, 1) + 4 (4, 5) = (16.5, 21). */
+/* The middle body is b of one pair, where it gets (4, 5), 6, and a of the other, where it gets (1, 2), 3. The pairs
+   make 2 (1, 2) + 1 (2, 2.5) = (4, 6.5), and 1 (0.5, 1) + 4 (4, 5) = (16.5, 21). */
 static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
     (void)state;
     BodyVelocity v[3];
@@ -122,6 +122,13 @@ static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
     assert_near(v[2].linear.y, 5, 1e-6);
     assert_near(v[2].angular, 6, 1e-6);
     assert_near(made, sqrt(4 * 4 + 6.5 * 6.5) + sqrt(16.5 * 16.5 + 21 * 21), 1e-4);
+    /* Two outputs: 2 and 2.4 N s, of which the middle body gets half, so that 1 N s is lost and 1.2 N s are made. */
+    made = solve_by(&solver_pair_net, constant_network(PAIR_RELATIVE, TARGET_NET, 2, (const float[]){0, 3}), 1, &chain,
+                    v, impulses);
+    assert_near(v[0].linear.y, -0.5 * 2, 1e-6);
+    assert_near(v[1].linear.y, (2 - 2.4) / 2, 1e-6);
+    assert_near(v[2].linear.y, 0.25 * 2.4, 1e-6);
+    assert_near(made, 1 + 1.2, 1e-5);
 }
 
 /* b gets a's velocity: 1 in the first pair, then what the first pair made of it in the second. */
