@@ -62,7 +62,7 @@ static void put_rate(Document *document, const PaperFiles *files, const NetworkR
     document_item(
         document,
         "Counted as %s, the baseline is right in %s to %s of cases over %d scenes; in %d of them the constant is "
-        "right at least as often. The paper reports 60%% to 91%%, of what it does not say.",
+        "right at least as often. The paper reports 60%% to 91%% and does not define them.",
         words, show_percent(least).text, show_percent(most).text, count, beaten);
 }
 

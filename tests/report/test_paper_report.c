@@ -144,7 +144,8 @@ static void medians_are_over_seeds(void **state) {
                 "Of 2 cases with a single law in the loss, 1 break that law less than the network without, and 1 have");
     /* 4, 3.8, 9: 4 from scratch; 2.9, 3, 3.1: 3 after transfer, which is also what 2 launches give from scratch. */
     expect_text(text, "| 1 | 4 | 3 | 1 |\n| 2 | 3 | 2 | 1 |\n| 8 | 1.5 | 1.8 | not reached |");
-    expect_text(text, "In 1 of 3 rows transfer needs fewer launches");
+    expect_text(text, "They lower the test error in 1 of 2 cases, and the violations of the law in question in 1.");
+    expect_text(text, "In 1 of the 2 rows below the first transfer needs fewer launches");
     free(text);
 }
 
