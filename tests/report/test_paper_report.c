@@ -99,7 +99,7 @@ static void figures_are_computed_from_the_tables(void **state) {
     expect_text(text,
                 "The best of 6 networks of at most 500 parameters for the target pair, inputs-contact, has 20.0% of");
     /* net fails with 85%, inputs-raw passes with 1.1 times the constant's error. */
-    expect_text(text, "9 of 10 networks pass that gate");
+    expect_text(text, "10 of 11 networks pass that gate");
     expect_text(text, "1 of those that pass are no better than the constant");
     expect_text(text, "right within 5% of the output's range, the baseline is right in 81.0% to 92.0% of cases over 2 "
                       "scenes; in 1 of them");
@@ -107,8 +107,9 @@ static void figures_are_computed_from_the_tables(void **state) {
     expect_text(text,
                 "Of these 5 rows, 2 are no better than the constant.\n\n3 of the 4 rows with a counterpart are below "
                 "the paper's score; 1 of them");
-    /* Of another scale. */
+    /* Of another scale, and of a target that is not the paper's. */
     expect_text(text, "| pair-lm | lm | 2000 | 0.200000 | 0.100000 | 1.000000 | 0.2 | – |");
+    expect_text(text, "| points | adam | 2000 | 0.000500 | 0.000400 | 0.002000 | 0.25 | – |");
     expect_text(text, "| baseline | adam | 2000 | 0.001000 | 0.000900 | 0.004000 | 0.25 | 0.000728 |");
     expect_text(text, "2 of 5 runs stay within 0.1 m of the engine's for 600 frames (10 s); the first to leave it does "
                       "so after 4 frames.");
