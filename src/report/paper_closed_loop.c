@@ -84,7 +84,7 @@ static double largest_momentum(const PaperFiles *files, const char *factor) {
 }
 
 void paper_put_contact_net(Document *document, const PaperFiles *files) {
-    if (paper_network(files, "contact-net") == NULL) return;
+    if (paper_network_row(files, "contact-net") == NULL) return;
     document_heading(document, 2, "Outputs that obey the laws: contact-net");
     document_paragraph(document, "Beyond the paper: the network gives impulses along the contact's normal and tangent, "
                                  "projected on the friction cone, and both bodies get the same with opposite signs. "

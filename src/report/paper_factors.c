@@ -46,7 +46,7 @@ static void put_best(Document *document, const PaperFiles *files, const NetworkR
 }
 
 static void put_factor(Document *document, const PaperFiles *files, const char *factor) {
-    const NetworkRow *baseline = paper_network(files, "baseline");
+    const NetworkRow *baseline = paper_network_row(files, "baseline");
     char caption[128];
     snprintf(caption, sizeof caption, "Factor: %s", csv_show(factor).text);
     document_table(document, caption, columns);
@@ -70,7 +70,7 @@ static bool begins_factor(const PaperFiles *files, int row) {
 }
 
 static void put_search(Document *document, const PaperFiles *files) {
-    if (paper_network(files, "layers") == NULL) return;
+    if (paper_network_row(files, "layers") == NULL) return;
     int networks = 0, passed = 0;
     for (int i = 0; i < files->network_count; i++) {
         if (!is_search(files->networks[i].factor)) continue;

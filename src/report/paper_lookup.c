@@ -15,7 +15,7 @@ const PaperTarget paper_targets[PAPER_TARGETS] = {
     {"impulse", "a single impulse: one visit of the pair in one sweep", 0.1},
 };
 
-const NetworkRow *paper_network(const PaperFiles *files, const char *factor) {
+const NetworkRow *paper_network_row(const PaperFiles *files, const char *factor) {
     for (int i = 0; i < files->network_count; i++)
         if (strcmp(files->networks[i].factor, factor) == 0) return &files->networks[i];
     return NULL;

@@ -43,7 +43,7 @@ typedef struct PaperTarget {
 extern const PaperTarget paper_targets[PAPER_TARGETS];
 
 /* The first network with this factor, or NULL. */
-const NetworkRow *paper_network(const PaperFiles *files, const char *factor);
+const NetworkRow *paper_network_row(const PaperFiles *files, const char *factor);
 
 /* The network of a target with the least ratio to the constant, of at most PAPER_SMALL_NETWORK parameters; NULL where
    there is none. *among: of how many. */

@@ -113,7 +113,7 @@ void paper_put_summary(Document *document, const PaperFiles *files) {
         put_best(document, files, &paper_targets[i]);
     }
     put_gate(document, files);
-    const NetworkRow *baseline = paper_network(files, "baseline");
+    const NetworkRow *baseline = paper_network_row(files, "baseline");
     if (baseline != NULL) {
         put_rate(document, files, baseline, "range", "right within 5% of the output's range");
         put_rate(document, files, baseline, "absolute", "right within 0.1 m/s");
