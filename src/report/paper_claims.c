@@ -21,7 +21,12 @@ static Side side_of_word(const char *word, const char *with, const char *without
 /* raw, or raw-unturned. */
 static Side by_inputs(const NetworkRow *row) { return side_of_word(row->inputs, "relative", "raw"); }
 static Side by_labels(const NetworkRow *row) { return side_of_word(row->labels, "reference", "engine"); }
-static Side by_output(const NetworkRow *row) { return side_of_word(row->output, "linear", "sigmoid"); }
+/* Each with the scale that goes with it. */
+static Side by_output(const NetworkRow *row) {
+    Side side = side_of_word(row->output, "linear", "sigmoid");
+    return strcmp(row->scale, side == WITH ? "standard" : "minmax") == 0 ? side : NEITHER;
+}
+
 static Side by_data(const NetworkRow *row) { return side_of_word(row->data, "swept", "random"); }
 
 /* 10-10-10-2 has two hidden layers. */

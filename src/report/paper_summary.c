@@ -87,8 +87,8 @@ static void put_closed_loop(Document *document, const PaperFiles *files) {
     document_item(
         document,
         "With a network in place of the solver, %d of %d runs stay within 0.1 m of the engine's for %d frames "
-        "(10 s); the first to leave it does so after %.0f frames.",
-        together, runs, PAPER_RUN_FRAMES, shortest);
+        "(10 s); the first to leave it does so after %s frames.",
+        together, runs, PAPER_RUN_FRAMES, show_number(shortest).text);
 }
 
 static void put_contact_net(Document *document, const PaperFiles *files) {
