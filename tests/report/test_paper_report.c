@@ -129,7 +129,7 @@ static void rates_stand_beside_what_costs_nothing(void **state) {
     (void)state;
     char *text = write_and_read("report.md");
     expect_text(text, "| contact-net | stack | all | 70.0% | 35.0% | 72.0% | 70.0% | 90.0% | 100.0% |");
-    /* absolute: baseline single, stack, stack at impact, contact-net in both; that which varies a factor is not shown. */
+    /* Baseline in single, stack and stack at impact, contact-net in both; what varies a factor is not shown. */
     expect_text(text,
                 "Of 5 rows, the constant is right at least as often in 1, the warm start in 3, one sweep of the engine "
                 "in 4.");
