@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-/* Rates are to be at least the aim, ratios at most. */
-static void put_verdict(Document *document, double value, double aim, bool at_least) {
+/* Rates are to be at least the aim, ratios at most. What costs nothing may reach it, too. */
+static void put_verdict(Document *document, double value, double for_nothing, double aim, bool at_least) {
     double missed = at_least ? aim - value : value - aim;
     if (isnan(value))
         document_cell(document, "not measured");
     else if (missed <= 0)
-        document_cell(document, "reached");
+        document_cell(document, "reached%s", at_least && for_nothing >= aim ? ", also for nothing" : "");
     else if (at_least)
         document_cell(document, "missed by %.1f points", 100 * missed);
     else
@@ -25,7 +25,7 @@ static void put_ratio(Document *document, const PaperFiles *files, const PaperTa
     document_name(document, best != NULL ? best->network : "none");
     document_number(document, best != NULL ? best->ratio : NAN);
     document_cell(document, "1");
-    put_verdict(document, best != NULL ? best->ratio : NAN, target->aim, false);
+    put_verdict(document, best != NULL ? best->ratio : NAN, 1, target->aim, false);
 }
 
 static void put_rate(Document *document, const PaperFiles *files, const char *scene, double aim) {
@@ -36,7 +36,7 @@ static void put_rate(Document *document, const PaperFiles *files, const char *sc
     document_name(document, row != NULL ? row->network : "none");
     document_percent(document, row != NULL ? row->rate : NAN);
     document_percent(document, warm != NULL ? warm->rate : NAN);
-    put_verdict(document, row != NULL ? row->rate : NAN, aim, true);
+    put_verdict(document, row != NULL ? row->rate : NAN, warm != NULL ? warm->rate : NAN, aim, true);
 }
 
 void paper_put_aims(Document *document, const PaperFiles *files) {

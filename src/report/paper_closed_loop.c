@@ -13,7 +13,7 @@ static void put_row(Document *document, const ClosedLoopRow *row) {
     if (row->frames >= PAPER_RUN_FRAMES)
         document_cell(document, "all %d", PAPER_RUN_FRAMES);
     else
-        document_cell(document, "%.0f", row->frames);
+        document_number(document, row->frames);
     document_number(document, row->penetration);
     document_number(document, row->momentum);
     document_number(document, row->energy);
@@ -33,9 +33,9 @@ static void put_stack(Document *document, const ClosedLoopRow *row) {
                       csv_show(row->network).text, PAPER_RUN_FRAMES);
     else
         document_item(document,
-                      "With %s the stack does not stand as the engine's does: it is 0.1 m apart after %.0f frames "
+                      "With %s the stack does not stand as the engine's does: it is 0.1 m apart after %s frames "
                       "(%.2f s).",
-                      csv_show(row->network).text, row->frames, row->frames / 60);
+                      csv_show(row->network).text, show_number(row->frames).text, row->frames / 60);
 }
 
 static void put_cost(Document *document, const PaperFiles *files) {
@@ -64,7 +64,7 @@ void paper_put_closed_loop(Document *document, const PaperFiles *files) {
         "The network runs in the engine for %d frames, and each frame begins where its own last one ended. "
         "A run is apart once a body is 0.1 m from where the engine has it. Momentum error is the momentum "
         "that a step makes from nothing, energy the largest mechanical energy over what was put in: above "
-        "1 it was made from nothing, too.",
+        "1 it was made from nothing, too. Where several launches were run, frames are their median.",
         PAPER_RUN_FRAMES);
     document_table(document, "Closed loop", columns);
     for (int i = 0; i < files->closed_loop_count; i++) put_row(document, &files->closed_loop[i]);

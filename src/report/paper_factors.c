@@ -21,11 +21,12 @@ static void put_row(Document *document, const NetworkRow *row) {
     document_cell(document, "%s", isnan(row->accuracy) ? "–" : row->accuracy > PAPER_GATE ? "passes" : "fails");
 }
 
-static const NetworkRow *best_of(const PaperFiles *files, const char *factor) {
+/* Only networks asked for the same can be better or worse. */
+static const NetworkRow *best_of(const PaperFiles *files, const char *factor, const char *target) {
     const NetworkRow *best = NULL;
     for (int i = 0; i < files->network_count; i++) {
         const NetworkRow *row = &files->networks[i];
-        if (strcmp(row->factor, factor) != 0 || isnan(row->ratio)) continue;
+        if (strcmp(row->factor, factor) != 0 || strcmp(row->target, target) != 0 || isnan(row->ratio)) continue;
         if (best == NULL || row->ratio < best->ratio) best = row;
     }
     return best;
@@ -33,15 +34,14 @@ static const NetworkRow *best_of(const PaperFiles *files, const char *factor) {
 
 /* The least error of the factor's values, beside the baseline's. */
 static void put_best(Document *document, const PaperFiles *files, const NetworkRow *baseline, const char *factor) {
-    const NetworkRow *best = best_of(files, factor);
-    if (best == NULL || baseline == NULL || isnan(baseline->ratio) || best == baseline ||
-        strcmp(best->target, baseline->target) != 0)
-        return;
+    if (baseline == NULL || isnan(baseline->ratio)) return;
+    const NetworkRow *best = best_of(files, factor, baseline->target);
+    if (best == NULL || best == baseline) return;
     const char *verdict = best->ratio < 1       ? best->ratio < baseline->ratio ? "better than" : "not better than"
                           : baseline->ratio < 1 ? "no better than the constant, and worse than"
                                                 : "no better than the constant, beside";
-    document_paragraph(document, "Least: %s, %s of the constant's error; %s the baseline with %s.",
-                       csv_show(best->value[0] != '\0' ? best->value : best->network).text,
+    document_paragraph(document, "Least for the target %s: %s, %s of the constant's error; %s the baseline with %s.",
+                       csv_show(best->target).text, csv_show(best->value[0] != '\0' ? best->value : best->network).text,
                        show_percent(best->ratio).text, verdict, show_percent(baseline->ratio).text);
 }
 

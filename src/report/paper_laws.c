@@ -72,16 +72,13 @@ static int law_number(const char *laws) {
     return -1;
 }
 
-typedef struct Tally {
-    int cases, obeyed, better;
-} Tally;
-
-static void count_case(const LawsRow *row, const LawsMedians *medians, const LawsMedians *none, Tally *tally) {
+static void count_case(const LawsRow *row, const LawsMedians *medians, const LawsMedians *none,
+                       PaperFindings *findings) {
     int law = law_number(row->laws);
-    if (law < 0) return;
-    tally->cases++;
-    tally->obeyed += medians->medians[law + 2] < none->medians[law + 2];
-    tally->better += medians->medians[0] < none->medians[0];
+    if (law < 0 || !(row->weight > 0)) return;
+    findings->law_cases++;
+    findings->laws_obeyed += medians->medians[law + 2] < none->medians[law + 2];
+    findings->laws_better += medians->medians[0] < none->medians[0];
 }
 
 static const LawsRow *row_without(const PaperFiles *files) {
@@ -90,7 +87,7 @@ static const LawsRow *row_without(const PaperFiles *files) {
     return NULL;
 }
 
-static void put_table(Document *document, const PaperFiles *files, double *values) {
+static void put_table(Document *document, const PaperFiles *files, double *values, PaperFindings *findings) {
     document_table(
         document, "Laws in the loss, medians over seeds",
         "Laws|>Weight|>Seeds|>Test|>Least to most|>Test / constant|>Momentum (kg m/s)|>Energy (J)|>Approach (m/s)|"
@@ -98,22 +95,21 @@ static void put_table(Document *document, const PaperFiles *files, double *value
     const LawsRow *without = row_without(files);
     LawsMedians none = {0};
     if (without != NULL) none = medians_of(files, without, values);
-    Tally tally = {0};
     for (int i = 0; i < files->law_count; i++) {
         if (!is_first(files, i)) continue;
         LawsMedians medians = medians_of(files, &files->laws[i], values);
         put_row(document, &files->laws[i], &medians);
-        if (without != NULL) count_case(&files->laws[i], &medians, &none, &tally);
+        if (without != NULL) count_case(&files->laws[i], &medians, &none, findings);
     }
-    if (tally.cases == 0) return;
+    if (findings->law_cases == 0) return;
     document_paragraph(
         document,
         "Of %d cases with a single law in the loss, %d break that law less than the network without, and %d "
         "have a lower test error.",
-        tally.cases, tally.obeyed, tally.better);
+        findings->law_cases, findings->laws_obeyed, findings->laws_better);
 }
 
-void paper_put_laws(Document *document, const PaperFiles *files) {
+void paper_put_laws(Document *document, const PaperFiles *files, PaperFindings *findings) {
     document_heading(document, 2, "Physical laws in the loss");
     document_paragraph(document,
                        "The paper's outlook: violations of physical laws are added to the loss. The table has "
@@ -123,7 +119,7 @@ void paper_put_laws(Document *document, const PaperFiles *files) {
     if (values == NULL)
         document->failed = true;
     else
-        put_table(document, files, values);
+        put_table(document, files, values, findings);
     free(values);
     document_figure(document, &files->figures[FIGURE_LAWS]);
 }

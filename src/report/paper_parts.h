@@ -3,6 +3,12 @@
 #pragma once
 #include "report/paper_files.h"
 
+/* Counted by the parts on the paper's outlook, told again among its claims. */
+typedef struct PaperFindings {
+    int law_cases, laws_obeyed, laws_better; /* single laws and weights; of these, fewer violations, less test error */
+    int transfer_rows, transfer_saved;       /* numbers of launches; those of which transfer needs fewer */
+} PaperFindings;
+
 void paper_put_summary(Document *document, const PaperFiles *files);
 void paper_put_readings(Document *document, const PaperFiles *files);
 void paper_put_table1(Document *document, const PaperFiles *files);
@@ -10,10 +16,10 @@ void paper_put_factors(Document *document, const PaperFiles *files);
 void paper_put_rates(Document *document, const PaperFiles *files);
 void paper_put_closed_loop(Document *document, const PaperFiles *files);
 void paper_put_contact_net(Document *document, const PaperFiles *files);
-void paper_put_laws(Document *document, const PaperFiles *files);
-void paper_put_transfer(Document *document, const PaperFiles *files);
+void paper_put_laws(Document *document, const PaperFiles *files, PaperFindings *findings);
+void paper_put_transfer(Document *document, const PaperFiles *files, PaperFindings *findings);
 void paper_put_aims(Document *document, const PaperFiles *files);
-void paper_put_claims(Document *document, const PaperFiles *files);
+void paper_put_claims(Document *document, const PaperFiles *files, const PaperFindings *findings);
 void paper_put_study(Document *document, const PaperFiles *files);
 
 enum { PAPER_SMALL_NETWORK = 500 }; /* parameters: the aims are for networks of at most so many */

@@ -30,6 +30,7 @@ static void put_title(Document *document, const PaperFiles *files) {
 }
 
 static void put_all(Document *document, const PaperFiles *files) {
+    PaperFindings findings = {0};
     put_title(document, files);
     paper_put_summary(document, files);
     paper_put_readings(document, files);
@@ -38,10 +39,10 @@ static void put_all(Document *document, const PaperFiles *files) {
     paper_put_rates(document, files);
     paper_put_closed_loop(document, files);
     paper_put_contact_net(document, files);
-    paper_put_laws(document, files);
-    paper_put_transfer(document, files);
+    paper_put_laws(document, files, &findings);
+    paper_put_transfer(document, files, &findings);
     paper_put_aims(document, files);
-    paper_put_claims(document, files);
+    paper_put_claims(document, files, &findings);
     paper_put_study(document, files);
 }
 

@@ -23,8 +23,8 @@ static void put_best(Document *document, const PaperFiles *files, const PaperTar
     if (best == NULL) return;
     document_item(
         document,
-        "The best of %d networks of at most %d parameters for the target %s, %s, has %s of the constant's error.",
-        among, PAPER_SMALL_NETWORK, target->name, csv_show(best->network).text, show_percent(best->ratio).text);
+        "Networks of at most %d parameters for the target %s: %d. The best, %s, has %s of the constant's error.",
+        PAPER_SMALL_NETWORK, target->name, among, csv_show(best->network).text, show_percent(best->ratio).text);
 }
 
 static void put_gate(Document *document, const PaperFiles *files) {
@@ -62,7 +62,7 @@ static void put_rate(Document *document, const PaperFiles *files, const NetworkR
     document_item(
         document,
         "Counted as %s, the baseline is right in %s to %s of cases over %d scenes; in %d of them the constant is "
-        "right at least as often. The paper reports 60%% to 91%%, of what it does not say.",
+        "right at least as often. The paper reports 60%% to 91%% and does not define them.",
         words, show_percent(least).text, show_percent(most).text, count, beaten);
 }
 
@@ -87,8 +87,8 @@ static void put_closed_loop(Document *document, const PaperFiles *files) {
     document_item(
         document,
         "With a network in place of the solver, %d of %d runs stay within 0.1 m of the engine's for %d frames "
-        "(10 s); the first to leave it does so after %.0f frames.",
-        together, runs, PAPER_RUN_FRAMES, shortest);
+        "(10 s); the first leaves it after frame %s.",
+        together, runs, PAPER_RUN_FRAMES, show_number(shortest).text);
 }
 
 static void put_contact_net(Document *document, const PaperFiles *files) {
