@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_MAX_SIZE = 1024, MAX_COLUMNS = 16 };
+enum { LINE_MAX_SIZE = 1024 };
 
 _Static_assert((int)CSV_NAME_SIZE == (int)CHART_TEXT_SIZE, "a name that is plain fits");
 
@@ -61,7 +61,7 @@ static bool find_columns(const Csv *csv, const CsvColumn *columns, int count, in
 }
 
 static char *read_rows(const Csv *csv, const CsvColumn *columns, int count, size_t struct_size, Error *error) {
-    int fields[MAX_COLUMNS];
+    int fields[CSV_MAX_COLUMNS];
     if (!find_columns(csv, columns, count, fields, error)) return NULL;
     char *rows = calloc((size_t)csv->rows, struct_size);
     if (rows == NULL) {

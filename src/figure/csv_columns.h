@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-enum { CSV_NAME_SIZE = 40, CSV_MAX_ROWS = 5000 };
+enum { CSV_NAME_SIZE = 40, CSV_MAX_ROWS = 5000, CSV_MAX_COLUMNS = 16 };
 
 /* What a field is, and the member of the struct that takes it. */
 typedef enum CsvKind {
@@ -23,9 +23,9 @@ typedef struct CsvColumn {
     double minimum, maximum;
 } CsvColumn;
 
-/* Reads folder/file.csv: for each of its *row_count lines a struct of struct_size bytes, which the caller frees, in
-   the file's order. Other columns are left alone. NULL with error "path:line:column: error: text" for a column that is
-   missing or there twice, a field that is not of its kind, more than max_rows lines or a table that is not in order
-   (common/csv.h; so is one without a line). */
+/* Reads column_count (at most CSV_MAX_COLUMNS) columns of folder/file.csv: for each of its *row_count lines a struct of
+   struct_size bytes, in the file's order; the caller frees them. Other columns are left alone. NULL with error
+   "path:line:column: error: text" for a column that is missing or there twice, a field that is not of its kind, more
+   than max_rows lines or a table that is not in order (common/csv.h; so is one without a line). */
 void *csv_columns_read(const char *folder, const char *file, const CsvColumn *columns, int column_count,
                        size_t struct_size, int max_rows, int *row_count, Error *error);

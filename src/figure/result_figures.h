@@ -11,11 +11,10 @@
      closed-loop  closed_loop.csv  frames until apart, and cost, with a network in place of the solver
      laws         laws.csv         error and violations over the weight of the laws in the loss
      transfer     transfer.csv     error over launches, from scratch and after smaller scenes
-   The tables are those of folder/NAME.csv that the study leaves; columns are found by name. Pages and columns of a
-   paper wide (174 or 85 mm); told apart by the colour-blind and in grey.
+   Columns are found by name, in any order; others are left alone. Pages and columns of a paper wide
+   (174 or 85 mm); told apart by the colour-blind and in grey.
 
    Each of the six tables has to be there and in order: else "path:line:column: error: text", and nothing is drawn. A
-   table may lack the rows that its figure shows: then that figure is left out (one
-   of an earlier run stays). ERROR_SYSTEM where gnuplot is missing or
-   fails; figures already drawn stay. */
+   table may lack the rows that its figure shows: then that figure is left out (one of an earlier run stays).
+   ERROR_SYSTEM where gnuplot is missing or fails; figures already drawn stay. */
 bool result_figures_draw(const char *folder, Error *error);

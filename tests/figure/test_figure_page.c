@@ -106,6 +106,8 @@ static void tics_have_room(void **state) {
         int named = 0;
         for (const char *at = script; (at = strstr(at, "'10^{")) != NULL; at++) named++;
         assert_in_range(named, decades == 4 ? 5 : 6, 9);
+        const char *first = strchr(strstr(script, "set xtics scale"), '\'');
+        assert_near(strtod(strchr(first + 1, '\'') + 1, NULL) * pow(10, decades), 1, 1e-9);
         expect(script, "'10^{0}' 1 0");
         expect(script, "set xtics add ('0' ");
         free(sheet.script);
