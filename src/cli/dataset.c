@@ -15,10 +15,16 @@ static const struct argp_option option_table[] = {
      "Launches of each scene swept over x, m (default: -5:5:0.05, the paper's; none with --random alone)", 0},
     {"random", RANDOM, "N", 0,
      "Further launches of each scene, drawn: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)", 0},
-    {"inputs", INPUTS, "NAME", 0, "How a pair is seen: relative (default), raw, or raw-unturned, without rotations", 0},
+    {"inputs", INPUTS, "NAME", 0,
+     "How a pair is seen: relative (default); raw; raw-unturned, without rotations; contact, in the frame of its "
+     "contact "
+     "after the warm start; neighbours, the same with what the contacts around would do next",
+     0},
     {"target", TARGET, "NAME", 0,
      "What is recorded: pair (default), what a pair's own impulses changed in the step; net, what all impulses changed "
-     "of its bodies; impulse, what one visit of the pair in one sweep changed",
+     "of its bodies; impulse, what one visit of the pair in one sweep changed; points, with contact or neighbours, how "
+     "far "
+     "the impulses at its points went beyond the warm start",
      0},
     {"labels", LABELS, "NAME", 0, "By whom: engine (default), or the converged reference", 0},
     {"context", CONTEXT, NULL, 0, "Record masses, normals, friction and arms too: what train --laws needs", 0},

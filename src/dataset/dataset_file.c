@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
-   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12 or 20],
+   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
    changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and where it was recorded context [rows, 17]. */
 #include "dataset/dataset.h"
 

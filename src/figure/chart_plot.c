@@ -18,7 +18,7 @@ static bool draw(const Chart *chart, const char *scene, const char *stem, Error 
     if (script == NULL) return error_memory(error, stem);
     bool whole = chart_script(chart, title, script) && !ferror(script);
     whole = fclose(script) == 0 && whole;
-    const GnuplotDrawing drawing = {CHART_WIDTH, CHART_HEIGHT, text, size};
+    const GnuplotDrawing drawing = {.width = CHART_WIDTH, .height = CHART_HEIGHT, .script = text, .script_size = size};
     bool drawn = whole ? gnuplot_draw(&drawing, stem, error) : error_memory(error, stem);
     free(text);
     return drawn;

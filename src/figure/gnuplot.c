@@ -20,6 +20,9 @@ static const char *const endings[FORMATS] = {"png", "svg", "pdf"};
 
 static const double dots_per_mm = 300 / 25.4, pixels_per_mm = 96 / 25.4;
 
+/* The PDF is the last. */
+static int format_count(const GnuplotDrawing *drawing) { return drawing->without_pdf ? FORMATS - 1 : FORMATS; }
+
 /* A point of type, a line width of 1 and a point size of 1 are as large in one format as in another: pngcairo and
    pdfcairo take type for 96 and SVG for 72 dots an inch, and each has a scale of its own for the rest (gnuplot 5.4,
    measured on its output). */
@@ -49,7 +52,7 @@ static char *whole_script(const GnuplotDrawing *drawing, const char *folder, siz
     char *text = NULL;
     FILE *script = open_memstream(&text, size);
     if (script == NULL) return NULL;
-    for (int format = 0; format < FORMATS; format++) {
+    for (int format = 0; format < format_count(drawing); format++) {
         fprintf(script, "reset\nset encoding utf8\n");
         put_terminal(script, format, drawing);
         fprintf(script, "set output '%s/plot.%s'\n", folder, endings[format]);
@@ -94,21 +97,21 @@ static bool run(const char *folder, const char *script, size_t size, Error *erro
     return process_finish(&process, text, sizeof text, error);
 }
 
-static bool collect(const char *folder, const char *stem, Error *error) {
+static bool collect(const char *folder, int formats, const char *stem, Error *error) {
     char *data[FORMATS] = {NULL}, path[PATH_MAX];
     size_t size[FORMATS];
     bool done = true;
-    for (int i = 0; done && i < FORMATS; i++) {
+    for (int i = 0; done && i < formats; i++) {
         snprintf(path, sizeof path, "%s/plot.%s", folder, endings[i]);
         data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
         done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "has drawn no %s", endings[i]);
     }
-    for (int i = 0; done && i < FORMATS; i++) {
+    for (int i = 0; done && i < formats; i++) {
         int length = snprintf(path, sizeof path, "%s.%s", stem, endings[i]);
         done = length < (int)sizeof path ? file_write(path, data[i], size[i], error)
                                          : error_input(error, stem, "this path is too long");
     }
-    for (int i = 0; i < FORMATS; i++) free(data[i]);
+    for (int i = 0; i < formats; i++) free(data[i]);
     return done;
 }
 
@@ -116,7 +119,8 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     size_t size;
     char *script = whole_script(drawing, folder, &size);
     if (script == NULL) return error_memory(error, stem);
-    bool done = put_font(folder, error) && run(folder, script, size, error) && collect(folder, stem, error);
+    bool done = put_font(folder, error) && run(folder, script, size, error) &&
+                collect(folder, format_count(drawing), stem, error);
     free(script);
     return done;
 }

@@ -53,15 +53,53 @@ run 0 simulate single.yaml --method pair-net:network=raw-net.npz -o raw-run.npz
 run 2 train raw.npz -o none.npz --layers 10-8-6
 complains "the first width is 10; a pair has 12 inputs"
 run 2 dataset single.yaml -o none.npz --inputs sideways
-complains "--inputs: error: 'sideways' is none of relative, raw, raw-unturned"
+complains "--inputs: error: 'sideways' is none of relative, raw, raw-unturned, contact, neighbours"
 run 2 dataset single.yaml -o none.npz --target gross
-complains "--target: error: 'gross' is none of pair, net, impulse"
+complains "--target: error: 'gross' is none of pair, net, impulse, points"
+run 2 dataset single.yaml -o none.npz --target points
+complains "the target points needs the view contact or neighbours"
+run 2 dataset single.yaml -o none.npz --target impulse --inputs neighbours
+complains "the target impulse has no view neighbours"
 run 2 dataset single.yaml -o none.npz --target impulse --labels reference
 complains "the reference has none"
 run 2 dataset single.yaml -o none.npz --random 0
 complains "--random: error:"
 run 2 dataset single.yaml -o none.npz --random 4
 complains "4 launches a scene; at least 5"
+
+# Seen from the contact: impulses for its points, which the scene may name a network for.
+run 0 dataset single.yaml -o points.npz --bomb-x=-2:2:1 --inputs contact --target points
+run 0 dataset single.yaml -o around.npz --bomb-x=-2:2:1 --inputs neighbours --target net
+run 0 train points.npz -o points-net.npz --layers 20-8-4 --iterations 5
+run 0 train around.npz -o around-net.npz --layers 32-8-6 --iterations 5
+run 0 train mixed.npz -o impulse-net.npz --layers 10-8-2 --iterations 5
+/usr/bin/python3 - <<'PYTHON' || fail "what is seen from the contact"
+import numpy
+points, around, network = (numpy.load(name + ".npz") for name in ("points", "around", "points-net"))
+assert (str(points["view"]), str(points["target"])) == ("contact", "points")
+assert points["inputs"].shape[1] == 20 and points["changes"].shape[1] == 4
+assert around["inputs"].shape[1] == 32 and around["changes"].shape[1] == 6
+assert str(network["target"]) == "points" and str(network["outputs"]) == "dpn1 dpt1 dpn2 dpt2"
+PYTHON
+# The file ends in the networks of the scene.
+(cat single.yaml; echo "  contact-net: points-net.npz") >named.yaml
+run 0 simulate named.yaml --method contact-net --hash named.hash
+run 0 simulate single.yaml --method contact-net:network=points-net.npz --hash given.hash
+cmp -s named.hash given.hash || fail "the scene's network for contact-net"
+run 0 simulate single.yaml --method constant:network=points-net.npz --hash constant.hash
+cmp -s constant.hash given.hash && fail "constant says what the network says"
+run 0 simulate single.yaml --method pair-net:network=around-net.npz
+run 0 simulate single.yaml --method pair-net:network=impulse-net.npz,k=3 --hash three.hash
+run 0 simulate single.yaml --method pair-net:network=impulse-net.npz --hash ten.hash
+run 0 simulate single.yaml --method pair-net:network=impulse-net.npz,k=10 --hash same.hash
+cmp -s ten.hash same.hash || fail "pair-net does not take the scene's sweeps"
+cmp -s ten.hash three.hash && fail "k has no effect on single impulses"
+run 2 simulate single.yaml --method contact-net
+complains "the scene names no network for it: use contact-net:network=FILE"
+run 2 simulate single.yaml --method contact-net:network=around-net.npz
+complains "around-net.npz: error: a network of the target net, which is pair-net's"
+run 2 simulate single.yaml --method pair-net:network=points-net.npz
+complains "points-net.npz: error: a network of the target points, which are contact-net's"
 
 run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
 equal "iterations printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 10 50 100 "

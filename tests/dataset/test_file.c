@@ -73,6 +73,30 @@ static void files_keep_every_bit(void **state) {
     dataset_destroy(read);
 }
 
+/* Rows are as wide as their view and their target say. */
+static void widths_are_those_of_view_and_target(void **state) {
+    (void)state;
+    Error error = {0};
+    static float wide[ROWS * PAIR_INPUTS_MAX], points[ROWS * PAIR_POINT_CHANGES];
+    for (int i = 0; i < ROWS * PAIR_INPUTS_MAX; i++) wide[i] = 0.5f * (float)i;
+    for (int i = 0; i < ROWS * PAIR_POINT_CHANGES; i++) points[i] = -(float)i;
+    for (PairView view = PAIR_CONTACT; view <= PAIR_NEIGHBOURS; view++) {
+        Dataset dataset = example();
+        dataset.view = view;
+        dataset.target = TARGET_POINTS;
+        dataset.inputs = wide;
+        dataset.changes = points;
+        const char *path = temporary_path("wide.npz");
+        assert_ok(dataset_write(&dataset, path, &error), error);
+        Dataset *read = dataset_read(path, &error);
+        assert_ok(read != NULL, error);
+        assert_true(read->view == view && read->target == TARGET_POINTS);
+        assert_memory_equal(read->inputs, wide, ROWS * (size_t)dataset_inputs(read) * sizeof(float));
+        assert_memory_equal(read->changes, points, sizeof points);
+        dataset_destroy(read);
+    }
+}
+
 static void the_most_and_longest_scene_names_are_kept(void **state) {
     (void)state;
     Error error = {0};
@@ -266,12 +290,16 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
 
 static void other_files_are_refused(void **state) {
     (void)state;
-    const int32_t future = DATASET_VERSION + 1;
+    const int32_t future = DATASET_VERSION + 1, past = 2;
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &past}),
+                   "version 2; this program reads version 3");
     assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "sideways"}), "view: a word that is not known");
     assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, ""}), "target: a word");
     assert_refused(write_with((NpzArray){"labels", NPZ_TEXT, 0, {0}, "me"}), "labels: a word");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "raw"}), "inputs");
+    assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "contact"}), "inputs");
+    assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, "points"}), "changes");
     assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "kind"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "changes"}), "changes");
@@ -284,6 +312,7 @@ static void other_files_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_keep_every_bit),
+        cmocka_unit_test(widths_are_those_of_view_and_target),
         cmocka_unit_test(a_context_is_kept_where_there_is_one),
         cmocka_unit_test(the_most_and_longest_scene_names_are_kept),
         cmocka_unit_test(numbers_that_are_not_finite_are_refused),

@@ -146,6 +146,54 @@ static void random_launches_lie_in_their_ranges(void **state) {
     dataset_destroy(c);
 }
 
+/* Whether the pair of this row is one with the ground, and the two boxes of single.yaml do not touch in its step. */
+static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
+    for (int64_t r = row > 2 ? row - 2 : 0; r < dataset->rows && r <= row + 2; r++)
+        if (dataset->launch[r] == dataset->launch[row] && dataset->frame[r] == dataset->frame[row] &&
+            dataset->bodies[2 * r] != 0)
+            return false;
+    return dataset->bodies[2 * row] == 0;
+}
+
+/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that nothing
+   approaches and next to nothing is left to do. */
+static void a_box_at_rest_shows_its_warm_start(void **state) {
+    (void)state;
+    enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */
+    Dataset *dataset = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_POINTS});
+    assert_int_equal(dataset_inputs(dataset), WIDTH);
+    int at_rest = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *in = dataset->inputs + r * WIDTH, *changes = dataset->changes + r * PAIR_POINT_CHANGES;
+        const bool flat = in[WIDTH - 1] == 1;
+        if (dataset->frame[r] < 200 || !flat || !is_on_the_ground_alone(dataset, r)) continue;
+        assert_near(in[WIDTH - 2], 0, 0); /* the ground has no inverse mass */
+        assert_near(in[3] + in[POINT + 3], 10.0 / 60, 1e-5);
+        assert_near(in[0], in[2], 1e-5);
+        assert_near(in[POINT], in[POINT + 2], 1e-5);
+        for (int k = 0; k < PAIR_POINT_CHANGES; k++) assert_near(changes[k], 0, 1e-5);
+        at_rest++;
+    }
+    assert_true(at_rest > 500);
+    dataset_destroy(dataset);
+}
+
+/* The neighbours' view is the contact's, and twelve numbers more. */
+static void neighbours_are_seen_beside_the_contact(void **state) {
+    (void)state;
+    Dataset *contact = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_NET});
+    Dataset *wide = record((DatasetOptions){.view = PAIR_NEIGHBOURS, .target = TARGET_NET});
+    assert_true(contact->rows == wide->rows && dataset_inputs(wide) == 32);
+    int pushed = 0;
+    for (int64_t r = 0; r < wide->rows; r++) {
+        assert_memory_equal(wide->inputs + r * 32, contact->inputs + r * 20, 20 * sizeof(float));
+        for (int k = 20; k < 26; k++) pushed += wide->inputs[r * 32 + k] != 0;
+    }
+    assert_true(pushed > 10);
+    dataset_destroy(contact);
+    dataset_destroy(wide);
+}
+
 static void refuse(DatasetOptions options, const char *text) {
     Error error = {0};
     options.scenes = single;
@@ -160,6 +208,10 @@ static void what_cannot_be_recorded_is_refused(void **state) {
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
     refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
            "the reference has none");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .view = PAIR_NEIGHBOURS},
+           "the target impulse has no view neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_POINTS, .view = PAIR_RAW},
+           "the target points needs the view contact or neighbours");
     refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
 }
 
@@ -167,6 +219,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(visits_add_up_to_the_pairs_change),
                                        cmocka_unit_test(net_is_pair_where_there_is_one_pair),
                                        cmocka_unit_test(the_reference_labels_what_the_engine_met),
+                                       cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
+                                       cmocka_unit_test(neighbours_are_seen_beside_the_contact),
                                        cmocka_unit_test(contexts_tell_what_made_the_changes),
                                        cmocka_unit_test(random_launches_lie_in_their_ranges),
                                        cmocka_unit_test(what_cannot_be_recorded_is_refused)};

@@ -40,7 +40,8 @@ static void what_cannot_be_trained_is_refused(void **state) {
     options.start = start;
     assert_refused(dataset, options, "trained on other inputs");
     strcpy(start->inputs, pair_views[PAIR_RELATIVE].inputs);
-    assert_refused(dataset, options, "trained for another target");
+    strcpy(start->target, "net");
+    assert_refused(dataset, options, "trained for another target (net)");
     strcpy(start->target, "pair");
     assert_refused(dataset, options, "other widths");
     network_destroy(start);

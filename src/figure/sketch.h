@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drawings made of boxes, lines, arrows and words, by gnuplot. All lengths on the page in mm, from its lower left
+   corner; what comes later lies above what came before, and arrows and words above all. */
+#pragma once
+#include "collision/manifold.h"
+#include "common/error.h"
+#include "image/image.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* 0xRRGGBB, as in render/style.h. Boxes are blue and the network is orange in the renderer's pictures, too; ACCENT is
+   what the eye is to find: black in a grey print and beside Okabe and Ito's colours. */
+#define BOX_COLOUR 0x0072B2u
+#define BOX_INK 0x00395Cu
+#define NETWORK_COLOUR 0xE69F00u
+#define NETWORK_INK 0x7A4F00u
+#define ACCENT 0x000000u
+#define NO_COLOUR UINT32_MAX
+
+typedef struct Point {
+    double x, y;
+} Point;
+
+/* How a shape is drawn. */
+typedef struct Pen {
+    uint32_t fill; /* NO_COLOUR: not filled */
+    double opacity;
+    uint32_t line;      /* NO_COLOUR: no line */
+    double width;       /* of the line, gnuplot's */
+    const char *dashes; /* gnuplot's, or NULL: solid */
+} Pen;
+
+static inline Pen pen_line(uint32_t line, double width, const char *dashes) {
+    return (Pen){NO_COLOUR, 1, line, width, dashes};
+}
+
+static inline Pen pen_fill(uint32_t fill, double opacity, uint32_t line) {
+    return (Pen){fill, opacity, line, 1.2, NULL};
+}
+
+/* A window of the page onto the world: metre (center) lies in its middle. */
+typedef struct View {
+    Point low, high; /* corners of the window, mm */
+    Point center;    /* m */
+    double scale;    /* mm a metre */
+} View;
+
+Point view_place(const View *view, Vec2 position);
+
+typedef struct Sketch {
+    double width, height; /* mm */
+    FILE *script, *plot;  /* what has to stand before the last plot command, and that command */
+    char *script_text, *plot_text;
+    size_t script_size, plot_size;
+    int blocks;
+} Sketch;
+
+/* False when memory is short; a sketch begun is to be freed. */
+bool sketch_begin(Sketch *sketch, double width, double height, Error *error);
+void sketch_free(Sketch *sketch);
+
+/* Draws stem.png and stem.svg. Nothing more can be added then. */
+bool sketch_draw(Sketch *sketch, const char *stem, Error *error);
+
+/* A picture (alpha is dropped) with its lower left corner at `low`, `width` mm wide. Pictures lie below all else and are
+   to be put first. */
+void sketch_image(Sketch *sketch, const Image *image, Point low, double width);
+
+/* A line through points, or the closed shape that they bound. */
+void sketch_path(Sketch *sketch, const Point *points, int count, const Pen *pen);
+void sketch_shape(Sketch *sketch, const Point *points, int count, const Pen *pen);
+void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen);
+void sketch_rectangle(Sketch *sketch, Point low, Point high, const Pen *pen);
+void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen);
+
+/* A line with a head at its end, or at both. */
+typedef enum ArrowHeads { HEAD_AT_END, HEADS_AT_BOTH } ArrowHeads;
+void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width);
+
+/* A shape of the world, cut off at the window's edge. */
+void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen);
+
+enum { SKETCH_TEXT_SIZE = 200 };
+
+typedef enum TextAlign { TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT } TextAlign;
+
+typedef struct TextStyle {
+    double points; /* of type */
+    TextAlign align;
+    uint32_t colour;
+    double degrees; /* turned counter-clockwise */
+} TextStyle;
+
+/* A line of words, cut to SKETCH_TEXT_SIZE - 1 bytes, its middle at the height of `at`. */
+void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
+
+/* A bar of so many metres of a view, from `left` on, and its length beside it. */
+void sketch_scale_bar(Sketch *sketch, Point left, double metres, const View *view);
