@@ -10,6 +10,9 @@
 /* More blocks than chunks, and a last block that is not full. */
 enum { ROWS = 6000 };
 
+/* For what is done row by row. */
+enum { FEW_ROWS = 500 };
+
 typedef struct Case {
     Dataset *dataset;
     Laws *laws; /* NULL: without */
@@ -99,7 +102,7 @@ static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
     (void)state;
     const int widths[] = {10, 5, 2};
     for (int scale = 0; scale < 2; scale++) {
-        Case made = make_case_of(make_taught_dataset(ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
+        Case made = make_case_of(make_taught_dataset(FEW_ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
                                  ACTIVATION_LINEAR, scale == 0 ? SCALE_MINMAX : SCALE_STANDARD);
         Error error = {0};
         Loss *mse = loss_create(made.network, LOSS_MSE, &error);
@@ -118,7 +121,7 @@ static void gradient_of_the_laws_is_the_finite_difference(void **state) {
     for (int law = 0; law <= LAWS; law++) {
         Error error = {0};
         LawNumbers weights;
-        Case made = make_case_of(make_pushed_dataset(ROWS), law < LAWS ? LOSS_MSE : LOSS_SMOOTH_L1, 2, widths,
+        Case made = make_case_of(make_pushed_dataset(FEW_ROWS), law < LAWS ? LOSS_MSE : LOSS_SMOOTH_L1, 2, widths,
                                  ACTIVATION_TANH, ACTIVATION_LINEAR, law % 2 == 0 ? SCALE_STANDARD : SCALE_MINMAX);
         assert_ok(law_weights_named(law < LAWS ? laws_known[law].name : "all", 2, &weights, &error), error);
         made.laws = laws_create(made.dataset, made.network, &weights, &error);
