@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WEIGHTS = 4, MOST_LAUNCHES = 8 };
+enum { MOST_WEIGHTS = 5, MOST_LAUNCHES = 8 };
 
 /* How much is done. */
 typedef struct PaperSize {
@@ -42,7 +42,7 @@ static const PaperSize whole_size = {
     .seeds = 3,
     .law_iterations = 500,
     .transfer_iterations = 300,
-    .weights = {0.1, 1, 10},
+    .weights = {0.01, 0.1, 1, 10},
     .launches = {1, 2, 4, 8, 16},
     .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
 };

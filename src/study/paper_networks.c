@@ -76,6 +76,7 @@ const PaperNetwork paper_networks[] = {
     {.name = "best-impulse",
      .factor = "best",
      .value = "impulse",
+     .data = DATA_FINE,
      .view = PAIR_CONTACT,
      .target = TARGET_IMPULSE,
      .layers = "20-20-2",

@@ -110,8 +110,13 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     read_layers(of->layers, &options);
     Network *network = training_run(dataset, &options, progress, error);
     if (network == NULL) return false;
-    write_network(lines, of, network, &writer.last, paper_accuracy(network, dataset));
-    bool ok = store(training, network, error);
+    /* Not of the last weights, but of those that are kept. */
+    TrainingScore score = {.iteration = writer.last.iteration};
+    const int iterations = score.iteration;
+    bool ok = training_score(dataset, network, of->loss, &score, error);
+    score.iteration = iterations;
+    if (ok) write_network(lines, of, network, &score, paper_accuracy(network, dataset));
+    ok = ok && store(training, network, error);
     network_destroy(network);
     return ok;
 }
