@@ -8,6 +8,7 @@ int command_compare(int argc, char **argv, Error *error);
 int command_dataset(int argc, char **argv, Error *error);
 int command_train(int argc, char **argv, Error *error);
 int command_chart(int argc, char **argv, Error *error);
+int command_paper(int argc, char **argv, Error *error);
 int command_problem(int argc, char **argv, Error *error);
 int command_solve(int argc, char **argv, Error *error);
 int command_methods(int argc, char **argv, Error *error);

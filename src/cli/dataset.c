@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, SEED };
+enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, CONTEXT, SEED };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DATA.npz", 0, "Where the dataset goes", 0},
@@ -15,12 +15,19 @@ static const struct argp_option option_table[] = {
      "Launches of each scene swept over x, m (default: -5:5:0.05, the paper's; none with --random alone)", 0},
     {"random", RANDOM, "N", 0,
      "Further launches of each scene, drawn: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)", 0},
-    {"inputs", INPUTS, "NAME", 0, "How a pair is seen: relative (default), raw, or raw-unturned, without rotations", 0},
+    {"inputs", INPUTS, "NAME", 0,
+     "How a pair is seen: relative (default); raw; raw-unturned, without rotations; contact, in the frame of its "
+     "contact "
+     "after the warm start; neighbours, the same with what the contacts around would do next",
+     0},
     {"target", TARGET, "NAME", 0,
      "What is recorded: pair (default), what a pair's own impulses changed in the step; net, what all impulses changed "
-     "of its bodies; impulse, what one visit of the pair in one sweep changed",
+     "of its bodies; impulse, what one visit of the pair in one sweep changed; points, with contact or neighbours, how "
+     "far "
+     "the impulses at its points went beyond the warm start",
      0},
     {"labels", LABELS, "NAME", 0, "By whom: engine (default), or the converged reference", 0},
+    {"context", CONTEXT, NULL, 0, "Record masses, normals, friction and arms too: what train --laws needs", 0},
     {"seed", SEED, "N", 0,
      "Draws the launches of --random, and the fifth of all that is held out for testing (default: 1)", 0},
     {0}};
@@ -40,6 +47,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case INPUTS: options->inputs = value; break;
     case TARGET: options->target = value; break;
     case LABELS: options->labels = value; break;
+    case CONTEXT: options->dataset.context = true; break;
     case SEED: options->seed = value; break;
     case ARGP_KEY_ARG:
         if (options->dataset.scene_count == DATASET_MAX_SCENES)
@@ -89,11 +97,11 @@ static bool choose(Options *options, Error *error) {
               (options->random == NULL ||
                option_int("--random", options->random, 1, DATASET_MAX_LAUNCHES, &dataset->random, error)) &&
               find_word("--inputs", options->inputs, views, PAIR_VIEWS, &view, error) &&
-              find_word("--target", options->target, dataset_target_names, DATASET_TARGETS, &target, error) &&
+              find_word("--target", options->target, pair_target_names, PAIR_TARGETS, &target, error) &&
               find_word("--labels", options->labels, dataset_label_names, DATASET_LABELS, &labels, error) &&
               option_seed("--seed", options->seed, &dataset->seed, error);
     dataset->view = (PairView)view;
-    dataset->target = (DatasetTarget)target;
+    dataset->target = (PairTarget)target;
     dataset->labels = (DatasetLabels)labels;
     return ok;
 }

@@ -8,7 +8,20 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LAYERS = 256, OPTIMIZER, ITERATIONS, SEED, FROM, KIND, BOMB_X, HIDDEN, OUTPUT_ACTIVATION, SCALE };
+enum {
+    LAYERS = 256,
+    OPTIMIZER,
+    ITERATIONS,
+    SEED,
+    FROM,
+    KIND,
+    BOMB_X,
+    HIDDEN,
+    OUTPUT_ACTIVATION,
+    SCALE,
+    LOSS,
+    LAWS_IN_LOSS
+};
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NET.npz", 0, "Where the network goes", 0},
@@ -25,6 +38,11 @@ static const struct argp_option option_table[] = {
      "sigmoid or linear (default: sigmoid for two outputs, linear for six)", 0},
     {"scale", SCALE, "NAME", 0,
      "Of outputs: minmax or, with linear outputs, standard (default: minmax with sigmoid, standard with linear)", 0},
+    {"loss", LOSS, "NAME", 0,
+     "Of outputs: mse (default), or smooth-l1, straight beyond 0.3 m/s, which rare impacts do not rule", 0},
+    {"laws", LAWS_IN_LOSS, "NAME=W,...", 0,
+     "Weights of laws in the loss of six outputs: momentum, energy, approach, cone; from a dataset made with --context",
+     0},
     {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (100)", 0},
     {"seed", SEED, "N", 0, "Of the initial weights, or of the search (default: 1)", 0},
     {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.5)", 0},
@@ -33,7 +51,7 @@ static const struct argp_option option_table[] = {
 
 typedef struct Options {
     const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x, *hidden,
-        *output_activation, *scale;
+        *output_activation, *scale, *loss, *laws;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -50,6 +68,8 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case HIDDEN: options->hidden = value; break;
     case OUTPUT_ACTIVATION: options->output_activation = value; break;
     case SCALE: options->scale = value; break;
+    case LOSS: options->loss = value; break;
+    case LAWS_IN_LOSS: options->laws = value; break;
     case ARGP_KEY_ARG:
         if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
         options->data = value;
@@ -128,6 +148,8 @@ static void describe(Network *network, const Options *options) {
     append(network, " --hidden ", options->hidden);
     append(network, " --output-activation ", options->output_activation);
     append(network, " --scale ", options->scale);
+    append(network, " --loss ", options->loss);
+    append(network, " --laws ", options->laws);
 }
 
 static bool train_and_store(const Dataset *dataset, const Options *options, TrainingOptions *training, Error *error) {
@@ -148,11 +170,13 @@ static int train_pair_net(const Options *options, Error *error) {
     TrainingOptions training = {.optimizer = options->optimizer,
                                 .hidden = options->hidden,
                                 .output_activation = options->output_activation,
-                                .scale = options->scale};
+                                .scale = options->scale,
+                                .loss = options->loss};
     const char *iterations = options->iterations != NULL ? options->iterations : "2000";
     if (!parse_layers(options->layers, &training, error) ||
         !option_int("--iterations", iterations, 0, 1000000, &training.iterations, error) ||
-        !option_seed("--seed", options->seed, &training.seed, error))
+        !option_seed("--seed", options->seed, &training.seed, error) ||
+        (options->laws != NULL && !law_weights_parse(options->laws, &training.laws, error)))
         return STATUS_DIFFERENT;
     Network *start = NULL;
     if (options->from != NULL && (start = network_read(options->from, error)) == NULL) return STATUS_DIFFERENT;

@@ -1,41 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): for touching pairs of bodies, what the solver saw
-   and what it did. */
+   and what it did. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
 #include "common/progress.h"
 #include "dynamics/pair.h"
+#include "dynamics/pair_context.h"
 #include "scene/launch.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum { DATASET_VERSION = 2, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
-
-/* What of a pair is to be predicted; the paper leaves it open. A row is a pair in a step, or for DATASET_IMPULSE a pair
-   in one sweep of a step, with the velocities that it then had. */
-typedef enum DatasetTarget {
-    DATASET_PAIR,    /* what the pair's own impulses changed over the step */
-    DATASET_NET,     /* what all impulses changed of its two bodies over the step */
-    DATASET_IMPULSE, /* what one visit of the pair in one sweep changed */
-    DATASET_TARGETS
-} DatasetTarget;
+enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
 
 /* Where the changes come from: the engine's own solution, or the converged one of the same contact problem
    (solvers/reference.h): the paper's more accurate source. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
-extern const char *const dataset_target_names[DATASET_TARGETS];
 extern const char *const dataset_label_names[DATASET_LABELS];
 
 typedef struct Dataset {
     PairView view;
-    DatasetTarget target;
+    PairTarget target;
     DatasetLabels labels;
     int64_t rows;
     float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
-    float *changes;  /* [rows, PAIR_CHANGES] */
+    float *changes;  /* [rows, pair_change_count(target)]: pair_step_changes() */
+    float *context;  /* [rows, PAIR_CONTEXT]: pair_context(), what laws in the loss need; NULL where not recorded */
     int32_t *launch; /* [rows] which launch the row comes from */
     int32_t *frame;  /* [rows] number of the step */
     int32_t *bodies; /* [rows, 2] */
@@ -50,14 +42,20 @@ typedef struct Dataset {
 /* Numbers in a row of inputs. */
 static inline int dataset_inputs(const Dataset *dataset) { return pair_views[dataset->view].count; }
 
+/* Whether a row is of a launch that is held out. */
+static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
+    return dataset->launch_test[dataset->launch[row]] != 0;
+}
+
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
     FloatRange bomb_x; /* m: launches of each scene swept over x, rotation and spin the scene's; may have none */
     int random;        /* further launches of each scene: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
     PairView view;
-    DatasetTarget target;
+    PairTarget target;
     DatasetLabels labels;
+    bool context;  /* record it too; for TARGET_PAIR */
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;
 

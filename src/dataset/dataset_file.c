@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
-   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10 or 12],
-   changes [rows, 6], launch, frame [rows], bodies [rows, 2]. */
+   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
+   changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and where it was recorded context [rows, 17]. */
 #include "dataset/dataset.h"
 
 #include "common/npz.h"
@@ -13,7 +13,6 @@
 
 #define KIND "dataset"
 
-const char *const dataset_target_names[DATASET_TARGETS] = {"pair", "net", "impulse"};
 const char *const dataset_label_names[DATASET_LABELS] = {"engine", "reference"};
 
 enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
@@ -22,6 +21,7 @@ void dataset_destroy(Dataset *dataset) {
     if (dataset == NULL) return;
     free(dataset->inputs);
     free(dataset->changes);
+    free(dataset->context);
     free(dataset->launch);
     free(dataset->frame);
     free(dataset->bodies);
@@ -50,7 +50,7 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
         {"version", NPZ_INT32, 0, {0}, &version},
         {"kind", NPZ_TEXT, 0, {0}, KIND},
         {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
-        {"target", NPZ_TEXT, 0, {0}, dataset_target_names[dataset->target]},
+        {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
         {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
         {"scenes", NPZ_TEXT, 0, {0}, scenes},
         {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
@@ -59,12 +59,14 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
         {"launch_spin", NPZ_FLOAT32, 1, {launches}, dataset->launch_spin},
         {"launch_test", NPZ_UINT8, 1, {launches}, dataset->launch_test},
         {"inputs", NPZ_FLOAT32, 2, {rows, dataset_inputs(dataset)}, dataset->inputs},
-        {"changes", NPZ_FLOAT32, 2, {rows, PAIR_CHANGES}, dataset->changes},
+        {"changes", NPZ_FLOAT32, 2, {rows, pair_change_count(dataset->target)}, dataset->changes},
         {"launch", NPZ_INT32, 1, {rows}, dataset->launch},
         {"frame", NPZ_INT32, 1, {rows}, dataset->frame},
         {"bodies", NPZ_INT32, 2, {rows, 2}, dataset->bodies},
+        {"context", NPZ_FLOAT32, 2, {rows, PAIR_CONTEXT}, dataset->context},
     };
-    return npz_write(path, arrays, sizeof arrays / sizeof arrays[0], error);
+    const size_t count = sizeof arrays / sizeof arrays[0];
+    return npz_write(path, arrays, dataset->context != NULL ? count : count - 1, error);
 }
 
 static bool check_version(NpzFile *file, const char *path, Error *error) {
@@ -112,11 +114,11 @@ static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error 
     int view, target, labels;
     for (int v = 0; v < PAIR_VIEWS; v++) views[v] = pair_views[v].name;
     if (!read_word(file, path, "view", views, PAIR_VIEWS, &view, error) ||
-        !read_word(file, path, "target", dataset_target_names, DATASET_TARGETS, &target, error) ||
+        !read_word(file, path, "target", pair_target_names, PAIR_TARGETS, &target, error) ||
         !read_word(file, path, "labels", dataset_label_names, DATASET_LABELS, &labels, error))
         return false;
     dataset->view = (PairView)view;
-    dataset->target = (DatasetTarget)target;
+    dataset->target = (PairTarget)target;
     dataset->labels = (DatasetLabels)labels;
     return true;
 }
@@ -131,7 +133,8 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
-    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, PAIR_CHANGES}, bodies[] = {rows, 2};
+    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, pair_change_count(dataset->target)},
+                  bodies[] = {rows, 2}, context[] = {rows, PAIR_CONTEXT};
     return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
            (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
            (dataset->launch_rotation = npz_read(file, "launch_rotation", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
@@ -141,7 +144,9 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
            (dataset->changes = npz_read(file, "changes", NPZ_FLOAT32, 2, changes, error)) != NULL &&
            (dataset->launch = npz_read(file, "launch", NPZ_INT32, 1, &rows, error)) != NULL &&
            (dataset->frame = npz_read(file, "frame", NPZ_INT32, 1, &rows, error)) != NULL &&
-           (dataset->bodies = npz_read(file, "bodies", NPZ_INT32, 2, bodies, error)) != NULL;
+           (dataset->bodies = npz_read(file, "bodies", NPZ_INT32, 2, bodies, error)) != NULL &&
+           (!npz_has(file, "context") ||
+            (dataset->context = npz_read(file, "context", NPZ_FLOAT32, 2, context, error)) != NULL);
 }
 
 static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path, Error *error) {
@@ -162,13 +167,23 @@ static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, 
     return true;
 }
 
+static bool check_context(const Dataset *dataset, const char *path, Error *error) {
+    if (dataset->context == NULL) return true;
+    if (!check_finite(dataset->context, dataset->rows * PAIR_CONTEXT, "context", path, error)) return false;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const char *fault = pair_context_fault(dataset->context + r * PAIR_CONTEXT);
+        if (fault != NULL) return error_input(error, path, "context: row %lld has %s", (long long)r, fault);
+    }
+    return true;
+}
+
 static bool check_split(const Dataset *dataset, const char *path, Error *error) {
     for (int i = 0; i < dataset->launches; i++)
         if (dataset->launch_test[i] > 1)
             return error_input(error, path, "launch_test: number %d is %d; 0 and 1 are possible", i,
                                dataset->launch_test[i]);
     int64_t test_rows = 0;
-    for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset->launch_test[dataset->launch[r]];
+    for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset_is_test(dataset, r);
     if (test_rows > 0 && test_rows < dataset->rows) return true;
     return error_input(error, path, "%lld rows to train on and %lld to test on; at least one of each is needed",
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
@@ -181,11 +196,11 @@ static bool check_contents(const Dataset *dataset, const char *path, Error *erro
            check_finite(dataset->launch_rotation, launches, "launch_rotation", path, error) &&
            check_finite(dataset->launch_spin, launches, "launch_spin", path, error) &&
            check_finite(dataset->inputs, rows * dataset_inputs(dataset), "inputs", path, error) &&
-           check_finite(dataset->changes, rows * PAIR_CHANGES, "changes", path, error) &&
+           check_finite(dataset->changes, rows * pair_change_count(dataset->target), "changes", path, error) &&
            check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
            check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
            check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error) &&
-           check_split(dataset, path, error);
+           check_context(dataset, path, error) && check_split(dataset, path, error);
 }
 
 Dataset *dataset_read(const char *path, Error *error) {

@@ -21,11 +21,12 @@ static bool record_launch(void *context, int index, Error *error) {
 
 /* Copies the rows of launch i to row `at` and on. */
 static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t at) {
-    size_t inputs = (size_t)dataset_inputs(dataset);
+    size_t inputs = (size_t)dataset_inputs(dataset), changes = (size_t)pair_change_count(dataset->target);
     for (size_t k = 0; k < launch->count; k++, at++) {
         const PairRow *row = &launch->rows[k];
         memcpy(dataset->inputs + at * inputs, row->inputs, inputs * sizeof *row->inputs);
-        memcpy(dataset->changes + at * PAIR_CHANGES, row->changes, sizeof row->changes);
+        memcpy(dataset->changes + at * changes, row->changes, changes * sizeof *row->changes);
+        if (dataset->context != NULL) memcpy(dataset->context + at * PAIR_CONTEXT, row->context, sizeof row->context);
         dataset->launch[at] = i;
         dataset->frame[at] = row->frame;
         memcpy(dataset->bodies + at * 2, row->bodies, sizeof row->bodies);
@@ -35,19 +36,20 @@ static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t
 }
 
 /* Puts the launches' rows behind each other, in the order of the launches. */
-static bool gather(Dataset *dataset, LaunchRows *launches, Error *error) {
+static bool gather(Dataset *dataset, LaunchRows *launches, bool context, Error *error) {
     size_t rows = 0;
     for (int i = 0; i < dataset->launches; i++) {
         launches[i].start = rows;
         rows += launches[i].count;
     }
     dataset->inputs = malloc((rows + 1) * (size_t)dataset_inputs(dataset) * sizeof *dataset->inputs);
-    dataset->changes = malloc((rows + 1) * PAIR_CHANGES * sizeof *dataset->changes);
+    dataset->changes = malloc((rows + 1) * (size_t)pair_change_count(dataset->target) * sizeof *dataset->changes);
+    if (context) dataset->context = malloc((rows + 1) * PAIR_CONTEXT * sizeof *dataset->context);
     dataset->launch = malloc((rows + 1) * sizeof *dataset->launch);
     dataset->frame = malloc((rows + 1) * sizeof *dataset->frame);
     dataset->bodies = malloc((rows + 1) * 2 * sizeof *dataset->bodies);
     if (dataset->inputs == NULL || dataset->changes == NULL || dataset->launch == NULL || dataset->frame == NULL ||
-        dataset->bodies == NULL)
+        dataset->bodies == NULL || (context && dataset->context == NULL))
         return error_memory(error, "dataset");
     dataset->rows = (int64_t)rows;
     /* Most of the time is the system's, which makes memory where it is first touched. */
@@ -66,7 +68,7 @@ static Dataset *record_scenes(const DatasetOptions *options, Scene *const *scene
     Recording recording = {.scenes = scenes, .dataset = dataset, .launches = launches};
     const ParallelWork work = {record_launch, &recording};
     bool ok = launches != NULL && parallel_for(&work, dataset->launches, "recorded launches", progress, error) &&
-              gather(dataset, launches, error);
+              gather(dataset, launches, options->context, error);
     for (int i = 0; launches != NULL && i < dataset->launches; i++) free(launches[i].rows);
     free(launches);
     if (ok) return dataset;
@@ -86,8 +88,22 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
                     launches, DATASET_MAX_LAUNCHES);
         return NULL;
     }
-    if (options->target == DATASET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
+    if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
         error_input(error, "dataset", "the target impulse is what a sweep of the engine does; the reference has none");
+        return NULL;
+    }
+    if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS) {
+        error_input(error, "dataset", "the target impulse has no view neighbours: they change at every visit");
+        return NULL;
+    }
+    if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact) {
+        error_input(error, "dataset",
+                    "the target points needs the view contact or neighbours, where the warm start can be seen");
+        return NULL;
+    }
+    if (options->context && options->target != TARGET_PAIR) {
+        error_input(error, "dataset", "the context is for laws on the target pair; the target %s has none",
+                    pair_target_names[options->target]);
         return NULL;
     }
     Scene *scenes[DATASET_MAX_SCENES] = {NULL};

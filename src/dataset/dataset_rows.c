@@ -14,16 +14,14 @@ typedef struct LaunchRecorder {
     const Scene *scene;
     LaunchRows *launch;
     Reference reference;
-    BodyVelocity *velocities;
-    ContactImpulse *impulses;
-    size_t velocity_capacity, impulse_capacity;
+    PairMoment labels; /* of the reference */
+    PairMoment now;
 } LaunchRecorder;
 
-static bool reserve(LaunchRecorder *recorder, const ContactProblem *problem) {
-    return array_reserve((void **)&recorder->velocities, &recorder->velocity_capacity, (size_t)problem->body_count,
-                         sizeof *recorder->velocities) &&
-           array_reserve((void **)&recorder->impulses, &recorder->impulse_capacity, (size_t)problem->contact_count + 1,
-                         sizeof *recorder->impulses);
+static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    if (!pair_moment_reserve(moment, problem)) return error_memory(error, "dataset");
+    *solution = pair_moment_solution(moment);
+    return true;
 }
 
 /* The solution of the step's problem that the changes are taken from. */
@@ -33,28 +31,27 @@ static bool label(LaunchRecorder *recorder, const World *world, ContactSolution 
     if (recorder->dataset->labels == DATASET_BY_ENGINE) return true;
     Reference *reference = &recorder->reference;
     if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
-    if (!reserve(recorder, problem)) return error_memory(error, "dataset");
+    if (!reserve(&recorder->labels, problem, solution, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *v = &reference->velocities[i];
-        recorder->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
+        solution->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
     }
     for (int i = 0; i < problem->contact_count; i++)
-        recorder->impulses[i] =
+        solution->impulses[i] =
             (ContactImpulse){(float)reference->impulses[i].normal, (float)reference->impulses[i].tangent};
-    *solution = (ContactSolution){recorder->velocities, recorder->impulses};
     return true;
 }
 
-/* A new row of a pair with its inputs; velocities: NULL, or those it has now. NULL when memory is short. */
+/* A new row of a pair with its inputs at this moment (pair_inputs). NULL when memory is short. */
 static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProblem *problem, int first,
-                        const BodyVelocity *velocities) {
+                        const PairMoment *now) {
     LaunchRows *launch = recorder->launch;
     if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows)) return NULL;
     PairRow *row = &launch->rows[launch->count++];
     row->frame = frame;
     row->bodies[0] = problem->contacts[first].a;
     row->bodies[1] = problem->contacts[first].b;
-    pair_inputs(problem, velocities, row->bodies[0], row->bodies[1], recorder->dataset->view, row->inputs);
+    pair_inputs(problem, now, first, recorder->dataset->view, row->inputs);
     return row;
 }
 
@@ -65,26 +62,25 @@ static void difference(float *changes, const BodyVelocity *to, const BodyVelocit
     changes[2] = to->angular - from->angular;
 }
 
-static void net_change(float *changes, const ContactProblem *problem, const ContactSolution *solution, int body) {
-    const ProblemBody *before = &problem->bodies[body];
-    const BodyVelocity free = {before->velocity, before->angular_velocity};
-    difference(changes, &solution->velocities[body], &free);
+/* As the engine begins a step, and as its contacts first see it: after the warm start. */
+static SequentialOptions sweeps_of(const Scene *scene) {
+    return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true, .relaxation = 1};
 }
 
 static bool record_step(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
+    const Dataset *dataset = recorder->dataset;
     const ContactProblem *problem = world_problem(world);
-    ContactSolution solution;
-    if (!label(recorder, world, &solution, error)) return false;
-    for (int first = 0, count; first < problem->contact_count; first += count) {
-        count = pair_contact_count(problem, first);
-        PairRow *row = add_row(recorder, frame, problem, first, NULL);
+    const SequentialOptions options = sweeps_of(recorder->scene);
+    ContactSolution solution, begun;
+    if (!label(recorder, world, &solution, error) || !reserve(&recorder->now, problem, &begun, error)) return false;
+    const bool by_contact = pair_views[dataset->view].by_contact;
+    if (by_contact) sequential_impulses_begin(problem, &options, &begun);
+    if (dataset->view == PAIR_NEIGHBOURS) pair_moment_look(&recorder->now, problem);
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
+        PairRow *row = add_row(recorder, frame, problem, first, by_contact ? &recorder->now : NULL);
         if (row == NULL) return error_memory(error, "dataset");
-        if (recorder->dataset->target == DATASET_PAIR) {
-            pair_changes(problem, &solution, first, count, row->changes);
-        } else {
-            net_change(row->changes, problem, &solution, row->bodies[0]);
-            net_change(row->changes + 3, problem, &solution, row->bodies[1]);
-        }
+        pair_step_changes(problem, &solution, first, dataset->view, dataset->target, row->changes);
+        pair_context(problem, first, row->context);
     }
     return true;
 }
@@ -92,29 +88,30 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
 /* The engine's sweeps once more, in plain text, pair by pair. */
 static bool record_visits(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
-    const SequentialOptions options = {
-        .accumulate = recorder->scene->accumulate_impulses, .warm = true, .relaxation = 1};
-    if (!reserve(recorder, problem)) return error_memory(error, "dataset");
-    ContactSolution solution = {recorder->velocities, recorder->impulses};
-    sequential_impulses_begin(problem, &options, &solution);
+    const SequentialOptions options = sweeps_of(recorder->scene);
+    ContactSolution now;
+    if (!reserve(&recorder->now, problem, &now, error)) return false;
+    sequential_impulses_begin(problem, &options, &now);
     for (int sweep = 0; sweep < recorder->scene->iterations; sweep++)
         for (int first = 0, count; first < problem->contact_count; first += count) {
             count = pair_contact_count(problem, first);
-            PairRow *row = add_row(recorder, frame, problem, first, solution.velocities);
+            PairRow *row = add_row(recorder, frame, problem, first, &recorder->now);
             if (row == NULL) return error_memory(error, "dataset");
-            const BodyVelocity *a = &solution.velocities[row->bodies[0]], *b = &solution.velocities[row->bodies[1]];
+            const BodyVelocity *a = &now.velocities[row->bodies[0]], *b = &now.velocities[row->bodies[1]];
             BodyVelocity before_a = *a, before_b = *b;
-            sequential_impulses_visit(problem, &options, first, count, &solution);
+            sequential_impulses_visit(problem, &options, first, count, &now);
             difference(row->changes, a, &before_a);
             difference(row->changes + 3, b, &before_b);
+            if (pair_views[recorder->dataset->view].by_contact)
+                pair_to_contact_frame(&problem->contacts[first], row->changes);
         }
     return true;
 }
 
 static bool observe(void *context, int frame, const World *world, Error *error) {
     LaunchRecorder *recorder = context;
-    return recorder->dataset->target == DATASET_IMPULSE ? record_visits(recorder, frame, world, error)
-                                                        : record_step(recorder, frame, world, error);
+    return recorder->dataset->target == TARGET_IMPULSE ? record_visits(recorder, frame, world, error)
+                                                       : record_step(recorder, frame, world, error);
 }
 
 bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error) {
@@ -123,7 +120,7 @@ bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRo
     StepObserver observer = {observe, &recorder};
     bool ok = method_parse(&method, "engine", error) && simulate_observed(launched, &method, &observer, error);
     reference_free(&recorder.reference);
-    free(recorder.velocities);
-    free(recorder.impulses);
+    pair_moment_free(&recorder.labels);
+    pair_moment_free(&recorder.now);
     return ok;
 }

@@ -5,7 +5,7 @@
 
 /* One touching pair in one step, or in one sweep of it. */
 typedef struct PairRow {
-    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES];
+    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES], context[PAIR_CONTEXT];
     int32_t frame, bodies[2];
 } PairRow;
 

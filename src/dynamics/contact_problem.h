@@ -50,4 +50,7 @@ typedef struct ContactImpulse {
 typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */
     ContactImpulse *impulses; /* [contact_count]; zeros from a method that has none */
+    /* N s: momentum that the method made from nothing: sum over pairs of moving bodies of |ma dva + mb dvb|; 0 where it
+       pushes by impulses */
+    float momentum_error;
 } ContactSolution;

@@ -181,7 +181,7 @@ static void commit(World *world) {
     world->next = last;
 }
 
-bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution *solution, Error *error) {
+bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error) {
     if (!collide(world)) return error_memory(error, "world");
     if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
     apply_gravity(world, dt);
@@ -192,9 +192,9 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                                 .dt = dt,
                                 .bodies = world->problem_bodies,
                                 .contacts = world->next.contacts};
-    *solution = (ContactSolution){world->velocities, world->next.impulses};
     world->problem = *problem;
-    world->solution = *solution;
+    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0};
+    *solution = &world->solution;
     return true;
 }
 
@@ -218,7 +218,7 @@ bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
 
 bool world_step(World *world, const ContactSolver *solver, float dt, Error *error) {
     ContactProblem problem;
-    ContactSolution solution;
+    ContactSolution *solution;
     return world_begin_step(world, dt, &problem, &solution, error) &&
-           solver->kind->solve(solver->state, &problem, &solution, error) && world_end_step(world, error);
+           solver->kind->solve(solver->state, &problem, solution, error) && world_end_step(world, error);
 }

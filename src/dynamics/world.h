@@ -33,9 +33,9 @@ bool world_copy(World *to, const World *from, Error *error);
 /* A step, in parts, for who solves contacts in another way than by one call of a solver. Until the step ends, the
    world is as it was before: a step begun may be forgotten.
 
-   Begins one of dt seconds (dt > 0): collision detection, gravity, the contact problem. It and the arrays of the
-   solution, which are to be filled in, are the world's and last until the next step. */
-bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution *solution, Error *error);
+   Begins one of dt seconds (dt > 0): collision detection, gravity, the contact problem. Its arrays and the solution,
+   which is to be filled in, are the world's and last until the next step. */
+bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error);
 
 /* Ends it by the solution filled in: the new velocities carry the bodies. On failure world is unchanged and error
    says which body left the finite numbers. */

@@ -13,7 +13,7 @@ float sweep_x(int i) { return range_value(&sweep, i); }
 
 /* The numbers that twinbox dataset records. */
 static void fill_row(SweepRow *row, const ContactProblem *problem, const ContactSolution *solution, int first) {
-    pair_inputs(problem, NULL, row->bodies[0], row->bodies[1], PAIR_RELATIVE, row->inputs);
+    pair_inputs(problem, NULL, first, PAIR_RELATIVE, row->inputs);
     pair_changes(problem, solution, first, pair_contact_count(problem, first), row->changes);
 }
 

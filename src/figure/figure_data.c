@@ -94,21 +94,24 @@ static void put_row(Sketch *sketch, const SweepRow *row) {
 }
 
 static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int rows) {
+    char changes[2][2 * sizeof(ShownNumber) + 2];
+    for (int i = 0; i < 2; i++)
+        snprintf(changes[i], sizeof changes[i], "%s, %s", show_number((double)row->changes[3 * i], 2).text,
+                 show_number((double)row->changes[3 * i + 1], 2).text);
     snprintf(
         caption, CAPTION_SIZE,
-        "How training data are made: the bomb is launched at stack.yaml from %d places, x = %s to %s m (every %dth is "
+        "How training data are made: in stack.yaml the bomb is launched from %d places, x = %s to %s m (every %dth is "
         "shown), and each touching pair leaves a row in each step, %d rows for the launches shown. The row at the "
         "right, "
-        "of bodies %d and %d in step %d of the launch from x = %s m, has ten inputs and the change of both velocities "
-        "that the solver's impulses made: %s m/s upward for the box and %s m/s for the bomb.",
+        "of bodies %d and %d in step %d of the launch from x = %s m, has ten inputs, and what the pair's impulses "
+        "changed: the velocity of the %s by (%s) m/s and that of the %s by (%s) m/s.",
         SWEEP_LAUNCHES, show_number((double)sweep_x(0), 0).text,
         show_number((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row->bodies[0],
-        row->bodies[1], row->step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 2).text,
-        show_number((double)row->changes[is_bomb(row, 0) ? 4 : 1], 3).text,
-        show_number((double)row->changes[is_bomb(row, 0) ? 1 : 4], 3).text);
+        row->bodies[1], row->step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
+        is_bomb(row, 0) ? "bomb" : "box", changes[0], is_bomb(row, 1) ? "bomb" : "box", changes[1]);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
     const View view = {{1, 1}, {split - 6, height - 6}, {0, 7.5}, 5.1};
     SweepRow row;
     int rows;

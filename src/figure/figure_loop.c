@@ -125,7 +125,7 @@ static void put_stages(Sketch *sketch, const StepCounts *c) {
     put_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
     EngineRun run;
     StepCounts counts;
     if (!engine_run_begin(&run, scenes[SCENE_STACK], error)) return false;

@@ -83,7 +83,7 @@ static void write_caption(char caption[CAPTION_SIZE], const Collision *c) {
         -1000 * (double)manifold->points[1].separation);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
     Collision collision;
     if (!find_collision(&collision, scenes[SCENE_PYRAMID], error)) return false;
     put_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);

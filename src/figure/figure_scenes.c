@@ -18,7 +18,7 @@ static const double width = 174, height = 87, scale = 3.302, gap = 3.4, low = 1;
 /* The renderer then has 39 pixels a metre, too. */
 enum { RENDER_WIDTH = 1300, RENDER_HEIGHT = 1075 };
 
-static const char *const titles[FIGURE_SCENES] = {"1  Single", "2  Stack", "3  Pyramid"};
+static const char *const titles[ENGINE_SCENES] = {"1  Single", "2  Stack", "3  Pyramid"};
 
 /* The part of a rendered frame that shows the figure's window. */
 static Image *cut_window(const Image *frame, const Picture *picture, Error *error) {
@@ -134,9 +134,9 @@ static bool put_scene(Sketch *sketch, int i, const Scene *scene, int *step, Erro
     return window != NULL;
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
-    int steps[FIGURE_SCENES];
-    for (int i = 0; i < FIGURE_SCENES; i++)
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+    int steps[ENGINE_SCENES];
+    for (int i = 0; i < ENGINE_SCENES; i++)
         if (!put_scene(sketch, i, scenes[i], &steps[i], error)) return false;
     snprintf(caption, CAPTION_SIZE,
              "The three scenes at one scale, two thirds of the way to the bomb's first touch: %d box (single.yaml, "

@@ -119,7 +119,8 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     size_t size;
     char *script = whole_script(drawing, folder, &size);
     if (script == NULL) return error_memory(error, stem);
-    bool done = put_font(folder, error) && run(folder, script, size, error) && collect(folder, format_count(drawing), stem, error);
+    bool done = put_font(folder, error) && run(folder, script, size, error) &&
+                collect(folder, format_count(drawing), stem, error);
     free(script);
     return done;
 }

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { NETWORK_VERSION = 2, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
+enum { NETWORK_VERSION = 3, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
 
 typedef enum Activation { ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU } Activation;
 
@@ -30,7 +30,8 @@ typedef struct Network {
     Normalisation input, output;
     float *output_mean; /* [outputs] of the data it was trained on, in their units: what a constant would say */
     char inputs[NETWORK_TEXT_SIZE];  /* what goes in: "dx dy v1x v1y ..." */
-    char outputs[NETWORK_TEXT_SIZE]; /* what comes out */
+    char outputs[NETWORK_TEXT_SIZE]; /* what comes out: "dvx dvy" */
+    char target[NETWORK_TEXT_SIZE];  /* and of what: "pair" */
     char command[NETWORK_TEXT_SIZE]; /* the command that made it */
 } Network;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Network files: .npz with version, kind ("network"), widths[layers + 1], activations (words), weights_L and
    biases_L for every layer, input_offset, input_scale, output_offset, output_scale, output_mean, inputs, outputs,
-   command. */
+   target, command. */
 #include "network/network.h"
 
 #include "common/npz.h"
@@ -13,7 +13,7 @@
 
 #define KIND "network"
 
-enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 12 + 2 * NETWORK_MAX_LAYERS };
+enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 13 + 2 * NETWORK_MAX_LAYERS };
 
 static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
                                                [ACTIVATION_SIGMOID] = "sigmoid",
@@ -73,11 +73,12 @@ bool network_write(const Network *network, const char *path, Error *error) {
         {.name = "kind", .type = NPZ_TEXT, .data = KIND},
         {.name = "inputs", .type = NPZ_TEXT, .data = network->inputs},
         {.name = "outputs", .type = NPZ_TEXT, .data = network->outputs},
+        {.name = "target", .type = NPZ_TEXT, .data = network->target},
         {.name = "command", .type = NPZ_TEXT, .data = network->command},
         {.name = "widths", .type = NPZ_INT32, .rank = 1, .shape = {network->layers + 1}, .data = widths},
         {.name = "activations", .type = NPZ_TEXT, .data = activations},
     };
-    size_t count = 7;
+    size_t count = 8;
     Member members[MAX_MEMBERS];
     int member_count = list_members(network, members);
     for (int m = 0; m < member_count; m++)
@@ -165,6 +166,7 @@ static bool read_contents(NpzFile *file, const char *path, Network *network, Err
         if (!read_member(file, path, &members[m], error)) return false;
     return npz_read_text(file, "inputs", network->inputs, sizeof network->inputs, error) &&
            npz_read_text(file, "outputs", network->outputs, sizeof network->outputs, error) &&
+           npz_read_text(file, "target", network->target, sizeof network->target, error) &&
            npz_read_text(file, "command", network->command, sizeof network->command, error);
 }
 

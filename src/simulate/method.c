@@ -57,6 +57,11 @@ bool method_parse(Method *method, const char *text, Error *error) {
     return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "", known, name, error);
 }
 
+bool method_with_network(Method *method, const char *name, const char *path, Error *error) {
+    return method_parse(method, name, error) && (settings_default(&method->settings, "network", path) ||
+                                                 error_input(error, path, "the name is too long for a setting"));
+}
+
 static bool has_setting(const ContactSolverKind *kind, const char *key) {
     for (const SettingSpec *spec = kind->settings; spec->key != NULL; spec++)
         if (strcmp(spec->key, key) == 0) return true;
@@ -125,10 +130,10 @@ void stepper_destroy(Stepper *stepper) {
 /* The step of Box2D-Lite around a contact solver. */
 static bool standard_step(const ContactSolver *solver, World *world, const Step *step, Error *error) {
     ContactProblem problem;
-    ContactSolution solution;
+    ContactSolution *solution;
     if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(step);
-    bool solved = solver->kind->solve(solver->state, &problem, &solution, error);
+    bool solved = solver->kind->solve(solver->state, &problem, solution, error);
     step_solving_ends(step);
     return solved && world_end_step(world, error);
 }

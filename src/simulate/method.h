@@ -17,6 +17,9 @@ typedef struct Method {
 /* Parses `name` or `name:key=value,...`. ERROR_INPUT lists the names or keys there are. */
 bool method_parse(Method *method, const char *text, Error *error);
 
+/* The method of that name with a network, whatever is in the path. ERROR_INPUT: no such method, or the path is too long. */
+bool method_with_network(Method *method, const char *name, const char *path, Error *error);
+
 /* What there is to choose from. */
 typedef struct MethodInfo {
     const char *name, *summary;

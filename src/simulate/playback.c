@@ -146,14 +146,14 @@ static const BodyVelocity *recorded(Playback *playback, const Step *which, int *
 
 static bool step(void *state, World *world, const Step *which, Error *error) {
     ContactProblem problem;
-    ContactSolution solution;
+    ContactSolution *solution;
     if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(which);
     int bodies;
     const BodyVelocity *velocities = recorded(state, which, &bodies);
     for (int i = 0; i < problem.body_count; i++)
-        solution.velocities[i] = velocities != NULL && i < bodies ? velocities[i] : (BodyVelocity){{0, 0}, 0};
-    for (int i = 0; i < problem.contact_count; i++) solution.impulses[i] = (ContactImpulse){0, 0};
+        solution->velocities[i] = velocities != NULL && i < bodies ? velocities[i] : (BodyVelocity){{0, 0}, 0};
+    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
     step_solving_ends(which);
     return world_end_step(world, error);
 }

@@ -160,12 +160,12 @@ static bool solve(Substepping *stepping, const Scene *scene, const ContactProble
 static bool step(void *state, World *world, const Step *which, Error *error) {
     Substepping *stepping = state;
     ContactProblem problem;
-    ContactSolution solution;
+    ContactSolution *solution;
     if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(which);
     bool solved = begin(stepping, world, &problem, which->scene->gravity) && solve(stepping, which->scene, &problem);
     /* Where it is not finite the world refuses the step. */
-    if (solved) sweeps_end(&stepping->sweeps, &solution);
+    if (solved) sweeps_end(&stepping->sweeps, solution);
     step_solving_ends(which);
     if (!solved) return error_memory(error, "substepping");
     return world_end_step_at(world, stepping->poses, error);

@@ -14,6 +14,14 @@ static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const Contact
     b->angular += body_b->inv_inertia * vec2_cross(contact->arm_b, impulse);
 }
 
+/* The same for an impulse along normal and tangent. */
+static inline void contact_push(BodyVelocity *velocities, const ContactPoint *contact, const ProblemBody *bodies,
+                                ContactImpulse push) {
+    Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+    Vec2 impulse = vec2_add(vec2_scale(push.normal, contact->normal), vec2_scale(push.tangent, tangent));
+    contact_apply(&velocities[contact->a], &velocities[contact->b], contact, bodies, impulse);
+}
+
 /* Velocity of b's point as seen from a's. */
 static inline Vec2 contact_relative_velocity(const BodyVelocity *a, const BodyVelocity *b,
                                              const ContactPoint *contact) {

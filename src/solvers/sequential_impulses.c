@@ -54,10 +54,7 @@ static void warm_start(const ContactProblem *problem, bool warm, ContactSolution
         const ContactPoint *contact = &problem->contacts[i];
         ContactImpulse start = warm ? (ContactImpulse){contact->warm_normal, contact->warm_tangent} : cold;
         solution->impulses[i] = start;
-        Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-        Vec2 impulse = vec2_add(vec2_scale(start.normal, contact->normal), vec2_scale(start.tangent, tangent));
-        contact_apply(&solution->velocities[contact->a], &solution->velocities[contact->b], contact, problem->bodies,
-                      impulse);
+        contact_push(solution->velocities, contact, problem->bodies, start);
     }
 }
 

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/part_file.h"
 
-#include "common/file.h"
-#include "common/hash.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { PROGRAM_MAX_SIZE = 1 << 28 };
 
 bool part_file_open(PartFile *part, const char *folder, uint64_t key, Error *error) {
     *part = (PartFile){0};
@@ -39,12 +34,3 @@ bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Erro
 }
 
 void part_file_remove(const PartFile *part) { unlink(part->path); }
-
-bool program_hash(uint64_t *hash, Error *error) {
-    size_t size;
-    char *program = file_read("/proc/self/exe", PROGRAM_MAX_SIZE, &size, error);
-    if (program == NULL) return false;
-    *hash = hash_xxh3(program, size);
-    free(program);
-    return true;
-}

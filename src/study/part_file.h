@@ -25,6 +25,3 @@ bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Erro
 
 /* The study is done. */
 void part_file_remove(const PartFile *part);
-
-/* Of this program's own file: results of another build are not gone on with. False where it cannot be read. */
-bool program_hash(uint64_t *hash, Error *error);

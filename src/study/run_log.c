@@ -2,6 +2,7 @@
 #include "study/run_log.h"
 
 #include "common/array.h"
+#include "study/world_measures.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,26 +16,6 @@ void run_log_free(RunLog *log) {
     free(log->penetration);
     free(log->phase);
     *log = (RunLog){0};
-}
-
-static double energy_of(const World *world, Vec2 gravity) {
-    const Body *bodies = world_bodies(world);
-    double sum = 0;
-    for (int i = 0; i < world_body_count(world); i++) {
-        const Body *body = &bodies[i];
-        if (body->inv_mass == 0) continue;
-        double x = body->velocity.x, y = body->velocity.y, spin = body->angular_velocity;
-        double potential = (double)gravity.x * body->position.x + (double)gravity.y * body->position.y;
-        sum += (0.5 * (x * x + y * y) - potential) / body->inv_mass + 0.5 * spin * spin / body->inv_inertia;
-    }
-    return sum;
-}
-
-static double deepest(const ContactProblem *problem) {
-    double depth = 0;
-    for (int i = 0; i < problem->contact_count; i++)
-        if (-problem->contacts[i].separation > depth) depth = -problem->contacts[i].separation;
-    return depth;
 }
 
 bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
@@ -58,8 +39,8 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
     if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
     for (int i = 0; i < log->bodies; i++)
         log->position[(size_t)frame * (size_t)log->bodies + (size_t)i] = world_bodies(world)[i].position;
-    log->energy[frame] = energy_of(world, scene->gravity);
-    log->penetration[frame] = deepest(world_problem(world));
+    log->energy[frame] = world_energy(world, scene->gravity);
+    log->penetration[frame] = world_penetration(world);
     log->phase[frame] = phase;
 }
 

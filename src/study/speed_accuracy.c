@@ -2,10 +2,10 @@
 #include "study/speed_accuracy.h"
 
 #include "common/file.h"
-#include "common/hash.h"
 #include "common/parallel.h"
 #include "study/part_file.h"
 #include "study/scene_study.h"
+#include "study/study_key.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -130,36 +130,21 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     return ok;
 }
 
-static void fold(uint64_t *key, const void *data, size_t size) {
-    uint64_t words[2] = {*key, hash_xxh3(data, size)};
-    *key = hash_xxh3(words, sizeof words);
-}
-
-static bool fold_file(uint64_t *key, const char *path, Error *error) {
-    enum { MAX_SIZE = 1 << 26 };
-    size_t size;
-    char *data = file_read(path, MAX_SIZE, &size, error);
-    if (data == NULL) return false;
-    fold(key, data, size);
-    free(data);
-    return true;
-}
-
 /* A network that is not there matters only to the method that asks for it. */
 static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
-    for (int i = 0; i < scene->network_count; i++) fold_file(key, scene->networks[i].path, &(Error){0});
+    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
     scene_destroy(scene);
-    return fold_file(key, path, error);
+    return study_key_add_file(key, path, error);
 }
 
 /* Of everything that decides the result: the program, every option and every file. */
 static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
-    if (!program_hash(key, error)) return false;
-    fold(key, &options->quick, sizeof options->quick);
-    if (options->methods != NULL) fold(key, options->methods, strlen(options->methods));
-    if (options->launches != NULL && !fold_file(key, options->launches, error)) return false;
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, &options->quick, sizeof options->quick);
+    if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
+    if (options->launches != NULL && !study_key_add_file(key, options->launches, error)) return false;
     for (int i = 0; i < options->scene_count; i++)
         if (!fold_scene(key, options->scenes[i], error)) return false;
     return true;

@@ -38,7 +38,7 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     Moments moments = {block, block + count, block + 2 * count};
     bool ok = true;
     while (ok && !trainer->finished) {
-        double loss = loss_gradient(trainer->loss, trainer->train, parameters, moments.gradient);
+        double loss = loss_gradient(trainer->loss, trainer->train, trainer->laws, parameters, moments.gradient);
         ok = trainer_visit(trainer, parameters, loss, error);
         if (ok && !trainer->finished) step(trainer, &moments, parameters);
     }

@@ -13,12 +13,12 @@ static const double line_search_accuracy = 0.1; /* GSL's advice for this method 
 
 static double value(const gsl_vector *x, void *context) {
     Trainer *trainer = context;
-    return loss_value(trainer->loss, trainer->train, x->data);
+    return loss_value(trainer->loss, trainer->train, trainer->laws, x->data);
 }
 
 static void value_and_gradient(const gsl_vector *x, void *context, double *loss, gsl_vector *gradient) {
     Trainer *trainer = context;
-    *loss = loss_gradient(trainer->loss, trainer->train, x->data, gradient->data);
+    *loss = loss_gradient(trainer->loss, trainer->train, trainer->laws, x->data, gradient->data);
 }
 
 static void gradient_only(const gsl_vector *x, void *context, gsl_vector *gradient) {

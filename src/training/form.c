@@ -14,6 +14,7 @@ static const Word hidden_words[] = {
     {"sigmoid", ACTIVATION_SIGMOID}, {"tanh", ACTIVATION_TANH}, {"relu", ACTIVATION_RELU}, {NULL, 0}};
 static const Word output_words[] = {{"sigmoid", ACTIVATION_SIGMOID}, {"linear", ACTIVATION_LINEAR}, {NULL, 0}};
 static const Word scale_words[] = {{"minmax", SCALE_MINMAX}, {"standard", SCALE_STANDARD}, {NULL, 0}};
+static const Word loss_words[] = {{"mse", LOSS_MSE}, {"smooth-l1", LOSS_SMOOTH_L1}, {NULL, 0}};
 
 /* Leaves value alone where there is no name. */
 static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
@@ -27,9 +28,16 @@ static bool choose(const char *option, const char *name, const Word *words, int 
     return error_input(error, option, "there is no \"%s\"; known are %s", name, known);
 }
 
+bool form_choose_loss(LossKind *kind, const TrainingOptions *options, Error *error) {
+    int loss = LOSS_MSE;
+    if (!choose("loss", options->loss, loss_words, &loss, error)) return false;
+    *kind = (LossKind)loss;
+    return true;
+}
+
 bool form_choose(Form *form, const TrainingOptions *options, Error *error) {
-    bool six = options->widths[options->layers] == PAIR_CHANGES;
-    int hidden = ACTIVATION_SIGMOID, output = six ? ACTIVATION_LINEAR : ACTIVATION_SIGMOID;
+    bool two = options->widths[options->layers] == 2;
+    int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
     if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
         !choose("output activation", options->output_activation, output_words, &output, error))
         return false;

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the options say in words about a network's form: activations, and the scaling of its outputs. */
+/* What the options say in words about a network's form: activations, and the scaling of its outputs; and about its loss. */
 #pragma once
-#include "training/samples.h"
+#include "training/loss.h"
 #include "training/training.h"
 
 typedef struct Form {
     Activation hidden, output;
     OutputScale scale;
 } Form;
+
+/* ERROR_INPUT: an unknown word. */
+bool form_choose_loss(LossKind *kind, const TrainingOptions *options, Error *error);
 
 /* Words left out take the defaults of training.h. ERROR_INPUT: an unknown word, or outputs scaled to where their
    activation does not reach. */

@@ -21,7 +21,7 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     if (gradient == NULL) return error_memory(error, "training");
     bool ok = true;
     while (ok && !trainer->finished) {
-        double loss = loss_gradient(trainer->loss, trainer->train, parameters, gradient);
+        double loss = loss_gradient(trainer->loss, trainer->train, trainer->laws, parameters, gradient);
         ok = trainer_visit(trainer, parameters, loss, error);
         for (int p = 0; p < trainer->parameters; p++) parameters[p] -= rate * gradient[p];
     }

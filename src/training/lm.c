@@ -58,6 +58,8 @@ static bool run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussN
 static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     const Samples *samples = trainer->train;
     long long numbers = (long long)samples->rows * samples->outputs;
+    if (trainer->loss_kind != LOSS_MSE || trainer->laws != NULL)
+        return error_input(error, "lm", "is for least squares: loss mse and no laws; adam, bfgs and gd take others");
     if (trainer->parameters > MAX_PARAMETERS)
         return error_input(error, "lm", "%d weights; at most %d are possible, adam, bfgs and gd take more",
                            trainer->parameters, MAX_PARAMETERS);

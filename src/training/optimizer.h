@@ -10,14 +10,16 @@ typedef struct Trainer {
     const Progress *progress;
     const Network *network; /* shape and normalisation */
     const Samples *train, *test;
+    LossKind loss_kind;
     Loss *loss;
+    const Laws *laws;                     /* NULL: none */
     int parameters;                       /* how many */
-    double constant_test, constant_train; /* error of predicting the mean */
+    double constant_test, constant_train; /* loss of predicting the mean */
     int iteration;                        /* of the last visit; -1 before the first */
     int scored;                           /* the last iteration whose score was reported */
-    double loss_now, best_loss;
-    double *now, *best; /* [parameters] of the last visit, and of the lowest train loss */
-    bool finished;      /* all iterations done, or asked to stop */
+    double loss_now, best_loss;           /* with what the laws add */
+    double *now, *best;                   /* [parameters] of the last visit, and of the lowest train loss */
+    bool finished;                        /* all iterations done, or asked to stop */
 } Trainer;
 
 typedef struct Optimizer {

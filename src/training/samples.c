@@ -5,15 +5,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-static bool is_test(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
-
 static float input_at(const Dataset *dataset, int64_t row, int column) {
     return dataset->inputs[row * dataset_inputs(dataset) + column];
 }
 
 static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {
-    const float *changes = dataset->changes + row * PAIR_CHANGES;
-    return outputs == PAIR_CHANGES ? changes[column] : changes[column + 3] - changes[column];
+    const float *changes = dataset->changes + row * pair_change_count(dataset->target);
+    return outputs == pair_change_count(dataset->target) ? changes[column] : changes[column + 3] - changes[column];
 }
 
 /* What a normalisation is made from. */
@@ -29,7 +27,7 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
         double sum = 0;
         int64_t count = 0;
         for (int64_t row = 0; row < dataset->rows; row++) {
-            if (is_test(dataset, row)) continue;
+            if (dataset_is_test(dataset, row)) continue;
             double x = outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
             spread.minimum = fmin(spread.minimum, x);
             spread.maximum = fmax(spread.maximum, x);
@@ -87,7 +85,7 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
     if (samples == NULL) return error_memory(error, "training"), NULL;
     samples->inputs = network->widths[0];
     samples->outputs = network->widths[network->layers];
-    for (int64_t row = 0; row < dataset->rows; row++) samples->rows += is_test(dataset, row) == test;
+    for (int64_t row = 0; row < dataset->rows; row++) samples->rows += dataset_is_test(dataset, row) == test;
     samples->blocks = (samples->rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
     size_t padded = (size_t)samples->blocks * BLOCK_ROWS;
     samples->x = calloc(padded * (size_t)samples->inputs, sizeof *samples->x);
@@ -96,7 +94,7 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
         return error_memory(error, "training"), samples_destroy(samples), NULL;
     int64_t to = 0;
     for (int64_t row = 0; row < dataset->rows; row++)
-        if (is_test(dataset, row) == test) put_row(samples, to++, dataset, row, network);
+        if (dataset_is_test(dataset, row) == test) put_row(samples, to++, dataset, row, network);
     return samples;
 }
 
@@ -118,15 +116,4 @@ void samples_mean(const Samples *samples, double *mean) {
             for (int r = 0; r < samples_in_block(samples, b); r++) sum += target_column(samples, b, k)[r];
         mean[k] = sum / (double)samples->rows;
     }
-}
-
-double samples_constant_error(const Samples *samples, const double *constant) {
-    double sum = 0;
-    for (int64_t b = 0; b < samples->blocks; b++)
-        for (int k = 0; k < samples->outputs; k++)
-            for (int r = 0; r < samples_in_block(samples, b); r++) {
-                double e = target_column(samples, b, k)[r] - constant[k];
-                sum += e * e;
-            }
-    return sum / ((double)samples->rows * samples->outputs);
 }

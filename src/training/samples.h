@@ -30,8 +30,5 @@ void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Networ
 Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error);
 void samples_destroy(Samples *samples);
 
-/* Mean over rows and outputs of the squared distance from constant[outputs]. */
-double samples_constant_error(const Samples *samples, const double *constant);
-
 /* mean[outputs] of y */
 void samples_mean(const Samples *samples, double *mean);

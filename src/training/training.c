@@ -2,6 +2,7 @@
 /* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
 #include "training/training.h"
 
+#include "training/checks.h"
 #include "training/form.h"
 #include "training/optimizer.h"
 
@@ -24,26 +25,6 @@ static const Optimizer *find_optimizer(const char *name, Error *error) {
     }
     error_input(error, "optimizer", "there is no \"%s\"; known are %s", name, known);
     return NULL;
-}
-
-static bool check_options(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    if (options->layers < 1 || options->layers > NETWORK_MAX_LAYERS)
-        return error_input(error, "layers", "%d layers of weights; 1 to %d are possible", options->layers,
-                           NETWORK_MAX_LAYERS);
-    int first = options->widths[0], last = options->widths[options->layers];
-    if (first != dataset_inputs(dataset))
-        return error_input(error, "layers", "the first width is %d; a pair has %d inputs", first,
-                           dataset_inputs(dataset));
-    if (last != 2 && last != PAIR_CHANGES)
-        return error_input(error, "layers", "the last width is %d; 2 (relative velocity) or %d (both bodies) are known",
-                           last, PAIR_CHANGES);
-    if (options->iterations < 0)
-        return error_input(error, "iterations", "%d; 0 or more are possible", options->iterations);
-    int64_t test_rows = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset->launch_test[dataset->launch[row]] != 0;
-    if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, "dataset", "%lld rows to train on and %lld to test on; at least one of each is needed",
-                       (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 
 /* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
@@ -71,27 +52,15 @@ static Network *new_network(const Dataset *dataset, const TrainingOptions *optio
     if (!form_choose(&form, options, error)) return NULL;
     Network *network = network_create(options->layers, options->widths, error);
     if (network == NULL) return NULL;
-    bool six = options->widths[options->layers] == PAIR_CHANGES;
     for (int l = 0; l < network->layers; l++) network->activations[l] = form.hidden;
     network->activations[network->layers - 1] = form.output;
     snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
-    snprintf(network->outputs, sizeof network->outputs, "%s", six ? pair_change_names : "dvx dvy");
+    snprintf(network->outputs, sizeof network->outputs, "%s",
+             pair_output_names(dataset->view, dataset->target, options->widths[options->layers]));
+    snprintf(network->target, sizeof network->target, "%s", pair_target_names[dataset->target]);
     samples_fit_normalisation(dataset, form.scale, network);
     if (set_random_weights(network, options->seed, error)) return network;
     network_destroy(network);
-    return NULL;
-}
-
-static Network *continued_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    const Network *start = options->start;
-    if (strcmp(start->inputs, pair_views[dataset->view].inputs) != 0) {
-        error_input(error, "dataset", "the network to go on from was trained on other inputs (%.80s)", start->inputs);
-        return NULL;
-    }
-    bool fits = start->layers == options->layers;
-    for (int l = 0; fits && l <= options->layers; l++) fits = start->widths[l] == options->widths[l];
-    if (fits) return form_fits(start, options, error) ? network_copy(start, error) : NULL;
-    error_input(error, "layers", "the network to go on from has other widths");
     return NULL;
 }
 
@@ -108,9 +77,12 @@ static bool is_scored(int iteration) {
 static void report_score(Trainer *trainer) {
     if (trainer->scored == trainer->iteration || trainer->options->on_score == NULL) return;
     trainer->scored = trainer->iteration;
+    const double *now = trainer->now;
+    const double train =
+        trainer->laws == NULL ? trainer->loss_now : loss_value(trainer->loss, trainer->train, NULL, now);
     TrainingScore score = {.iteration = trainer->iteration,
-                           .test = loss_value(trainer->loss, trainer->test, trainer->now),
-                           .train = trainer->loss_now,
+                           .test = loss_value(trainer->loss, trainer->test, NULL, now),
+                           .train = train,
                            .constant_test = trainer->constant_test,
                            .constant_train = trainer->constant_train};
     trainer->options->on_score(trainer->options->context, &score);
@@ -145,8 +117,8 @@ static bool score_constant(Trainer *trainer, Error *error) {
     double *mean = malloc((size_t)trainer->train->outputs * sizeof *mean);
     if (mean == NULL) return error_memory(error, "training");
     samples_mean(trainer->train, mean);
-    trainer->constant_test = samples_constant_error(trainer->test, mean);
-    trainer->constant_train = samples_constant_error(trainer->train, mean);
+    trainer->constant_test = loss_of_constant(trainer->loss, trainer->test, mean);
+    trainer->constant_train = loss_of_constant(trainer->loss, trainer->train, mean);
     free(mean);
     return true;
 }
@@ -171,7 +143,10 @@ static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *netw
 
 static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
                   const Progress *progress, Error *error) {
-    Loss *loss = loss_create(network, error);
+    const bool with_laws = law_weights_any(&options->laws);
+    Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
+    LossKind kind = LOSS_MSE;
+    Loss *loss = form_choose_loss(&kind, options, error) ? loss_create(network, kind, error) : NULL;
     Samples *train_samples = samples_create(dataset, network, false, error);
     Samples *test_samples = samples_create(dataset, network, true, error);
     Trainer trainer = {.options = options,
@@ -179,15 +154,18 @@ static bool train(Network *network, const Dataset *dataset, const Optimizer *opt
                        .network = network,
                        .train = train_samples,
                        .test = test_samples,
+                       .loss_kind = kind,
                        .loss = loss,
+                       .laws = laws,
                        .parameters = network_parameter_count(network),
                        .iteration = -1,
                        .scored = -1};
-    bool ok = loss != NULL && train_samples != NULL && test_samples != NULL && score_constant(&trainer, error) &&
-              minimize(&trainer, optimizer, network, error);
+    bool ok = (laws != NULL || !with_laws) && loss != NULL && train_samples != NULL && test_samples != NULL &&
+              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
     samples_destroy(test_samples);
     samples_destroy(train_samples);
     loss_destroy(loss);
+    laws_destroy(laws);
     return ok;
 }
 
@@ -195,12 +173,28 @@ Network *training_run(const Dataset *dataset, const TrainingOptions *options, co
     /* GSL's default handler ends the process. */
     gsl_set_error_handler_off();
     const Optimizer *optimizer = find_optimizer(options->optimizer, error);
-    if (optimizer == NULL || !check_options(dataset, options, error)) return NULL;
+    if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;
     Network *network =
-        options->start != NULL ? continued_network(dataset, options, error) : new_network(dataset, options, error);
+        options->start != NULL ? network_copy(options->start, error) : new_network(dataset, options, error);
     if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
         network_destroy(network);
         network = NULL;
     }
     return network;
+}
+
+static void keep_score(void *context, const TrainingScore *score) { *(TrainingScore *)context = *score; }
+
+bool training_score(const Dataset *dataset, const Network *network, const char *loss, TrainingScore *score,
+                    Error *error) {
+    TrainingOptions options = {.layers = network->layers,
+                               .optimizer = optimizers[0]->name,
+                               .loss = loss,
+                               .on_score = keep_score,
+                               .context = score,
+                               .start = network};
+    memcpy(options.widths, network->widths, sizeof options.widths);
+    Network *same = training_run(dataset, &options, NULL, error);
+    network_destroy(same);
+    return same != NULL;
 }

@@ -16,6 +16,8 @@ for name in $names; do
     run 2 "$name" --no-such-option
     complains "--no-such-option"
 done
+run 0 dataset --help
+for word in relative raw-unturned contact neighbours pair net impulse points; do says "$word"; done
 for name in simulate render compare dataset train chart problem solve; do
     run 2 "$name"
     complains "needed"
@@ -31,6 +33,8 @@ says "twinbox "
 run 0 methods
 says "engine"
 says "pair-net"
+says "contact-net"
+says "constant"
 says "k:"
 says "network:"
 

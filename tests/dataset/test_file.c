@@ -10,8 +10,8 @@ enum { ROWS = 4, LAUNCHES = 3 };
 
 /* Two scenes, three launches of which the second is held out, four rows. */
 static struct {
-    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], launch_x[LAUNCHES], launch_rotation[LAUNCHES],
-        launch_spin[LAUNCHES];
+    float inputs[ROWS * PAIR_INPUTS], changes[ROWS * PAIR_CHANGES], context[ROWS * PAIR_CONTEXT], launch_x[LAUNCHES],
+        launch_rotation[LAUNCHES], launch_spin[LAUNCHES];
     int32_t launch[ROWS], frame[ROWS], bodies[ROWS * 2], launch_scene[LAUNCHES];
     uint8_t launch_test[LAUNCHES];
 } numbers;
@@ -47,7 +47,7 @@ static void files_keep_every_bit(void **state) {
     (void)state;
     Error error = {0};
     Dataset dataset = example();
-    dataset.target = DATASET_IMPULSE;
+    dataset.target = TARGET_IMPULSE;
     dataset.labels = DATASET_BY_REFERENCE;
     dataset.view = PAIR_RAW_UNTURNED;
     const char *path = temporary_path("data.npz");
@@ -65,12 +65,36 @@ static void files_keep_every_bit(void **state) {
     assert_memory_equal(read->launch_test, numbers.launch_test, sizeof numbers.launch_test);
     assert_memory_equal(read->launch_rotation, numbers.launch_rotation, sizeof numbers.launch_rotation);
     assert_memory_equal(read->launch_spin, numbers.launch_spin, sizeof numbers.launch_spin);
-    assert_true(read->target == DATASET_IMPULSE && read->labels == DATASET_BY_REFERENCE &&
+    assert_true(read->target == TARGET_IMPULSE && read->labels == DATASET_BY_REFERENCE &&
                 read->view == PAIR_RAW_UNTURNED);
     assert_int_equal(read->scene_count, 2);
     assert_string_equal(read->scenes[0], "single");
     assert_string_equal(read->scenes[1], "stack of ten");
     dataset_destroy(read);
+}
+
+/* Rows are as wide as their view and their target say. */
+static void widths_are_those_of_view_and_target(void **state) {
+    (void)state;
+    Error error = {0};
+    static float wide[ROWS * PAIR_INPUTS_MAX], points[ROWS * PAIR_POINT_CHANGES];
+    for (int i = 0; i < ROWS * PAIR_INPUTS_MAX; i++) wide[i] = 0.5f * (float)i;
+    for (int i = 0; i < ROWS * PAIR_POINT_CHANGES; i++) points[i] = -(float)i;
+    for (PairView view = PAIR_CONTACT; view <= PAIR_NEIGHBOURS; view++) {
+        Dataset dataset = example();
+        dataset.view = view;
+        dataset.target = TARGET_POINTS;
+        dataset.inputs = wide;
+        dataset.changes = points;
+        const char *path = temporary_path("wide.npz");
+        assert_ok(dataset_write(&dataset, path, &error), error);
+        Dataset *read = dataset_read(path, &error);
+        assert_ok(read != NULL, error);
+        assert_true(read->view == view && read->target == TARGET_POINTS);
+        assert_memory_equal(read->inputs, wide, ROWS * (size_t)dataset_inputs(read) * sizeof(float));
+        assert_memory_equal(read->changes, points, sizeof points);
+        dataset_destroy(read);
+    }
 }
 
 static void the_most_and_longest_scene_names_are_kept(void **state) {
@@ -88,6 +112,36 @@ static void the_most_and_longest_scene_names_are_kept(void **state) {
     assert_ok(read != NULL, error);
     assert_int_equal(read->scene_count, DATASET_MAX_SCENES);
     assert_string_equal(read->scenes[DATASET_MAX_SCENES - 1], dataset.scenes[DATASET_MAX_SCENES - 1]);
+    dataset_destroy(read);
+}
+
+/* The example with a context: one body moves, and the normal points up. */
+static Dataset example_with_context(void) {
+    Dataset dataset = example();
+    for (int i = 0; i < ROWS * PAIR_CONTEXT; i++) numbers.context[i] = 0.01f * (float)i;
+    for (int r = 0; r < ROWS; r++) {
+        numbers.context[r * PAIR_CONTEXT + CONTEXT_NORMAL] = 0;
+        numbers.context[r * PAIR_CONTEXT + CONTEXT_NORMAL + 1] = 1;
+    }
+    dataset.context = numbers.context;
+    return dataset;
+}
+
+static void a_context_is_kept_where_there_is_one(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset with = example_with_context();
+    const char *path = temporary_path("context.npz");
+    assert_ok(dataset_write(&with, path, &error), error);
+    Dataset *read = dataset_read(path, &error);
+    assert_ok(read != NULL && read->context != NULL, error);
+    assert_memory_equal(read->context, numbers.context, sizeof numbers.context);
+    dataset_destroy(read);
+    const Dataset without = example();
+    assert_ok(dataset_write(&without, path, &error), error);
+    read = dataset_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_null(read->context);
     dataset_destroy(read);
 }
 
@@ -119,6 +173,19 @@ static void numbers_that_are_not_finite_are_refused(void **state) {
     dataset = example();
     numbers.launch_spin[1] = NAN;
     assert_written_is_refused(&dataset, "launch_spin: number 1");
+}
+
+static void contexts_that_no_pair_has_are_refused(void **state) {
+    (void)state;
+    Dataset dataset = example_with_context();
+    numbers.context[PAIR_CONTEXT + 3] = NAN;
+    assert_written_is_refused(&dataset, "context: number 20 is nan");
+    dataset = example_with_context();
+    numbers.context[2 * PAIR_CONTEXT + CONTEXT_INV_MASS_B] = -1;
+    assert_written_is_refused(&dataset, "context: row 2 has an inverse mass or inertia below 0");
+    dataset = example_with_context();
+    numbers.context[3 * PAIR_CONTEXT + CONTEXT_NORMAL] = 1;
+    assert_written_is_refused(&dataset, "context: row 3 has a normal whose length is not 1");
 }
 
 static void indices_out_of_range_are_refused(void **state) {
@@ -168,7 +235,7 @@ static void scene_names_out_of_range_are_refused(void **state) {
     assert_written_is_refused(&dataset, "scenes: a name of 0 bytes");
 }
 
-/* Replaces one array of the example's file, or leaves it out where its data is NULL. */
+/* Replaces one array of the example's file, adds a context, or leaves it out where its data is NULL. */
 static const char *write_with(NpzArray changed) {
     const Dataset dataset = example();
     const int32_t version = DATASET_VERSION;
@@ -189,12 +256,13 @@ static const char *write_with(NpzArray changed) {
                               {"frame", NPZ_INT32, 1, {ROWS}, dataset.frame},
                               {"bodies", NPZ_INT32, 2, {ROWS, 2}, dataset.bodies}};
     enum { COUNT = sizeof valid / sizeof valid[0] };
-    NpzArray arrays[COUNT];
+    NpzArray arrays[COUNT + 1];
     size_t count = 0;
     for (size_t i = 0; i < COUNT; i++) {
         bool same = strcmp(valid[i].name, changed.name) == 0;
         if (!same || changed.data != NULL) arrays[count++] = same ? changed : valid[i];
     }
+    if (strcmp(changed.name, "context") == 0) arrays[count++] = changed;
     Error error = {0};
     const char *path = temporary_path("changed.npz");
     assert_ok(npz_write(path, arrays, count, &error), error);
@@ -203,12 +271,15 @@ static const char *write_with(NpzArray changed) {
 
 static void shapes_that_do_not_fit_are_refused(void **state) {
     (void)state;
-    static const float floats[64];
+    static const float floats[128];
     static const int32_t integers[16];
     static const uint8_t bytes[4];
     assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS, 9}, floats}), "inputs");
     assert_refused(write_with((NpzArray){"inputs", NPZ_FLOAT32, 2, {ROWS - 1, 10}, floats}), "changes");
     assert_refused(write_with((NpzArray){"changes", NPZ_FLOAT32, 2, {ROWS, 5}, floats}), "changes");
+    assert_refused(write_with((NpzArray){"context", NPZ_FLOAT32, 2, {ROWS, PAIR_CONTEXT - 1}, floats}), "context");
+    assert_refused(write_with((NpzArray){"context", NPZ_FLOAT32, 2, {ROWS + 1, PAIR_CONTEXT}, floats}), "context");
+    assert_refused(write_with((NpzArray){"context", NPZ_INT32, 2, {ROWS, 3}, integers}), "context");
     assert_refused(write_with((NpzArray){"launch", NPZ_INT32, 1, {ROWS + 1}, integers}), "launch");
     assert_refused(write_with((NpzArray){"frame", NPZ_INT32, 2, {ROWS, 1}, integers}), "frame");
     assert_refused(write_with((NpzArray){"bodies", NPZ_INT32, 2, {ROWS, 3}, integers}), "bodies");
@@ -219,12 +290,16 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
 
 static void other_files_are_refused(void **state) {
     (void)state;
-    const int32_t future = DATASET_VERSION + 1;
+    const int32_t future = DATASET_VERSION + 1, past = 2;
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &past}),
+                   "version 2; this program reads version 3");
     assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "sideways"}), "view: a word that is not known");
     assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, ""}), "target: a word");
     assert_refused(write_with((NpzArray){"labels", NPZ_TEXT, 0, {0}, "me"}), "labels: a word");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "raw"}), "inputs");
+    assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "contact"}), "inputs");
+    assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, "points"}), "changes");
     assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "kind"}), "no dataset");
     assert_refused(write_with((NpzArray){.name = "changes"}), "changes");
@@ -237,8 +312,11 @@ static void other_files_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_keep_every_bit),
+        cmocka_unit_test(widths_are_those_of_view_and_target),
+        cmocka_unit_test(a_context_is_kept_where_there_is_one),
         cmocka_unit_test(the_most_and_longest_scene_names_are_kept),
         cmocka_unit_test(numbers_that_are_not_finite_are_refused),
+        cmocka_unit_test(contexts_that_no_pair_has_are_refused),
         cmocka_unit_test(indices_out_of_range_are_refused),
         cmocka_unit_test(both_sides_of_the_split_need_rows),
         cmocka_unit_test(scene_names_out_of_range_are_refused),

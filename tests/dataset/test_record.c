@@ -24,8 +24,8 @@ static Dataset *record(DatasetOptions options) {
 /* The visits of a pair in all sweeps of a step, and its warm start, are what its impulses changed in the step. */
 static void visits_add_up_to_the_pairs_change(void **state) {
     (void)state;
-    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
-    Dataset *visits = record((DatasetOptions){.target = DATASET_IMPULSE});
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *visits = record((DatasetOptions){.target = TARGET_IMPULSE});
     assert_true(visits->rows == 10 * pair->rows);
     int first_touches = 0;
     for (int64_t r = 0, v = 0; r < pair->rows; r++) {
@@ -52,8 +52,8 @@ static void visits_add_up_to_the_pairs_change(void **state) {
 /* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
 static void net_is_pair_where_there_is_one_pair(void **state) {
     (void)state;
-    Dataset *pair = record((DatasetOptions){.target = DATASET_PAIR});
-    Dataset *net = record((DatasetOptions){.target = DATASET_NET});
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *net = record((DatasetOptions){.target = TARGET_NET});
     assert_true(pair->rows == net->rows);
     int compared = 0, different = 0;
     for (int64_t r = 0; r < pair->rows; r++) {
@@ -76,9 +76,9 @@ static void net_is_pair_where_there_is_one_pair(void **state) {
 /* At rest the engine has converged: the reference says the same; at impacts it does not. */
 static void the_reference_labels_what_the_engine_met(void **state) {
     (void)state;
-    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET});
+    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});
     Dataset *reference = record(
-        (DatasetOptions){.scenes = both, .scene_count = 2, .target = DATASET_NET, .labels = DATASET_BY_REFERENCE});
+        (DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET, .labels = DATASET_BY_REFERENCE});
     assert_true(engine->rows == reference->rows);
     int64_t near = 0, far = 0;
     for (int64_t r = 0; r < engine->rows; r++) {
@@ -91,6 +91,38 @@ static void the_reference_labels_what_the_engine_met(void **state) {
     assert_memory_equal(engine->inputs, reference->inputs, (size_t)engine->rows * PAIR_INPUTS * sizeof(float));
     dataset_destroy(engine);
     dataset_destroy(reference);
+}
+
+/* The ground is static, the box has 200 kg, the bomb 50. What an impulse at the middle of the points does to a body is
+   what it did, but for how it was shared among the points. */
+static void contexts_tell_what_made_the_changes(void **state) {
+    (void)state;
+    Dataset *plain = record((DatasetOptions){0}), *dataset = record((DatasetOptions){.context = true});
+    assert_null(plain->context);
+    assert_non_null(dataset->context);
+    assert_memory_equal(plain->changes, dataset->changes, (size_t)plain->rows * PAIR_CHANGES * sizeof(float));
+    static const float inverse_masses[] = {0, 1.0f / 200, 1.0f / 50};
+    int struck = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *context = dataset->context + r * PAIR_CONTEXT, *inputs = dataset->inputs + r * PAIR_INPUTS;
+        const float *change = dataset->changes + r * PAIR_CHANGES;
+        assert_null(pair_context_fault(context));
+        assert_near(context[CONTEXT_INV_MASS_A], inverse_masses[dataset->bodies[2 * r]], 1e-7);
+        assert_near(context[CONTEXT_INV_MASS_B], inverse_masses[dataset->bodies[2 * r + 1]], 1e-7);
+        /* Velocities as the relative view has them: vxa vya vxb vyb wa wb. */
+        static const int place[] = {2, 3, 6, 4, 5, 7};
+        for (int k = 0; k < PAIR_CHANGES; k++) assert_true(context[CONTEXT_VELOCITIES + k] == inputs[place[k]]);
+        /* Both arms end in the same point. */
+        for (int i = 0; i < 2; i++)
+            assert_near(context[CONTEXT_ARM_A + i], inputs[i] + context[CONTEXT_ARM_B + i], 0.05);
+        if (context[CONTEXT_INV_MASS_A] == 0) continue;
+        for (int i = 0; i < 2; i++)
+            assert_near(change[i] / context[CONTEXT_INV_MASS_A], -change[3 + i] / context[CONTEXT_INV_MASS_B], 0.01);
+        struck++;
+    }
+    assert_true(struck > 5);
+    dataset_destroy(dataset);
+    dataset_destroy(plain);
 }
 
 static void random_launches_lie_in_their_ranges(void **state) {
@@ -114,6 +146,54 @@ static void random_launches_lie_in_their_ranges(void **state) {
     dataset_destroy(c);
 }
 
+/* Whether the pair of this row is one with the ground, and the two boxes of single.yaml do not touch in its step. */
+static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
+    for (int64_t r = row > 2 ? row - 2 : 0; r < dataset->rows && r <= row + 2; r++)
+        if (dataset->launch[r] == dataset->launch[row] && dataset->frame[r] == dataset->frame[row] &&
+            dataset->bodies[2 * r] != 0)
+            return false;
+    return dataset->bodies[2 * row] == 0;
+}
+
+/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that nothing
+   approaches and next to nothing is left to do. */
+static void a_box_at_rest_shows_its_warm_start(void **state) {
+    (void)state;
+    enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */
+    Dataset *dataset = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_POINTS});
+    assert_int_equal(dataset_inputs(dataset), WIDTH);
+    int at_rest = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *in = dataset->inputs + r * WIDTH, *changes = dataset->changes + r * PAIR_POINT_CHANGES;
+        const bool flat = in[WIDTH - 1] == 1;
+        if (dataset->frame[r] < 200 || !flat || !is_on_the_ground_alone(dataset, r)) continue;
+        assert_near(in[WIDTH - 2], 0, 0); /* the ground has no inverse mass */
+        assert_near(in[3] + in[POINT + 3], 10.0 / 60, 1e-5);
+        assert_near(in[0], in[2], 1e-5);
+        assert_near(in[POINT], in[POINT + 2], 1e-5);
+        for (int k = 0; k < PAIR_POINT_CHANGES; k++) assert_near(changes[k], 0, 1e-5);
+        at_rest++;
+    }
+    assert_true(at_rest > 500);
+    dataset_destroy(dataset);
+}
+
+/* The neighbours' view is the contact's, and twelve numbers more. */
+static void neighbours_are_seen_beside_the_contact(void **state) {
+    (void)state;
+    Dataset *contact = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_NET});
+    Dataset *wide = record((DatasetOptions){.view = PAIR_NEIGHBOURS, .target = TARGET_NET});
+    assert_true(contact->rows == wide->rows && dataset_inputs(wide) == 32);
+    int pushed = 0;
+    for (int64_t r = 0; r < wide->rows; r++) {
+        assert_memory_equal(wide->inputs + r * 32, contact->inputs + r * 20, 20 * sizeof(float));
+        for (int k = 20; k < 26; k++) pushed += wide->inputs[r * 32 + k] != 0;
+    }
+    assert_true(pushed > 10);
+    dataset_destroy(contact);
+    dataset_destroy(wide);
+}
+
 static void refuse(DatasetOptions options, const char *text) {
     Error error = {0};
     options.scenes = single;
@@ -126,14 +206,23 @@ static void what_cannot_be_recorded_is_refused(void **state) {
     (void)state;
     refuse((DatasetOptions){.random = 4}, "4 launches a scene; at least 5");
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
-    refuse((DatasetOptions){.random = 5, .target = DATASET_IMPULSE, .labels = DATASET_BY_REFERENCE},
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
            "the reference has none");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .view = PAIR_NEIGHBOURS},
+           "the target impulse has no view neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_POINTS, .view = PAIR_RAW},
+           "the target points needs the view contact or neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(visits_add_up_to_the_pairs_change), cmocka_unit_test(net_is_pair_where_there_is_one_pair),
-        cmocka_unit_test(the_reference_labels_what_the_engine_met),
-        cmocka_unit_test(random_launches_lie_in_their_ranges), cmocka_unit_test(what_cannot_be_recorded_is_refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(visits_add_up_to_the_pairs_change),
+                                       cmocka_unit_test(net_is_pair_where_there_is_one_pair),
+                                       cmocka_unit_test(the_reference_labels_what_the_engine_met),
+                                       cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
+                                       cmocka_unit_test(neighbours_are_seen_beside_the_contact),
+                                       cmocka_unit_test(contexts_tell_what_made_the_changes),
+                                       cmocka_unit_test(random_launches_lie_in_their_ranges),
+                                       cmocka_unit_test(what_cannot_be_recorded_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

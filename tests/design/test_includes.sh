@@ -10,7 +10,8 @@ declare -A neighbours=(
     [dynamics]="collision" [solvers]="dynamics network" [scene]="dynamics"
     [simulate]="scene solvers trajectory" [dataset]="simulate" [training]="dataset network"
     [render]="trajectory image" [study]="training simulate" [figure]="study render"
-    [cli]="common collision network image trajectory dynamics solvers scene simulate dataset training study render figure"
+    [report]="study figure image trajectory"
+    [cli]="common collision network image trajectory dynamics solvers scene simulate dataset training study render figure report"
     [main.c]="cli"
 )
 

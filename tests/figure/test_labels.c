@@ -15,7 +15,7 @@ static void an_axis_has_room_for_its_values(void **state) {
     axis = log_axis(30, 30);
     assert_near(log10(axis.high / axis.low), 1, 1e-12);
     assert_near(sqrt(axis.high * axis.low), 30, 1e-9);
-    axis = (LogAxis){1, 100, 10, 30};
+    axis = (LogAxis){1, 100, 10, 30, false};
     assert_near(log_axis_place(&axis, 1), 10, 1e-12);
     assert_near(log_axis_place(&axis, 10), 20, 1e-12);
     assert_near(log_axis_place(&axis, 100), 30, 1e-12);
@@ -34,9 +34,9 @@ static void expect_tics(LogAxis axis, bool labelled, const char *expected) {
 
 static void short_axes_have_tics_at_1_2_5(void **state) {
     (void)state;
-    expect_tics((LogAxis){4.5, 22, 0, 1}, true,
+    expect_tics((LogAxis){4.5, 22, 0, 1, false}, true,
                 "set xtics scale 0.6,0.35 ('5' 5 0, '' 6 1, '' 7 1, '' 8 1, '' 9 1, '10' 10 0, '20' 20 0)\n");
-    expect_tics((LogAxis){4.5, 22, 0, 1}, false,
+    expect_tics((LogAxis){4.5, 22, 0, 1, false}, false,
                 "set xtics scale 0.6,0.35 ('' 5 0, '' 6 1, '' 7 1, '' 8 1, '' 9 1, '' 10 0, '' 20 0)\n");
 }
 
@@ -46,7 +46,7 @@ static void long_axes_have_tics_at_decades(void **state) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    LogAxis axis = {0.008, 12, 0, 1};
+    LogAxis axis = {0.008, 12, 0, 1, false};
     log_axis_put_tics(&axis, 'y', true, file);
     fclose(file);
     assert_non_null(strstr(text, "'0.01' 0.01 0"));

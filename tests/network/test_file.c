@@ -12,6 +12,7 @@ static Network *example(void) {
     network->output.offset[1] = -7.7f, network->output.scale[1] = 1e-3f;
     strcpy(network->inputs, "x y angle \xc3\xa4");
     strcpy(network->outputs, "vx vy");
+    strcpy(network->target, "net");
     strcpy(network->command, "twinbox train data.npz -o net.npz");
     return network;
 }
@@ -35,6 +36,7 @@ static void files_keep_every_bit(void **state) {
     assert_memory_equal(read->output.scale, network->output.scale, 2 * sizeof(float));
     assert_string_equal(read->inputs, network->inputs);
     assert_string_equal(read->outputs, network->outputs);
+    assert_string_equal(read->target, "net");
     assert_string_equal(read->command, network->command);
     network_destroy(read);
     network_destroy(network);
@@ -77,13 +79,14 @@ static void numbers_out_of_range_are_refused(void **state) {
 static const int32_t version = NETWORK_VERSION, widths[] = {2, 1};
 static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
 static const NpzArray valid[] = {
-    {"version", NPZ_INT32, 0, {0}, &version},    {"kind", NPZ_TEXT, 0, {0}, "network"},
-    {"inputs", NPZ_TEXT, 0, {0}, "x y"},         {"outputs", NPZ_TEXT, 0, {0}, "z"},
-    {"command", NPZ_TEXT, 0, {0}, ""},           {"widths", NPZ_INT32, 1, {2}, widths},
-    {"activations", NPZ_TEXT, 0, {0}, "linear"}, {"weights_0", NPZ_FLOAT32, 2, {1, 2}, ones},
-    {"biases_0", NPZ_FLOAT32, 1, {1}, ones},     {"input_offset", NPZ_FLOAT32, 1, {2}, ones},
-    {"input_scale", NPZ_FLOAT32, 1, {2}, ones},  {"output_offset", NPZ_FLOAT32, 1, {1}, ones},
-    {"output_scale", NPZ_FLOAT32, 1, {1}, ones}, {"output_mean", NPZ_FLOAT32, 1, {1}, ones}};
+    {"version", NPZ_INT32, 0, {0}, &version},     {"kind", NPZ_TEXT, 0, {0}, "network"},
+    {"inputs", NPZ_TEXT, 0, {0}, "x y"},          {"outputs", NPZ_TEXT, 0, {0}, "z"},
+    {"target", NPZ_TEXT, 0, {0}, "pair"},         {"command", NPZ_TEXT, 0, {0}, ""},
+    {"widths", NPZ_INT32, 1, {2}, widths},        {"activations", NPZ_TEXT, 0, {0}, "linear"},
+    {"weights_0", NPZ_FLOAT32, 2, {1, 2}, ones},  {"biases_0", NPZ_FLOAT32, 1, {1}, ones},
+    {"input_offset", NPZ_FLOAT32, 1, {2}, ones},  {"input_scale", NPZ_FLOAT32, 1, {2}, ones},
+    {"output_offset", NPZ_FLOAT32, 1, {1}, ones}, {"output_scale", NPZ_FLOAT32, 1, {1}, ones},
+    {"output_mean", NPZ_FLOAT32, 1, {1}, ones}};
 enum { VALID_COUNT = sizeof valid / sizeof valid[0] };
 
 /* Writes the valid file with the array of the same name replaced, or left out where its data is NULL. */
@@ -117,8 +120,11 @@ static void every_array_is_needed(void **state) {
 
 static void another_kind_or_version_is_refused(void **state) {
     (void)state;
-    const int32_t future = NETWORK_VERSION + 1;
-    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
+    const int32_t future = 4, past = 2;
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}),
+                   "version 4; this program reads version 3");
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &past}),
+                   "version 2; this program reads version 3");
     assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "dataset"}), "no network");
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step allocates nothing once the world has warmed up. The linker hands every call of malloc, calloc and realloc
    in this program to the functions below (tests/CMakeLists.txt). */
-#include "worlds.h"
+#include "pair_networks.h"
 
 static int allocations;
 
@@ -27,9 +27,7 @@ void *__wrap_realloc(void *block, size_t size) {
     return __real_realloc(block, size);
 }
 
-static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
-    Error error = {0};
-    const Settings settings = {0};
+static World *make_pyramid(void) {
     World *world = make_world();
     add_ground(world, 0.2f);
     for (int row = 0; row < 11; row++)
@@ -38,6 +36,13 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
             add_body(world,
                      &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.5f + (float)row}});
         }
+    return world;
+}
+
+static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
+    Error error = {0};
+    const Settings settings = {0};
+    World *world = make_pyramid();
     allocations = 0;
     ContactSolver solver = {kind, kind->create(&settings, &error)};
     assert_ok(solver.state != NULL, error);
@@ -59,7 +64,34 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_nncg);
 }
 
+/* The network's pyramid would not stand, so each is asked about the engine's, twice. */
+static void pair_networks_solve_without_allocating(void **state) {
+    (void)state;
+    Error error = {0};
+    World *world = make_pyramid();
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution solution = *world_solution(world);
+    for (PairTarget target = TARGET_PAIR; target < PAIR_TARGETS; target++) {
+        const PairView view = target == TARGET_IMPULSE ? PAIR_RELATIVE : PAIR_NEIGHBOURS;
+        const ContactSolverKind *kind = target == TARGET_POINTS ? &solver_contact_net : &solver_pair_net;
+        ContactSolver solver =
+            make_network_solver(kind, constant_network(view, target, pair_change_count(target), six), 3);
+        allocations = 0;
+        assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations > 0, target != TARGET_IMPULSE);
+        allocations = 0;
+        assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations, 0);
+        free_solver(&solver);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
+                                       cmocka_unit_test(pair_networks_solve_without_allocating)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

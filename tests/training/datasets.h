@@ -7,6 +7,8 @@
 #include "network/network.h"
 #include "training/training.h"
 
+#include <math.h>
+
 /* Numbers in [-1, 1) from a linear congruential sequence. */
 static inline float next_number(uint32_t *sequence) {
     *sequence = *sequence * 1664525u + 1013904223u;
@@ -46,6 +48,44 @@ static inline Dataset *make_taught_dataset(int rows) {
         network_predict(teacher, dataset->inputs + r * PAIR_INPUTS, scratch, dataset->changes + r * PAIR_CHANGES + 3);
     }
     network_destroy(teacher);
+    return dataset;
+}
+
+/* A pair's context, drawn: masses of 2 to 10 kg, every third pair with a static a, every seventh with a static b. */
+static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_CONTEXT]) {
+    for (int i = 0; i < PAIR_CONTEXT; i++) context[i] = next_number(sequence);
+    for (int i = CONTEXT_INV_MASS_A; i <= CONTEXT_INV_INERTIA_B; i++) context[i] = 0.3f + 0.2f * context[i];
+    if (row % 3 == 0) context[CONTEXT_INV_MASS_A] = context[CONTEXT_INV_INERTIA_A] = 0;
+    if (row % 3 != 0 && row % 7 == 0) context[CONTEXT_INV_MASS_B] = context[CONTEXT_INV_INERTIA_B] = 0;
+    const float angle = 3.0f * context[CONTEXT_NORMAL];
+    context[CONTEXT_NORMAL] = cosf(angle);
+    context[CONTEXT_NORMAL + 1] = sinf(angle);
+    context[CONTEXT_FRICTION] = 0.4f + 0.3f * context[CONTEXT_FRICTION];
+}
+
+/* Six changes and a context, of which the inputs tell the normal and the velocities. The impulses are equal and opposite and within the cone; what
+   they do to spins is random. */
+static inline Dataset *make_pushed_dataset(int rows) {
+    Dataset *dataset = make_dataset(rows);
+    dataset->context = calloc((size_t)rows * PAIR_CONTEXT, sizeof(float));
+    assert_non_null(dataset->context);
+    uint32_t sequence = 17;
+    for (int r = 0; r < rows; r++) {
+        float *context = dataset->context + r * PAIR_CONTEXT, *change = dataset->changes + r * PAIR_CHANGES;
+        draw_context(&sequence, r, context);
+        memcpy(dataset->inputs + r * PAIR_INPUTS, context + CONTEXT_NORMAL, 2 * sizeof(float));
+        memcpy(dataset->inputs + r * PAIR_INPUTS + 2, context + CONTEXT_VELOCITIES, PAIR_CHANGES * sizeof(float));
+        const float along = 2 + next_number(&sequence),
+                    across = along * context[CONTEXT_FRICTION] * next_number(&sequence);
+        const float n[2] = {context[CONTEXT_NORMAL], context[CONTEXT_NORMAL + 1]};
+        const float impulse[2] = {along * n[0] + across * n[1], along * n[1] - across * n[0]};
+        for (int i = 0; i < 2; i++) {
+            change[i] = -context[CONTEXT_INV_MASS_A] * impulse[i];
+            change[3 + i] = context[CONTEXT_INV_MASS_B] * impulse[i];
+        }
+        change[2] = context[CONTEXT_INV_INERTIA_A] * next_number(&sequence);
+        change[5] = context[CONTEXT_INV_INERTIA_B] * next_number(&sequence);
+    }
     return dataset;
 }
 

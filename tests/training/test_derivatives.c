@@ -12,6 +12,7 @@ enum { ROWS = 6000 };
 
 typedef struct Case {
     Dataset *dataset;
+    Laws *laws; /* NULL: without */
     Network *network;
     Samples *train;
     Loss *loss;
@@ -20,14 +21,15 @@ typedef struct Case {
     double *parameters;
 } Case;
 
-static Case make_case(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
+static Case make_case_of(Dataset *dataset, LossKind kind, int layers, const int *widths, Activation hidden,
+                         Activation last, OutputScale scale) {
     Error error = {0};
-    Case made = {.dataset = make_taught_dataset(ROWS), .network = network_create(layers, widths, &error)};
+    Case made = {.dataset = dataset, .network = network_create(layers, widths, &error)};
     assert_ok(made.network != NULL, error);
     for (int l = 0; l < layers; l++) made.network->activations[l] = l < layers - 1 ? hidden : last;
     samples_fit_normalisation(made.dataset, scale, made.network);
     made.train = samples_create(made.dataset, made.network, false, &error);
-    made.loss = loss_create(made.network, &error);
+    made.loss = loss_create(made.network, kind, &error);
     made.gauss_newton = gauss_newton_create(made.network, &error);
     assert_ok(made.train != NULL && made.loss != NULL && made.gauss_newton != NULL, error);
     made.count = network_parameter_count(made.network);
@@ -38,8 +40,13 @@ static Case make_case(int layers, const int *widths, Activation hidden, Activati
     return made;
 }
 
+static Case make_case(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
+    return make_case_of(make_taught_dataset(ROWS), LOSS_MSE, layers, widths, hidden, last, scale);
+}
+
 static void free_case(Case *made) {
     free(made->parameters);
+    laws_destroy(made->laws);
     gauss_newton_destroy(made->gauss_newton);
     loss_destroy(made->loss);
     samples_destroy(made->train);
@@ -60,14 +67,14 @@ static size_t residual_count(const Case *made) {
 static void check_gradient(Case made) {
     const double step = 1e-5;
     double *gradient = numbers((size_t)made.count);
-    double value = loss_gradient(made.loss, made.train, made.parameters, gradient);
-    assert_true(value == loss_value(made.loss, made.train, made.parameters));
+    double value = loss_gradient(made.loss, made.train, made.laws, made.parameters, gradient);
+    assert_true(value == loss_value(made.loss, made.train, made.laws, made.parameters));
     for (int p = 0; p < made.count; p++) {
         double kept = made.parameters[p];
         made.parameters[p] = kept + step;
-        double above = loss_value(made.loss, made.train, made.parameters);
+        double above = loss_value(made.loss, made.train, made.laws, made.parameters);
         made.parameters[p] = kept - step;
-        double slope = (above - loss_value(made.loss, made.train, made.parameters)) / (2 * step);
+        double slope = (above - loss_value(made.loss, made.train, made.laws, made.parameters)) / (2 * step);
         made.parameters[p] = kept;
         assert_near(gradient[p], slope, 1e-9 + 1e-6 * fabs(slope));
     }
@@ -87,6 +94,41 @@ static void gradient_of_the_loss_is_the_finite_difference(void **state) {
     }
 }
 
+/* Thresholds of 0.3 lie within the errors: some of them are on either side. */
+static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
+    (void)state;
+    const int widths[] = {10, 5, 2};
+    for (int scale = 0; scale < 2; scale++) {
+        Case made = make_case_of(make_taught_dataset(ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
+                                 ACTIVATION_LINEAR, scale == 0 ? SCALE_MINMAX : SCALE_STANDARD);
+        Error error = {0};
+        Loss *mse = loss_create(made.network, LOSS_MSE, &error);
+        assert_ok(mse != NULL, error);
+        const double smooth = loss_value(made.loss, made.train, NULL, made.parameters);
+        assert_true(smooth < 0.95 * loss_value(mse, made.train, NULL, made.parameters) && smooth > 1e-3);
+        loss_destroy(mse);
+        check_gradient(made);
+    }
+}
+
+/* Each law by itself, and all with the other loss. */
+static void gradient_of_the_laws_is_the_finite_difference(void **state) {
+    (void)state;
+    const int widths[] = {10, 4, 6};
+    for (int law = 0; law <= LAWS; law++) {
+        Error error = {0};
+        LawNumbers weights;
+        Case made = make_case_of(make_pushed_dataset(ROWS), law < LAWS ? LOSS_MSE : LOSS_SMOOTH_L1, 2, widths,
+                                 ACTIVATION_TANH, ACTIVATION_LINEAR, law % 2 == 0 ? SCALE_STANDARD : SCALE_MINMAX);
+        assert_ok(law_weights_named(law < LAWS ? laws_known[law].name : "all", 2, &weights, &error), error);
+        made.laws = laws_create(made.dataset, made.network, &weights, &error);
+        assert_ok(made.laws != NULL, error);
+        const double without = loss_value(made.loss, made.train, NULL, made.parameters);
+        assert_true(loss_value(made.loss, made.train, made.laws, made.parameters) > 1.05 * without);
+        check_gradient(made);
+    }
+}
+
 static void residuals_make_up_the_loss(void **state) {
     (void)state;
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
@@ -94,7 +136,7 @@ static void residuals_make_up_the_loss(void **state) {
     double *residuals = numbers(count), sum = 0;
     loss_residuals(made.loss, made.train, made.parameters, residuals);
     for (size_t i = 0; i < count; i++) sum += residuals[i] * residuals[i];
-    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, made.parameters), 1e-12);
+    assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, NULL, made.parameters), 1e-12);
     free(residuals);
     free_case(&made);
 }
@@ -161,7 +203,7 @@ static void sums_do_not_depend_on_threads(void **state) {
     loss_residuals(made.loss, made.train, made.parameters, u);
     for (size_t i = 0; i < 2; i++) {
         omp_set_num_threads(i == 0 ? 1 : 3);
-        value[i] = loss_gradient(made.loss, made.train, made.parameters, gradient + i * size);
+        value[i] = loss_gradient(made.loss, made.train, NULL, made.parameters, gradient + i * size);
         gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + i * size, jtj + i * size * size);
     }
     omp_set_num_threads(threads);
@@ -181,6 +223,8 @@ static void sums_do_not_depend_on_threads(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gradient_of_the_loss_is_the_finite_difference),
+        cmocka_unit_test(gradient_of_the_smooth_loss_is_the_finite_difference),
+        cmocka_unit_test(gradient_of_the_laws_is_the_finite_difference),
         cmocka_unit_test(residuals_make_up_the_loss),
         cmocka_unit_test(gauss_newton_is_that_of_the_jacobian),
         cmocka_unit_test(sums_do_not_depend_on_threads),

@@ -40,6 +40,9 @@ static void what_cannot_be_trained_is_refused(void **state) {
     options.start = start;
     assert_refused(dataset, options, "trained on other inputs");
     strcpy(start->inputs, pair_views[PAIR_RELATIVE].inputs);
+    strcpy(start->target, "net");
+    assert_refused(dataset, options, "trained for another target (net)");
+    strcpy(start->target, "pair");
     assert_refused(dataset, options, "other widths");
     network_destroy(start);
     dataset->launch_test[4] = 0;
@@ -76,6 +79,43 @@ static void words_that_do_not_fit_are_refused(void **state) {
     options.widths[2] = PAIR_CHANGES;
     options.output_activation = "sigmoid";
     assert_refused(dataset, options, "scale: error: standard needs linear outputs");
+    dataset_destroy(dataset);
+}
+
+static void losses_that_do_not_fit_are_refused(void **state) {
+    (void)state;
+    Dataset *dataset = make_pushed_dataset(100);
+    TrainingOptions options = small("adam", 1);
+    options.loss = "l1";
+    assert_refused(dataset, options, "loss: error: there is no \"l1\"; known are mse, smooth-l1");
+    options = small("lm", 1);
+    options.loss = "smooth-l1";
+    assert_refused(dataset, options, "lm: error: is for least squares");
+    options = small("adam", 1);
+    options.laws.of[LAW_CONE] = 1;
+    assert_refused(dataset, options, "laws: error: 2 outputs; all 6 are needed");
+    options.widths[2] = PAIR_CHANGES;
+    options.optimizer = "lm";
+    assert_refused(dataset, options, "lm: error: is for least squares");
+    options.optimizer = "adam";
+    options.laws.of[LAW_CONE] = -1;
+    assert_refused(dataset, options, "laws: error: a weight of -1 for cone");
+    options.laws.of[LAW_CONE] = NAN;
+    assert_refused(dataset, options, "a weight of nan for cone");
+    options.laws.of[LAW_CONE] = INFINITY;
+    assert_refused(dataset, options, "a weight of inf for cone");
+    options.laws.of[LAW_CONE] = 1;
+    dataset->target = TARGET_NET;
+    assert_refused(dataset, options, "laws: error: they are for the target pair in world axes, not for net");
+    dataset->target = TARGET_PAIR;
+    free(dataset->context);
+    dataset->context = NULL;
+    assert_refused(dataset, options, "laws: error: the dataset has no context; record it again with --context");
+    options.laws.of[LAW_CONE] = 0;
+    Error error = {0};
+    Network *network = training_run(dataset, &options, NULL, &error);
+    assert_ok(network != NULL, error);
+    network_destroy(network);
     dataset_destroy(dataset);
 }
 
@@ -137,6 +177,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_cannot_be_trained_is_refused),
         cmocka_unit_test(words_that_do_not_fit_are_refused),
+        cmocka_unit_test(losses_that_do_not_fit_are_refused),
         cmocka_unit_test(another_form_than_that_of_the_start_is_refused),
         cmocka_unit_test(divergence_names_its_iteration),
         cmocka_unit_test(leaving_the_finite_numbers_is_an_error),

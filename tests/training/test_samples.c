@@ -87,7 +87,10 @@ static void six_outputs_are_all_changes_standardised(void **state) {
         assert_near(network->output.offset[k], 100, 1);
         assert_near(1 / network->output.scale[k], (k + 1) / sqrt(3), 0.1); /* of the uniform distribution */
     }
-    assert_near(samples_constant_error(train, zero), 1, 1e-4);
+    Loss *loss = loss_create(network, LOSS_MSE, &error);
+    assert_ok(loss != NULL, error);
+    assert_near(loss_of_constant(loss, train, zero), 1, 1e-4);
+    loss_destroy(loss);
     samples_destroy(train);
     network_destroy(network);
     dataset_destroy(dataset);
@@ -132,9 +135,42 @@ static void the_constant_predictor_has_the_variance(void **state) {
     double mean[2];
     samples_mean(train, mean);
     assert_near(mean[0], 0.5, 1e-7);
-    assert_near(samples_constant_error(train, mean), 5.0 / 72, 1e-7);
-    assert_near(samples_constant_error(test, mean), 9.0 / 8, 1e-6);
+    Loss *loss = loss_create(network, LOSS_MSE, &error);
+    assert_ok(loss != NULL, error);
+    assert_near(loss_of_constant(loss, train, mean), 5.0 / 72, 1e-7);
+    assert_near(loss_of_constant(loss, test, mean), 9.0 / 8, 1e-6);
+    loss_destroy(loss);
     samples_destroy(test);
+    samples_destroy(train);
+    network_destroy(network);
+    dataset_destroy(dataset);
+}
+
+/* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the constant misses them by 0.1, 0.9, 1.9, 2.9 m/s. Within 0.3 m/s the loss
+   is the square, beyond it 0.6 |e| - 0.09; and in the network's units a ninth of that. */
+static void the_smooth_loss_is_straight_beyond_its_threshold(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *dataset = small_dataset();
+    Network *network = make_network(2, ACTIVATION_SIGMOID);
+    samples_fit_normalisation(dataset, SCALE_MINMAX, network);
+    Samples *train = samples_create(dataset, network, false, &error);
+    Loss *smooth = loss_create(network, LOSS_SMOOTH_L1, &error), *mse = loss_create(network, LOSS_MSE, &error);
+    assert_ok(train != NULL && smooth != NULL && mse != NULL, error);
+    const double constant[2] = {0.1 / 3, 0};
+    const double expected = 0.1 * 0.1 + 0.6 * (0.9 + 1.9 + 2.9) - 3 * 0.09;
+    assert_near(loss_of_constant(smooth, train, constant), expected / 9 / 8, 1e-7);
+    /* The network that says so. */
+    double parameters[22] = {[20] = -log(1 / constant[0] - 1), [21] = -1000};
+    assert_near(loss_value(smooth, train, NULL, parameters), expected / 9 / 8, 1e-7);
+    /* All within the threshold: the two meet. */
+    network->output.scale[0] = network->output.scale[1] = 100;
+    Loss *wide = loss_create(network, LOSS_SMOOTH_L1, &error);
+    assert_ok(wide != NULL, error);
+    assert_true(loss_of_constant(wide, train, constant) == loss_of_constant(mse, train, constant));
+    loss_destroy(wide);
+    loss_destroy(mse);
+    loss_destroy(smooth);
     samples_destroy(train);
     network_destroy(network);
     dataset_destroy(dataset);
@@ -150,12 +186,12 @@ static void loss_of_a_constant_network_is_that_of_the_constant(void **state) {
     Network *network = make_network(2, ACTIVATION_SIGMOID);
     samples_fit_normalisation(dataset, SCALE_MINMAX, network);
     Samples *train = samples_create(dataset, network, false, &error);
-    Loss *loss = loss_create(network, &error);
+    Loss *loss = loss_create(network, LOSS_MSE, &error);
     assert_ok(train != NULL && loss != NULL, error);
     assert_int_equal(network_parameter_count(network), 22);
-    double expected = samples_constant_error(train, half);
+    double expected = loss_of_constant(loss, train, half);
     assert_true(expected > 0.01);
-    assert_near(loss_value(loss, train, parameters), expected, 1e-12);
+    assert_near(loss_value(loss, train, NULL, parameters), expected, 1e-12);
     loss_destroy(loss);
     samples_destroy(train);
     network_destroy(network);
@@ -169,6 +205,7 @@ int main(void) {
         cmocka_unit_test(six_outputs_are_all_changes_standardised),
         cmocka_unit_test(normalisation_is_undone_by_prediction),
         cmocka_unit_test(the_constant_predictor_has_the_variance),
+        cmocka_unit_test(the_smooth_loss_is_straight_beyond_its_threshold),
         cmocka_unit_test(loss_of_a_constant_network_is_that_of_the_constant),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_parts.h"
+
+#include "common/array.h"
+#include "common/file.h"
+
+#include <dirent.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PART_MAX_SIZE = 1 << 24 };
+
+bool study_parts_open(StudyParts *parts, const char *folder, uint64_t key, Error *error) {
+    if (snprintf(parts->folder, sizeof parts->folder, "%s/parts-%016" PRIx64, folder, key) >= (int)sizeof parts->folder)
+        return error_input(error, folder, "the name is too long");
+    return file_make_directory(parts->folder, error);
+}
+
+void study_parts_close(StudyParts *parts) {
+    free(parts->text);
+    parts->text = NULL;
+}
+
+/* What a part tells of itself, as a share of all. */
+typedef struct PartProgress {
+    const StudyParts *parts;
+    double weight;
+    bool stopped;
+} PartProgress;
+
+static bool report(void *context, double done, double total) {
+    PartProgress *part = context;
+    double share = total > 0 ? part->weight * done / total : 0;
+    if (!progress_report(part->parts->progress, part->parts->done + share, part->parts->total)) part->stopped = true;
+    return !part->stopped;
+}
+
+static bool keep_text(StudyParts *parts, const char *text, size_t size, Error *error) {
+    if (!array_reserve((void **)&parts->text, &parts->capacity, parts->size + size + 1, 1))
+        return error_memory(error, "study");
+    memcpy(parts->text + parts->size, text, size);
+    parts->size += size;
+    parts->text[parts->size] = '\0';
+    return true;
+}
+
+/* Does the part, and puts its file in place. */
+static bool write_part(StudyParts *parts, const StudyPart *part, const char *path, Error *error) {
+    PartProgress own = {parts, part->weight, false};
+    const Progress progress = {report, &own};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *lines = open_memstream(&text, &size);
+    if (lines == NULL) return error_memory(error, "study");
+    bool ok = part->write(part->context, lines, &progress, error);
+    if (ferror(lines) && ok) ok = error_memory(error, "study");
+    if (fclose(lines) != 0 && ok) ok = error_memory(error, "study");
+    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; what was done before is kept");
+    ok = ok && file_write(path, text, size, error) && keep_text(parts, text, size, error);
+    free(text);
+    return ok;
+}
+
+bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
+    char path[STUDY_PARTS_PATH_SIZE + 128];
+    if (snprintf(path, sizeof path, "%s/%s", parts->folder, part->name) >= (int)sizeof path)
+        return error_input(error, parts->folder, "the name is too long");
+    bool ok;
+    if (access(path, F_OK) == 0) {
+        size_t size;
+        char *text = file_read(path, PART_MAX_SIZE, &size, error);
+        ok = text != NULL && keep_text(parts, text, size, error);
+        free(text);
+    } else {
+        ok = write_part(parts, part, path, error);
+    }
+    parts->done += part->weight;
+    return ok;
+}
+
+bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
+                       Error *error) {
+    char path[STUDY_PARTS_PATH_SIZE], *text = NULL;
+    const size_t name = strlen(table);
+    size_t size = 0;
+    if (snprintf(path, sizeof path, "%s/%s.csv", folder, table) >= (int)sizeof path)
+        return error_input(error, folder, "the name is too long");
+    FILE *csv = open_memstream(&text, &size);
+    if (csv == NULL) return error_memory(error, "study");
+    fprintf(csv, "%s\n", header);
+    for (const char *line = parts->text; line != NULL && *line != '\0';) {
+        size_t length = strcspn(line, "\n");
+        if (strncmp(line, table, name) == 0 && line[name] == ':')
+            fprintf(csv, "%.*s\n", (int)(length - name - 1), line + name + 1);
+        line += length + (line[length] == '\n');
+    }
+    bool ok = !ferror(csv);
+    ok = fclose(csv) == 0 && ok;
+    ok = ok ? file_write(path, text, size, error) : error_memory(error, "study");
+    free(text);
+    return ok;
+}
+
+void study_parts_remove(const StudyParts *parts) {
+    DIR *folder = opendir(parts->folder);
+    if (folder == NULL) return;
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) unlinkat(dirfd(folder), entry->d_name, 0);
+    closedir(folder);
+    rmdir(parts->folder);
+}

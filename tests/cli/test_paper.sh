@@ -1,0 +1,75 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The paper's study: tables, figures and report of a quick one, and one that is cut off.
+. "$(dirname "$0")/checks.sh"
+
+tables="closed_loop laws networks rates study table1 transfer"
+# Times differ from run to run.
+figures() {
+    for table in $tables; do
+        if [ $table = closed_loop ]; then cut -d, -f1-6 "$1/$table.csv"; else cat "$1/$table.csv"; fi
+    done
+}
+
+run 0 paper -o quick --quick --scenes "$scenes"
+says "quick/report.html"
+equal "header of table1" "$(head -1 quick/table1.csv)" "network,target,optimizer,iteration,test,train,constant"
+equal "header of rates" "$(head -1 quick/rates.csv)" \
+    "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
+equal "header of closed_loop" "$(head -1 quick/closed_loop.csv)" \
+    "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,us_step,us_step_engine"
+for name in loop narrow-phase data scenes loss factors rates closed-loop laws transfer; do
+    [ -s quick/figures/$name.png ] && [ -s quick/figures/$name.svg ] || fail "no figure $name"
+done
+[ -s quick/networks/baseline.npz ] || fail "no network"
+equal "what was done in parts is gone" "$(ls -d quick/parts-* 2>/dev/null | wc -l)" 0
+/usr/bin/python3 - <<'PYTHON' || fail "tables or report are not in order"
+import csv, re
+rows = {name: list(csv.DictReader(open(f"quick/{name}.csv"))) for name in
+        "closed_loop laws networks rates table1 transfer".split()}
+for row in rows["rates"]:
+    for column in "rate constant engine1 engine4 engine10".split():
+        assert row[column] == "" or 0 <= float(row[column]) <= 1, row
+    # The engine as it is agrees with itself, whatever is counted but bodies.
+    assert row["definition"] == "bodies" or float(row["engine10"]) == 1, row
+for row in rows["closed_loop"]:
+    assert 1 <= float(row["frames_until_apart"]) <= 600 and float(row["energy_ratio"]) > 0, row
+    # Equal and opposite impulses make no momentum.
+    if row["network"] in ("baseline", "contact-net"): assert float(row["momentum_error"]) == 0, row
+    assert float(row["us_step"]) > 0 and float(row["us_step_engine"]) > 0, row
+for row in rows["networks"]:
+    last = [r for r in rows["table1"] if r["network"] == row["network"]][-1]
+    assert last["test"] == row["test"], row
+    assert abs(float(row["ratio"]) - float(row["test"]) / float(row["constant"])) < 1e-5 * float(row["ratio"]), row
+assert {row["seed"] for row in rows["transfer"]} == {"1", "2", "3"}
+html = open("quick/report.html").read()
+assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/)', html)
+PYTHON
+
+# What is cut off goes on where it stopped, to the same figures.
+"$twinbox" paper -o part --quick --scenes "$scenes" >out 2>err </dev/null &
+for _ in $(seq 3000); do
+    ls part/parts-*/network-target-net >/dev/null 2>&1 && break
+    sleep 0.01
+done
+kill -INT $!
+wait $!
+equal "exit status of a study cut off" $? 2
+complains "stopped"
+[ -e part/report.html ] && fail "a study cut off has a report"
+kept=$(echo part/parts-*)
+sed -i 's/^table1:baseline,pair,adam,0,[^,]*/table1:baseline,pair,adam,0,0.5/' "$kept/network-baseline"
+run 0 paper -o part --quick --scenes "$scenes"
+figures quick >figures.csv
+figures part | diff - figures.csv >difference
+equal "figures changed by hand that stay" "$(grep -c '^< baseline,pair,adam,0,0.5,' difference)" 1
+equal "other differences" "$(grep -c '^[<>]' difference)" 2
+
+run 2 paper
+complains "-o DIR is needed"
+run 2 paper -o none --scenes nowhere
+complains "nowhere/single.yaml: error:"
+run 2 paper -o none --seed x --scenes "$scenes"
+complains "--seed"
+run 3 paper -o /proc/none --quick --scenes "$scenes"
+finish

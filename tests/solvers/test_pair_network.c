@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a file may hold, and which solver takes it. */
+#include "pair_networks.h"
+
+static void texts_that_do_not_fit_each_other_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Network *network = network_create(1, (const int[]){10, 3}, &error);
+    assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
+    strcpy(network->target, "pair");
+    assert_network_refused(
+        &solver_pair_net, write_pair_network(network),
+        "a network with the inputs relative, the target pair and 3 outputs (); of outputs it needs 2 "
+        "(dvx dvy) or 6 (dvxa dvya dwa dvxb dvyb dwb)");
+    network = make_pair_network(PAIR_CONTACT, TARGET_PAIR, 2);
+    strcpy(network->outputs, "dvx dvy");
+    assert_network_refused(&solver_pair_net, write_pair_network(network),
+                           "2 outputs (dvx dvy); of outputs it needs 2 (dvn");
+    network = make_pair_network(PAIR_RAW, TARGET_PAIR, 2);
+    strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
+    assert_network_refused(&solver_pair_net, write_pair_network(network),
+                           "a network with 12 inputs (dx dy vxa vya vxb vyb wa wb angle_a angle_b); a pair is seen by "
+                           "those of relative (10), raw (12), raw-unturned (10), contact (20), neighbours (32)");
+    network = make_pair_network(PAIR_RAW, TARGET_PAIR, 2);
+    strcpy(network->target, "gross");
+    assert_network_refused(&solver_pair_net, write_pair_network(network),
+                           "the target 'gross'; a pair is asked for one of pair, net, impulse, points");
+    network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, 6);
+    strcpy(network->target, "points");
+    assert_network_refused(&solver_contact_net, write_pair_network(network),
+                           "the target points with the inputs relative; it needs those of contact or neighbours");
+    network = make_pair_network(PAIR_NEIGHBOURS, TARGET_PAIR, 6);
+    strcpy(network->target, "impulse");
+    assert_network_refused(&solver_constant, write_pair_network(network),
+                           "the inputs neighbours, which change at every");
+}
+
+static void other_methods_networks_are_refused(void **state) {
+    (void)state;
+    assert_network_refused(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, six),
+                           "a network of the target points, which are contact-net's");
+    assert_network_refused(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_IMPULSE, 2, six),
+                           "it needs the impulses so far at the points");
+    assert_network_refused(
+        &solver_contact_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six),
+        "a network of the target net, which is pair-net's; contact-net needs one of the target points");
+    Error error = {0};
+    assert_null(solver_pair_net.create(&(Settings){0}, &error));
+    assert_error(error, ERROR_INPUT, "pair-net: error: the scene names no network for it: use pair-net:network=FILE");
+    error = (Error){0};
+    assert_null(solver_constant.create(&(Settings){0}, &error));
+    assert_error(error, ERROR_INPUT, "constant: error: the scene names no network");
+    error = (Error){0};
+    assert_null(solver_contact_net.create(&(Settings){0}, &error));
+    assert_error(error, ERROR_INPUT, "contact-net: error: the scene names no network");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(texts_that_do_not_fit_each_other_are_refused),
+                                       cmocka_unit_test(other_methods_networks_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "scene/launch.h"
+#include "study/closed_loop.h"
+
+static Scene *read_scene(const char *name) {
+    Error error = {0};
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static ClosedLoop run(const char *text, const Scene *scene) {
+    Error error = {0};
+    Method method;
+    ClosedLoop result;
+    assert_ok(method_parse(&method, text, &error), error);
+    assert_ok(closed_loop_run(&method, scene, 1, &result, &error), error);
+    return result;
+}
+
+/* It has no momentum from nothing, and friction and inelastic impacts only take energy: the bomb's fall adds none. */
+static void the_engine_stays_with_itself(void **state) {
+    (void)state;
+    Scene *scene = read_scene("single");
+    ClosedLoop result = run("engine", scene);
+    assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
+    assert_near(result.momentum_error, 0, 0);
+    assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
+    assert_true(result.penetration_max > 0);
+    scene_destroy(scene);
+}
+
+/* With one sweep from nothing a stack of ten sinks: soon apart, deeper. */
+static void a_poor_method_parts_from_the_engine(void **state) {
+    (void)state;
+    Scene *scene = read_scene("stack");
+    ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
+    assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 100);
+    assert_true(poor.penetration_max > same.penetration_max);
+    scene_destroy(scene);
+}
+
+/* A bomb that comes late brings energy with it, which is none that the method made. */
+static void energy_counts_from_the_bomb_on(void **state) {
+    (void)state;
+    Scene *scene = read_scene("single");
+    scene->bomb.frame = 30;
+    ClosedLoop result = run("engine", scene);
+    assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
+    scene_destroy(scene);
+}
+
+static void time_is_taken_of_both(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    scene->frames = 60;
+    const Sampling sampling = {.after = 20, .rest = 20};
+    SnapshotList states = {0};
+    assert_ok(snapshots_add(&states, scene, &sampling, &error), error);
+    Method method;
+    double us_step = 0, us_step_engine = 0;
+    assert_ok(method_parse(&method, "engine:k=1", &error), error);
+    assert_ok(closed_loop_time(&method, &states, 3, &us_step, &us_step_engine, &error), error);
+    assert_true(us_step > 0 && us_step_engine > 0);
+    snapshots_free(&states);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_engine_stays_with_itself), cmocka_unit_test(a_poor_method_parts_from_the_engine),
+        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(time_is_taken_of_both)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "common/file.h"
+#include "study/study_parts.h"
+
+/* A part that counts how often it is done. */
+typedef struct Counted {
+    const char *lines;
+    int done;
+    bool stopped, fails;
+} Counted;
+
+static bool write_counted(void *context, FILE *lines, const Progress *progress, Error *error) {
+    Counted *counted = context;
+    counted->done++;
+    counted->stopped = !progress_report(progress, 1, 2);
+    fputs(counted->lines, lines);
+    return !counted->fails || error_input(error, "part", "failed");
+}
+
+static void open_parts(StudyParts *parts, const char *folder) {
+    Error error = {0};
+    *parts = (StudyParts){.total = 4};
+    assert_ok(study_parts_open(parts, folder, 0x1234, &error), error);
+}
+
+static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
+    (void)state;
+    Error error = {0};
+    char folder[300];
+    snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
+    StudyParts parts;
+    open_parts(&parts, folder);
+    Counted first = {"a:1,2\nab:3\n", 0, false, false}, second = {"ab:4\na:5,6\n", 0, false, false};
+    assert_ok(study_parts_do(&parts, &(StudyPart){"first", 1, write_counted, &first}, &error), error);
+    assert_ok(study_parts_do(&parts, &(StudyPart){"second", 3, write_counted, &second}, &error), error);
+    assert_near(parts.done, 4, 0);
+    assert_ok(study_parts_table(&parts, folder, "a", "x,y", &error), error);
+    char path[400];
+    size_t size;
+    snprintf(path, sizeof path, "%s/a.csv", folder);
+    char *text = file_read(path, 1000, &size, &error);
+    assert_ok(text != NULL, error);
+    assert_string_equal(text, "x,y\n1,2\n5,6\n");
+    free(text);
+    study_parts_remove(&parts);
+    assert_int_equal(access(parts.folder, F_OK), -1);
+    study_parts_close(&parts);
+}
+
+static void what_is_done_is_not_done_again(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *folder = temporary_path("again");
+    Counted counted = {"t:1\n", 0, false, false};
+    char *texts[2];
+    for (int run = 0; run < 2; run++) {
+        StudyParts parts;
+        open_parts(&parts, folder);
+        assert_ok(study_parts_do(&parts, &(StudyPart){"only", 1, write_counted, &counted}, &error), error);
+        texts[run] = strdup(parts.text);
+        study_parts_close(&parts);
+    }
+    assert_int_equal(counted.done, 1);
+    assert_string_equal(texts[0], texts[1]);
+    free(texts[0]);
+    free(texts[1]);
+}
+
+static bool stop(void *context, double done, double total) {
+    *(double *)context = done / total;
+    return false;
+}
+
+/* The first part is worth a quarter; half of it was done. */
+static void a_part_cut_off_is_not_kept(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *folder = temporary_path("cut");
+    Counted counted = {"t:1\n", 0, false, false};
+    const StudyPart part = {"only", 1, write_counted, &counted};
+    StudyParts parts;
+    double share = 0;
+    open_parts(&parts, folder);
+    parts.progress = &(Progress){stop, &share};
+    assert_false(study_parts_do(&parts, &part, &error));
+    assert_error(error, ERROR_INPUT, "stopped");
+    assert_near(share, 0.125, 0);
+    assert_true(counted.stopped);
+    study_parts_close(&parts);
+    open_parts(&parts, folder);
+    error = (Error){0};
+    counted.fails = true;
+    assert_false(study_parts_do(&parts, &part, &error));
+    assert_error(error, ERROR_INPUT, "part: error: failed");
+    study_parts_close(&parts);
+    open_parts(&parts, folder);
+    counted.fails = false;
+    error = (Error){0};
+    assert_ok(study_parts_do(&parts, &part, &error), error);
+    assert_int_equal(counted.done, 3);
+    study_parts_close(&parts);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_put_together_in_the_order_of_the_parts),
+                                       cmocka_unit_test(what_is_done_is_not_done_again),
+                                       cmocka_unit_test(a_part_cut_off_is_not_kept)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
