@@ -250,9 +250,10 @@ static void the_row_shown_is_the_datasets(void **state) {
     assert_int_equal(rows, dataset->rows);
     int found = 0;
     for (int64_t i = 0; i < dataset->rows; i++) {
-        if (dataset->frame[i] != step || dataset->bodies[2 * i] != bodies[0] ||
-            dataset->bodies[2 * i + 1] != bodies[1] || fabs((double)dataset->launch_x[dataset->launch[i]] - x) > 1e-6)
-            continue;
+        if (fabs((double)dataset->launch_x[dataset->launch[i]] - x) > 1e-6) continue;
+        const int32_t *pair = &dataset->bodies[2 * i];
+        assert_false(pair[0] > 0 && pair[1] == bodies[1] && dataset->frame[i] < step); /* it is the first touch */
+        if (dataset->frame[i] != step || pair[0] != bodies[0] || pair[1] != bodies[1]) continue;
         const float *change = &dataset->changes[PAIR_CHANGES * i];
         const int at[4] = {0, 1, 3, 4};
         for (int k = 0; k < 4; k++) assert_near(change[at[k]], changes[k], 0.006);
