@@ -6,12 +6,12 @@
 
 enum { CAPTION_SIZE = 800 };
 
-typedef enum FigureScene { SCENE_SINGLE, SCENE_STACK, SCENE_PYRAMID, FIGURE_SCENES } FigureScene;
+typedef enum EngineScene { SCENE_SINGLE, SCENE_STACK, SCENE_PYRAMID, ENGINE_SCENES } EngineScene;
 
 typedef struct EngineFigure {
     double width, height; /* mm */
     /* Draws into an empty sketch of that size, and writes a caption: one line of plain text. */
-    bool (*draw)(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error);
+    bool (*draw)(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error);
 } EngineFigure;
 
 extern const EngineFigure figure_loop, figure_narrow_phase, figure_data, figure_scenes;

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const scene_names[FIGURE_SCENES] = {"single", "stack", "pyramid"};
+static const char *const scene_names[ENGINE_SCENES] = {"single", "stack", "pyramid"};
 
 static const EngineFigure *const figures[] = {&figure_loop, &figure_narrow_phase, &figure_data, &figure_scenes};
 
@@ -47,14 +47,14 @@ static Scene *read_scene(const char *folder, const char *name, Error *error) {
 }
 
 bool engine_figures_draw(const char *scenes_folder, const char *folder, Error *error) {
-    Scene *scenes[FIGURE_SCENES] = {NULL};
+    Scene *scenes[ENGINE_SCENES] = {NULL};
     bool done = true;
-    for (int i = 0; done && i < FIGURE_SCENES; i++) {
+    for (int i = 0; done && i < ENGINE_SCENES; i++) {
         scenes[i] = read_scene(scenes_folder, scene_names[i], error);
         done = scenes[i] != NULL;
     }
     for (size_t i = 0; done && engine_figure_names[i] != NULL; i++)
         done = draw_figure(figures[i], engine_figure_names[i], scenes, folder, error);
-    for (int i = 0; i < FIGURE_SCENES; i++) scene_destroy(scenes[i]);
+    for (int i = 0; i < ENGINE_SCENES; i++) scene_destroy(scenes[i]);
     return done;
 }

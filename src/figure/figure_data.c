@@ -1,156 +1,132 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 3: how training data are made. Left the bomb's paths in every so many of the launches of the sweep, right one
-   of the rows that they leave: what a pair was, and what its own impulses changed. */
+/* Figure 3: how training data are made. Left the bomb's ways in every so many launches of the sweep, right one of the
+   rows that they leave: what a pair was like, and what its own impulses changed. */
+#include "figure/data_sweep.h"
 #include "figure/engine_figure.h"
-#include "figure/engine_run.h"
 
-#include "common/parse.h"
-#include "dynamics/pair.h"
 #include "render/style.h"
-#include "scene/launch.h"
 
+#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-static const double width = 174, height = 98; /* mm */
+static const double width = 174, height = 96, split = 73; /* mm */
 
-/* The paper's sweep (3.3), every how many of its launches are shown, and the one whose row is: the bomb comes down on
-   the edge of the highest box, which it turns. */
-static const FloatRange sweep = {-5, 0.05, 201};
-enum { SHOWN_EVERY = 10, ROW_LAUNCH = 120, PATH_MAX_POINTS = 400, PATH_AFTER = 24 };
+/* Of what each number tells, in the order of pair_inputs() and pair_changes(). */
+typedef struct NumberName {
+    const char *name, *unit;
+} NumberName;
 
-/* The first pair of the bomb with a box that can move. */
-typedef struct Row {
-    int step, bodies[2], bomb;
-    Box boxes[2];
-    BodyVelocity before[2];
-    float inputs[PAIR_INPUTS], changes[PAIR_CHANGES];
-} Row;
+static const NumberName input_names[PAIR_INPUTS] = {
+    {"dx", "m"},    {"dy", "m"},     {"vxa", "m/s"},  {"vya", "m/s"},     {"vxb", "m/s"},
+    {"vyb", "m/s"}, {"wa", "rad/s"}, {"wb", "rad/s"}, {"angle a", "rad"}, {"angle b", "rad"}};
+static const NumberName change_names[PAIR_CHANGES] = {{"dvxa", "m/s"}, {"dvya", "m/s"}, {"dwa", "rad/s"},
+                                                      {"dvxb", "m/s"}, {"dvyb", "m/s"}, {"dwb", "rad/s"}};
+static const double speed_scale = 1.1; /* mm for 1 m/s */
 
-typedef struct Sweep {
-    int launches; /* shown */
-    int rows;     /* touching pairs in all steps of the launches shown */
-    float x;      /* m, of the launch whose row is shown */
-    Row row;
-} Sweep;
+enum { VELOCITY_A = 2, VELOCITY_B = 4 }; /* among the inputs */
 
-/* As twinbox dataset records them. */
-static void fill_row(Row *row, const ContactProblem *problem, const ContactSolution *solution, int first) {
-    pair_inputs(problem, NULL, first, PAIR_RELATIVE, row->inputs);
-    pair_changes(problem, solution, first, pair_contact_count(problem, first), row->changes);
+/* A change follows the velocity that it changes. Too short an arrow would be all head. */
+static Point put_vector(Sketch *sketch, Point from, const float *v, uint32_t colour) {
+    const double least = 1.5; /* mm */
+    const Point to = {from.x + speed_scale * (double)v[0], from.y + speed_scale * (double)v[1]};
+    if (hypot(to.x - from.x, to.y - from.y) >= least) sketch_arrow(sketch, from, to, HEAD_AT_END, colour, 2.6);
+    return to;
 }
 
-static void take_row(Row *row, const EngineRun *run) {
-    const ContactProblem *problem = world_problem(run->world);
-    for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) {
-        const int bodies[2] = {problem->contacts[i].a, problem->contacts[i].b};
-        bool bomb = bodies[0] == problem->bomb || bodies[1] == problem->bomb;
-        if (!bomb || problem->bodies[bodies[0]].inv_mass == 0 || problem->bodies[bodies[1]].inv_mass == 0) continue;
-        *row = (Row){.step = run->frame, .bodies = {bodies[0], bodies[1]}, .bomb = problem->bomb};
-        for (int k = 0; k < 2; k++) {
-            const ProblemBody *body = &problem->bodies[bodies[k]];
-            row->boxes[k] = engine_run_box(run, bodies[k]);
-            row->before[k] = (BodyVelocity){body->velocity, body->angular_velocity};
-        }
-        fill_row(row, problem, world_solution(run->world), i);
-        return;
-    }
-}
+static bool is_bomb(const SweepRow *row, int i) { return row->bodies[i] == row->bomb; }
 
-/* The bomb's way: up to its first touch, and a little farther. */
-typedef struct Path {
-    int count, touch; /* points; those up to the touch */
-    Point points[PATH_MAX_POINTS];
-} Path;
-
-static bool run_launch(Sweep *shown, Path *path, const Scene *launched, const View *view, bool wanted, Error *error) {
-    EngineRun run;
-    if (!engine_run_begin(&run, launched, error)) return false;
-    bool ok = true;
-    *path = (Path){0};
-    while (ok && run.frame < launched->frames) {
-        const Body *bodies = world_bodies(run.world);
-        int bomb = world_problem(run.world)->bomb, since = run.tracker.touch == 0 ? 0 : run.frame - run.tracker.touch;
-        if (bomb >= 0 && since <= PATH_AFTER && path->count < PATH_MAX_POINTS)
-            path->points[path->count++] = view_place(view, bodies[bomb].position);
-        bool touched = run.tracker.touch != 0;
-        ok = engine_run_step(&run, error);
-        if (!ok) break;
-        if (!touched && run.tracker.touch != 0) {
-            path->touch = path->count;
-            if (wanted) take_row(&shown->row, &run);
-        }
-        const ContactProblem *problem = world_problem(run.world);
-        for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) shown->rows++;
-    }
-    engine_run_end(&run);
-    return ok;
-}
-
-static void put_path(Sketch *sketch, const View *view, const Path *path, bool wanted) {
-    const Pen before = pen_line(wanted ? ACCENT : BOMB.fill, wanted ? 3 : 1.2, NULL);
-    const Pen dot = pen_fill(wanted ? ACCENT : BOMB.fill, 1, NO_COLOUR);
-    (void)view;
-    int touch = path->touch > 0 ? path->touch : path->count;
-    sketch_path(sketch, path->points, touch, &before);
-    if (path->touch > 0) sketch_dot(sketch, path->points[touch - 1], wanted ? 1.1 : 0.7, &dot);
-}
-
-static void put_stack(Sketch *sketch, const View *view, const Scene *scene) {
-    for (int i = 0; i < scene->body_count; i++) {
-        const BodyDef *body = &scene->bodies[i];
-        const Box box = box_make(body->position, body->size, body->angle);
-        const Pen pen = body->fixed ? pen_fill(GROUND, 1, GROUND_LINE) : pen_fill(BOX_COLOUR, 0.3, BOX_INK);
-        sketch_box(sketch, view, &box, &pen);
-    }
-}
-
-static bool put_sweep(Sketch *sketch, Sweep *shown, const Scene *scene, Error *error) {
-    const View view = {{1, 1}, {86, height - 7}, {0, 7.6}, 5.1};
-    put_stack(sketch, &view, scene);
-    for (int i = 0; i < sweep.count; i += SHOWN_EVERY) {
-        Path path;
-        Launch launch = launch_of(scene);
-        launch.x = range_value(&sweep, i);
-        Scene launched = launch_scene(scene, &launch);
-        bool wanted = i == ROW_LAUNCH;
-        if (!run_launch(shown, &path, &launched, &view, wanted, error)) return false;
-        put_path(sketch, &view, &path, wanted);
-        if (wanted) shown->x = launch.x;
-        shown->launches++;
-        BodyDef bomb = scene_bomb_body(&launched);
-        if (i % 50 != 0) continue;
-        const Box box = box_make(bomb.position, bomb.size, bomb.angle);
-        const Pen pen = pen_fill(BOMB.fill, 0.5, BOMB.line);
-        sketch_box(sketch, &view, &box, &pen);
-    }
-    return true;
-}
-
-static void put_velocity(Sketch *sketch, Point at, Vec2 velocity, uint32_t colour) {
-    const double scale = 1.0; /* mm for 1 m/s */
-    Point to = {at.x + scale * (double)velocity.x, at.y + scale * (double)velocity.y};
-    sketch_arrow(sketch, at, to, HEAD_AT_END, colour, 2.4);
-}
-
-static void put_pair(Sketch *sketch, const Row *row) {
+static void put_pair(Sketch *sketch, const SweepRow *row) {
     Vec2 middle = vec2_scale(0.5f, vec2_add(row->boxes[0].position, row->boxes[1].position));
-    const View view = {{92, 44}, {width - 1, height - 7}, {(double)middle.x, (double)middle.y}, 14};
+    const View view = {{split, 44}, {split + 56, height - 6}, {(double)middle.x, (double)middle.y - 0.5}, 13};
     for (int i = 0; i < 2; i++) {
-        bool bomb = row->bodies[i] == row->bomb;
-        const Pen pen = bomb ? pen_fill(BOMB.fill, 0.2, BOMB.line) : pen_fill(BOX_COLOUR, 0.2, BOX_INK);
+        const Pen pen = is_bomb(row, i) ? pen_fill(BOMB.fill, 0.3, BOMB.line) : pen_fill(BOX_COLOUR, 0.2, BOX_INK);
         sketch_box(sketch, &view, &row->boxes[i], &pen);
         Point at = view_place(&view, row->boxes[i].position);
-        put_velocity(sketch, at, row->before[i].linear, ACCENT);
-        put_velocity(sketch, (Point){at.x + 4, at.y}, vec2(row->changes[3 * i], row->changes[3 * i + 1]), NETWORK_INK);
+        Point to = put_vector(sketch, at, &row->inputs[i == 0 ? VELOCITY_A : VELOCITY_B], ACCENT);
+        put_vector(sketch, to, &row->changes[3 * i], NETWORK_COLOUR);
+        const TextStyle name = {8.5, i == 0 ? TEXT_RIGHT : TEXT_LEFT, is_bomb(row, i) ? BOMB.line : BOX_INK, 0};
+        double side = (i == 0 ? -1 : 1) * view.scale * 0.6;
+        sketch_text(sketch, (Point){at.x + side, at.y}, &name, "%c: %s", "ab"[i], is_bomb(row, i) ? "bomb" : "box");
     }
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
-    Sweep shown = {0};
-    if (!put_sweep(sketch, &shown, scenes[SCENE_STACK], error)) return false;
-    put_pair(sketch, &shown.row);
-    snprintf(caption, CAPTION_SIZE, "rows %d launches %d x %g", shown.rows, shown.launches, (double)shown.x);
+/* What arrows and letters stand for. */
+static void put_key(Sketch *sketch) {
+    static const char *const arrows[] = {"velocity before", "its change"};
+    static const char *const letters[] = {"dx, dy: b as seen from a", "v: velocity, w: spin", "dv, dw: their changes"};
+    const uint32_t colours[] = {ACCENT, NETWORK_COLOUR};
+    const TextStyle words = {7.5, TEXT_LEFT, INK, 0};
+    Point at = {split + 61, height - 11};
+    for (int i = 0; i < 2; i++, at.y -= 5) {
+        sketch_arrow(sketch, at, (Point){at.x + 10 * speed_scale, at.y}, HEAD_AT_END, colours[i], 2.6);
+        sketch_text(sketch, (Point){at.x + 13, at.y}, &words, "%s", arrows[i]);
+    }
+    sketch_bar(sketch, at, 10 * speed_scale, "10 m/s");
+    at.y -= 3;
+    for (int i = 0; i < 3; i++) sketch_text(sketch, (Point){at.x, at.y -= 5}, &words, "%s", letters[i]);
+}
+
+/* Names, numbers and units in a column from `at` down. */
+static void put_numbers(Sketch *sketch, Point at, const NumberName *names, const float *numbers, int count) {
+    const TextStyle name = {7.5, TEXT_LEFT, INK_SOFT, 0}, number = {7.5, TEXT_RIGHT, INK, 0};
+    const TextStyle unit = {7.5, TEXT_LEFT, INK_SOFT, 0};
+    for (int i = 0; i < count; i++, at.y -= 4.2) {
+        sketch_text(sketch, at, &name, "%s", names[i].name);
+        sketch_text(sketch, (Point){at.x + 19.5, at.y}, &number, "%s", show_number((double)numbers[i], 3).text);
+        sketch_text(sketch, (Point){at.x + 20.5, at.y}, &unit, "%s", names[i].unit);
+    }
+}
+
+static void put_row(Sketch *sketch, const SweepRow *row) {
+    const Pen inputs = pen_fill(BOX_COLOUR, 0.08, BOX_INK), changes = pen_fill(NETWORK_COLOUR, 0.2, NETWORK_INK);
+    const double top = 42, foot = 9, second = split + 34, third = split + 70;
+    sketch_rectangle(sketch, (Point){split, foot}, (Point){third - 4, top}, &inputs);
+    sketch_rectangle(sketch, (Point){third - 1, foot}, (Point){width - 0.5, top}, &changes);
+    sketch_text(sketch, (Point){split + 2, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, BOX_INK, 0}, "Ten inputs");
+    sketch_text(sketch, (Point){third + 1, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, NETWORK_INK, 0}, "Changes");
+    put_numbers(sketch, (Point){split + 2, top - 8.5}, input_names, row->inputs, 5);
+    put_numbers(sketch, (Point){second, top - 8.5}, input_names + 5, row->inputs + 5, 5);
+    put_numbers(sketch, (Point){third + 1, top - 8.5}, change_names, row->changes, 6);
+    sketch_text(sketch, (Point){split, 4.5}, &(TextStyle){7.5, TEXT_LEFT, INK, 0},
+                "The two outputs: change of b as seen from a, (%s, %s) m/s",
+                show_number((double)row->changes[3] - (double)row->changes[0], 3).text,
+                show_number((double)row->changes[4] - (double)row->changes[1], 3).text);
+}
+
+static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int rows) {
+    char changes[2][2 * sizeof(ShownNumber) + 2];
+    for (int i = 0; i < 2; i++)
+        snprintf(changes[i], sizeof changes[i], "%s, %s", show_number((double)row->changes[3 * i], 2).text,
+                 show_number((double)row->changes[3 * i + 1], 2).text);
+    snprintf(
+        caption, CAPTION_SIZE,
+        "How training data are made: in stack.yaml the bomb is launched from %d places, x = %s to %s m (every %dth is "
+        "shown), and each touching pair leaves a row in each step, %d rows for the launches shown. The row at the "
+        "right, "
+        "of bodies %d and %d in step %d of the launch from x = %s m, has ten inputs, and what the pair's impulses "
+        "changed: the velocity of the %s by (%s) m/s and that of the %s by (%s) m/s.",
+        SWEEP_LAUNCHES, show_number((double)sweep_x(0), 0).text,
+        show_number((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row->bodies[0],
+        row->bodies[1], row->step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
+        is_bomb(row, 0) ? "bomb" : "box", changes[0], is_bomb(row, 1) ? "bomb" : "box", changes[1]);
+}
+
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+    const View view = {{1, 1}, {split - 6, height - 6}, {0, 7.5}, 5.1};
+    SweepRow row;
+    int rows;
+    if (!put_sweep(sketch, &view, scenes[SCENE_STACK], &row, &rows, error)) return false;
+    sketch_bar(sketch, (Point){3, 4}, 2 * view.scale, "2 m");
+    sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0}, "dot: first touch");
+    put_pair(sketch, &row);
+    put_key(sketch);
+    put_row(sketch, &row);
+    const TextStyle title = {8.5, TEXT_LEFT, INK, 0};
+    sketch_text(sketch, (Point){1, height - 2.5}, &title, "%d of %d launches",
+                (SWEEP_LAUNCHES - 1) / SWEEP_SHOWN_EVERY + 1, SWEEP_LAUNCHES);
+    sketch_text(sketch, (Point){split, height - 2.5}, &title, "One row: bodies %d and %d, step %d, launch from %s m",
+                row.bodies[0], row.bodies[1], row.step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text);
+    write_caption(caption, &row, rows);
     return true;
 }
 

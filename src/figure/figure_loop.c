@@ -111,11 +111,11 @@ static void put_stages(Sketch *sketch, const StepCounts *c) {
     snprintf(first, LINE_SIZE, "%d of these pairs touch: %d arbiters", c->touching, c->touching);
     snprintf(second, LINE_SIZE, "with %d contact points", c->points);
     put_stage(sketch, corner(1, high_row), "2  Narrow phase", first, second, &stage, BOX_INK);
-    snprintf(first, LINE_SIZE, "Changes the velocities of %d bodies", c->moving);
-    snprintf(second, LINE_SIZE, "by %.3f m/s", c->gravity);
+    snprintf(first, LINE_SIZE, "Adds %.3f m/s to the", c->gravity);
+    snprintf(second, LINE_SIZE, "velocities of %d bodies", c->moving);
     put_stage(sketch, corner(2, high_row), "3  Gravity", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "%d points: mass, bias, friction", c->points);
-    snprintf(second, LINE_SIZE, "Warm start: %d keep their last impulse", c->warm);
+    snprintf(second, LINE_SIZE, "Warm start at %d of them", c->warm);
     put_stage(sketch, corner(2, low_row), "4  Contact problem", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "%d sweeps over %d points:", c->sweeps, c->points);
     snprintf(second, LINE_SIZE, "%d pairs of impulses", c->sweeps * c->points);
@@ -125,7 +125,7 @@ static void put_stages(Sketch *sketch, const StepCounts *c) {
     put_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[FIGURE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
     EngineRun run;
     StepCounts counts;
     if (!engine_run_begin(&run, scenes[SCENE_STACK], error)) return false;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 Point view_place(const View *view, Vec2 position) {
     return (Point){(view->low.x + view->high.x) / 2 + view->scale * ((double)position.x - view->center.x),
@@ -15,70 +16,88 @@ Point view_place(const View *view, Vec2 position) {
 
 bool sketch_begin(Sketch *sketch, double width, double height, Error *error) {
     *sketch = (Sketch){.width = width, .height = height};
-    sketch->script = open_memstream(&sketch->script_text, &sketch->script_size);
-    sketch->plot = open_memstream(&sketch->plot_text, &sketch->plot_size);
-    if (sketch->script == NULL || sketch->plot == NULL) {
+    for (int i = 0; i < SKETCH_PARTS; i++) {
+        SketchPart *part = &sketch->parts[i];
+        part->file = open_memstream(&part->text, &part->size);
+        if (part->file != NULL) continue;
         sketch_free(sketch);
         return error_memory(error, "figure");
     }
-    fprintf(sketch->script, "set termoption noenhanced\nset key off\nunset border\nunset tics\nset multiplot\n"
-                            "set lmargin at screen 0\nset rmargin at screen 1\n"
-                            "set bmargin at screen 0\nset tmargin at screen 1\n");
-    fprintf(sketch->script, "set xrange [0:%g]\nset yrange [0:%g]\n", width, height);
-    fprintf(sketch->plot, "plot NaN");
+    fprintf(sketch->parts[PART_PICTURES].file,
+            "set termoption noenhanced\nset key off\nunset border\nunset tics\nset multiplot\n"
+            "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen 1\n"
+            "set xrange [0:%g]\nset yrange [0:%g]\n",
+            width, height);
+    fprintf(sketch->parts[PART_PLOT].file, "plot NaN");
     return true;
 }
 
-static bool close_streams(Sketch *sketch) {
-    bool whole = true;
-    if (sketch->script != NULL) whole = !ferror(sketch->script) && fclose(sketch->script) == 0;
-    if (sketch->plot != NULL) whole = !ferror(sketch->plot) && fclose(sketch->plot) == 0 && whole;
-    sketch->script = sketch->plot = NULL;
+static bool close_part(SketchPart *part) {
+    if (part->file == NULL) return true;
+    bool whole = !ferror(part->file);
+    whole = fclose(part->file) == 0 && whole;
+    part->file = NULL;
     return whole;
 }
 
 void sketch_free(Sketch *sketch) {
-    close_streams(sketch);
-    free(sketch->script_text);
-    free(sketch->plot_text);
+    for (int i = 0; i < SKETCH_PARTS; i++) {
+        close_part(&sketch->parts[i]);
+        free(sketch->parts[i].text);
+    }
     *sketch = (Sketch){0};
 }
 
+/* The parts behind each other; NULL when memory is short. */
+static char *join_parts(Sketch *sketch, size_t *size) {
+    bool whole = true;
+    *size = 0;
+    for (int i = 0; i < SKETCH_PARTS; i++) {
+        whole = close_part(&sketch->parts[i]) && whole;
+        *size += sketch->parts[i].size;
+    }
+    char *script = whole ? malloc(*size) : NULL, *end = script;
+    for (int i = 0; script != NULL && i < SKETCH_PARTS; end += sketch->parts[i++].size)
+        memcpy(end, sketch->parts[i].text, sketch->parts[i].size);
+    return script;
+}
+
 bool sketch_draw(Sketch *sketch, const char *stem, Error *error) {
-    fflush(sketch->plot);
-    fwrite(sketch->plot_text, 1, sketch->plot_size, sketch->script);
-    fprintf(sketch->script, "\nunset multiplot\n");
-    if (!close_streams(sketch)) return error_memory(error, stem);
-    const GnuplotDrawing drawing = {.width = sketch->width,
-                                    .height = sketch->height,
-                                    .script = sketch->script_text,
-                                    .script_size = sketch->script_size,
-                                    .without_pdf = true};
-    return gnuplot_draw(&drawing, stem, error);
+    fprintf(sketch->parts[PART_PLOT].file, "\nunset multiplot\n");
+    size_t size;
+    char *script = join_parts(sketch, &size);
+    if (script == NULL) return error_memory(error, stem);
+    const GnuplotDrawing drawing = {
+        .width = sketch->width, .height = sketch->height, .script = script, .script_size = size, .without_pdf = true};
+    bool drawn = gnuplot_draw(&drawing, stem, error);
+    free(script);
+    return drawn;
 }
 
 /* gnuplot places the middles of pixels. */
 void sketch_image(Sketch *sketch, const Image *image, Point low, double width) {
     double pixel = width / image->width;
-    fprintf(sketch->script,
+    FILE *script = sketch->parts[PART_PICTURES].file;
+    fprintf(script,
             "plot '-' binary array=(%d,%d) flipy dx=%.9g dy=%.9g origin=(%.9g,%.9g) format='%%uchar' with rgbimage\n",
             image->width, image->height, pixel, pixel, low.x + pixel / 2, low.y + pixel / 2);
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        fwrite(image->pixels + 4 * i, 1, 3, sketch->script);
-    fprintf(sketch->script, "\n");
+        fwrite(image->pixels + 4 * i, 1, 3, script);
+    fprintf(script, "\n");
 }
 
 static void put_path(Sketch *sketch, const Point *points, int count, bool closed, const Pen *pen) {
-    int block = sketch->blocks++;
-    fprintf(sketch->script, "$d%d << END\n", block);
-    for (int i = 0; i < count; i++) fprintf(sketch->script, "%.4f %.4f\n", points[i].x, points[i].y);
-    if (closed) fprintf(sketch->script, "%.4f %.4f\n", points[0].x, points[0].y);
-    fprintf(sketch->script, "END\n");
+    int path = sketch->paths++;
+    FILE *script = sketch->parts[PART_POINTS].file, *plot = sketch->parts[PART_PLOT].file;
+    fprintf(script, "$d%d << END\n", path);
+    for (int i = 0; i < count; i++) fprintf(script, "%.4f %.4f\n", points[i].x, points[i].y);
+    if (closed) fprintf(script, "%.4f %.4f\n", points[0].x, points[0].y);
+    fprintf(script, "END\n");
     if (closed && pen->fill != NO_COLOUR)
-        fprintf(sketch->plot, ", $d%d with filledcurves closed fs transparent solid %g noborder fc rgb '#%06X'", block,
+        fprintf(plot, ", $d%d with filledcurves closed fs transparent solid %g noborder fc rgb '#%06X'", path,
                 pen->opacity, pen->fill);
     if (pen->line != NO_COLOUR)
-        fprintf(sketch->plot, ", $d%d with lines lw %g dt %s lc rgb '#%06X'", block, pen->width,
+        fprintf(plot, ", $d%d with lines lw %g dt %s lc rgb '#%06X'", path, pen->width,
                 pen->dashes != NULL ? pen->dashes : "solid", pen->line);
 }
 
@@ -109,7 +128,7 @@ void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen) {
 }
 
 void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width) {
-    fprintf(sketch->script,
+    fprintf(sketch->parts[PART_WORDS].file,
             "set arrow from %.4f,%.4f to %.4f,%.4f front size first 2.2,18 %s filled lw %g lc rgb '#%06X'\n", from.x,
             from.y, to.x, to.y, heads == HEADS_AT_BOTH ? "heads" : "head", width, colour);
 }
@@ -159,17 +178,26 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    fprintf(sketch->script, "set label ");
-    put_quoted(sketch->script, text);
-    fprintf(sketch->script, " at %.4f,%.4f %s front font ',%g' rotate by %g tc rgb '#%06X'\n", at.x, at.y,
-            aligns[style->align], style->points, style->degrees, style->colour);
+    fprintf(sketch->parts[PART_WORDS].file, "set label ");
+    put_quoted(sketch->parts[PART_WORDS].file, text);
+    fprintf(sketch->parts[PART_WORDS].file, " at %.4f,%.4f %s front font ',%g' rotate by %g tc rgb '#%06X'\n", at.x,
+            at.y, aligns[style->align], style->points, style->degrees, style->colour);
 }
 
-void sketch_scale_bar(Sketch *sketch, Point left, double metres, const View *view) {
-    Point right = {left.x + metres * view->scale, left.y};
+ShownNumber show_number(double value, int decimals) {
+    ShownNumber shown;
+    char digits[40];
+    snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
+    bool negative = value < 0 && strspn(digits, "0.") < strlen(digits);
+    snprintf(shown.text, sizeof shown.text, "%s%s", negative ? "\xe2\x88\x92" : "", digits);
+    return shown;
+}
+
+void sketch_bar(Sketch *sketch, Point left, double length, const char *words) {
+    const Point right = {left.x + length, left.y};
     const Pen pen = pen_line(INK, 1.6, NULL);
     sketch_line(sketch, left, right, &pen);
     sketch_line(sketch, (Point){left.x, left.y - 0.8}, (Point){left.x, left.y + 0.8}, &pen);
     sketch_line(sketch, (Point){right.x, right.y - 0.8}, (Point){right.x, right.y + 0.8}, &pen);
-    sketch_text(sketch, (Point){right.x + 1.5, left.y}, &(TextStyle){7.5, TEXT_LEFT, INK, 0}, "%g m", metres);
+    sketch_text(sketch, (Point){right.x + 1.5, left.y}, &(TextStyle){7.5, TEXT_LEFT, INK, 0}, "%s", words);
 }

@@ -50,12 +50,21 @@ typedef struct View {
 
 Point view_place(const View *view, Vec2 position);
 
+/* Text that grows. */
+typedef struct SketchPart {
+    FILE *file;
+    char *text;
+    size_t size;
+} SketchPart;
+
+/* The parts of gnuplot's script, in this order: pictures, points of lines and shapes, arrows and words, and the command
+   that plots lines and shapes. */
+typedef enum SketchParts { PART_PICTURES, PART_POINTS, PART_WORDS, PART_PLOT, SKETCH_PARTS } SketchParts;
+
 typedef struct Sketch {
     double width, height; /* mm */
-    FILE *script, *plot;  /* what has to stand before the last plot command, and that command */
-    char *script_text, *plot_text;
-    size_t script_size, plot_size;
-    int blocks;
+    SketchPart parts[SKETCH_PARTS];
+    int paths; /* put so far */
 } Sketch;
 
 /* False when memory is short; a sketch begun is to be freed. */
@@ -65,8 +74,7 @@ void sketch_free(Sketch *sketch);
 /* Draws stem.png and stem.svg. Nothing more can be added then. */
 bool sketch_draw(Sketch *sketch, const char *stem, Error *error);
 
-/* A picture (alpha is dropped) with its lower left corner at `low`, `width` mm wide. Pictures lie below all else and are
-   to be put first. */
+/* A picture (alpha is dropped) with its lower left corner at `low`, `width` mm wide. Pictures lie below all else. */
 void sketch_image(Sketch *sketch, const Image *image, Point low, double width);
 
 /* A line through points, or the closed shape that they bound. */
@@ -97,5 +105,11 @@ typedef struct TextStyle {
 /* A line of words, cut to SKETCH_TEXT_SIZE - 1 bytes, its middle at the height of `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
-/* A bar of so many metres of a view, from `left` on, and its length beside it. */
-void sketch_scale_bar(Sketch *sketch, Point left, double metres, const View *view);
+/* A number with so many decimals, for a text: with a minus as wide as a plus, and none before 0. */
+typedef struct ShownNumber {
+    char text[48];
+} ShownNumber;
+ShownNumber show_number(double value, int decimals);
+
+/* A bar to measure by, and what it stands for. */
+void sketch_bar(Sketch *sketch, Point left, double length, const char *words);

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "figure/narrow_phase.h"
+
+#include <math.h>
+
+/* Where the shadows on one axis are drawn: a point of the page for each place along it. */
+typedef struct Gauge {
+    Point from; /* place 0, on the line nearer to the boxes */
+    Vec2 along, out;
+    double scale;
+} Gauge;
+
+static Point gauge_point(const Gauge *gauge, double place, double off) {
+    double x = (double)gauge->along.x, y = (double)gauge->along.y;
+    return (Point){gauge->from.x + place * gauge->scale * x + off * (double)gauge->out.x,
+                   gauge->from.y + place * gauge->scale * y + off * (double)gauge->out.y};
+}
+
+static void put_bar(Sketch *sketch, const Gauge *gauge, double low, double high, double off, const Pen *pen) {
+    const double thick = 1.5;
+    const Point corners[] = {gauge_point(gauge, low, off), gauge_point(gauge, high, off),
+                             gauge_point(gauge, high, off + thick), gauge_point(gauge, low, off + thick)};
+    sketch_shape(sketch, corners, 4, pen);
+}
+
+/* The gauge of an axis lies beyond the boxes, on the side of the box that has the axis. */
+static Gauge place_gauge(const View *view, const Collision *collision, const AxisOverlap *overlap) {
+    Vec2 out = vec2_cross_scalar(overlap->axis, 1);
+    Vec2 own = collision->boxes[overlap->box].position, other = collision->boxes[1 - overlap->box].position;
+    /* Across the pair its own box tells the side; along the pair there is room on either. */
+    double side = (double)vec2_dot(vec2_sub(own, other), out);
+    if (fabs(side) < 0.5) side = overlap->box == 0 ? -(double)out.x : (double)out.x;
+    if (side < 0) out = vec2_negate(out);
+    double reach = -HUGE_VAL;
+    for (int i = 0; i < 2; i++) {
+        const Box *box = &collision->boxes[i];
+        Vec2 in_box = vec2_abs(mat22_multiply(mat22_transpose(box->rotation), out));
+        reach = fmax(reach, (double)(vec2_dot(box->position, out) + vec2_dot(in_box, box->half)));
+    }
+    Point origin = view_place(view, vec2(0, 0));
+    /* Farther off for the one than for the other: bars that are tilted against each other do not meet. */
+    double away = view->scale * reach + (overlap->box == 0 ? 7 : 3);
+    return (Gauge){{origin.x + away * (double)out.x, origin.y + away * (double)out.y}, overlap->axis, out, view->scale};
+}
+
+/* Lines from the ends of the least overlap to where the boxes overlap. */
+static void put_guides(Sketch *sketch, const Gauge *gauge, const double ends[2]) {
+    const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
+    for (int i = 0; i < 2; i++)
+        sketch_line(sketch, gauge_point(gauge, ends[i], 0), gauge_point(gauge, ends[i], -1.1 * gauge->scale), &pen);
+}
+
+/* Beside a bar that stands, along one that lies. */
+static void put_depth(Sketch *sketch, const Gauge *gauge, double place, const Collision *collision, int i) {
+    const AxisOverlap *overlap = &collision->overlaps[i];
+    bool least = i == collision->least, beside = fabsf(gauge->out.x) > fabsf(gauge->out.y);
+    TextStyle words = {least ? 9 : 7.5, TEXT_CENTER, INK, 0};
+    if (beside) words.align = gauge->out.x > 0 ? TEXT_LEFT : TEXT_RIGHT;
+    if (!beside) words.degrees = atan((double)(gauge->along.y / gauge->along.x)) * 180 / M_PI;
+    Point at = gauge_point(gauge, place, 6.2);
+    sketch_text(sketch, at, &words, "%s %c: %.0f mm", name_of(collision, overlap->box), overlap->letter,
+                1000 * overlap->depth);
+    words.points = 7.5;
+    if (least) sketch_text(sketch, (Point){at.x, at.y - 3.8}, &words, "the least");
+}
+
+static void put_gauge(Sketch *sketch, const View *view, const Collision *collision, int i) {
+    const AxisOverlap *overlap = &collision->overlaps[i];
+    const Gauge gauge = place_gauge(view, collision, overlap);
+    bool least = i == collision->least;
+    for (int k = 0; k < 2; k++) {
+        const Pen pen = pen_fill(fill_of(collision, k), is_bomb(collision, k) ? 0.85 : 0.35, ink_of(collision, k));
+        put_bar(sketch, &gauge, overlap->low[k], overlap->high[k], 1.9 * k, &pen);
+    }
+    int upper = overlap->high[0] - overlap->low[1] < overlap->high[1] - overlap->low[0] ? 0 : 1;
+    const double ends[2] = {overlap->low[1 - upper], overlap->high[upper]};
+    const Point corners[] = {gauge_point(&gauge, ends[0], -0.7), gauge_point(&gauge, ends[1], -0.7),
+                             gauge_point(&gauge, ends[1], 4.1), gauge_point(&gauge, ends[0], 4.1)};
+    const Pen mark = pen_line(ACCENT, least ? 5 : 1.8, NULL);
+    sketch_shape(sketch, corners, 4, &mark);
+    if (least) put_guides(sketch, &gauge, ends);
+    put_depth(sketch, &gauge, (ends[0] + ends[1]) / 2, collision, i);
+}
+
+void put_overlaps(Sketch *sketch, View view, const Collision *collision) {
+    Vec2 sum = vec2_add(collision->boxes[0].position, collision->boxes[1].position);
+    view.center = (Point){(double)sum.x / 2, (double)sum.y / 2};
+    view.scale = 22;
+    put_collision(sketch, &view, collision);
+    for (int i = 0; i < SEPARATING_AXES; i++) put_gauge(sketch, &view, collision, i);
+    for (int i = 0; i < 2; i++) {
+        const TextStyle words = {8.5, TEXT_CENTER, ink_of(collision, i), 0};
+        sketch_text(sketch, view_place(&view, collision->boxes[i].position), &words, "%s", name_of(collision, i));
+    }
+    sketch_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, 0.5 * view.scale, "0.5 m");
+}
