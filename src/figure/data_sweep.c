@@ -86,7 +86,7 @@ static void put_bomb(Sketch *sketch, const View *view, const Scene *launched, bo
     Point at = view_place(view, bomb.position);
     at.y += view->scale * (double)bomb.size.y / 2 + 2.4;
     sketch_text(sketch, at, &(TextStyle){7.5, TEXT_CENTER, INK, 0}, "%s m",
-                show_number((double)bomb.position.x, 1).text);
+                show_decimals((double)bomb.position.x, 1).text);
 }
 
 static void put_way(Sketch *sketch, const Way *way, bool of_row) {

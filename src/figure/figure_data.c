@@ -72,7 +72,7 @@ static void put_numbers(Sketch *sketch, Point at, const NumberName *names, const
     const TextStyle unit = {7.5, TEXT_LEFT, INK_SOFT, 0};
     for (int i = 0; i < count; i++, at.y -= 4.2) {
         sketch_text(sketch, at, &name, "%s", names[i].name);
-        sketch_text(sketch, (Point){at.x + 19.5, at.y}, &number, "%s", show_number((double)numbers[i], 3).text);
+        sketch_text(sketch, (Point){at.x + 19.5, at.y}, &number, "%s", show_decimals((double)numbers[i], 3).text);
         sketch_text(sketch, (Point){at.x + 20.5, at.y}, &unit, "%s", names[i].unit);
     }
 }
@@ -89,15 +89,15 @@ static void put_row(Sketch *sketch, const SweepRow *row) {
     put_numbers(sketch, (Point){third + 1, top - 8.5}, change_names, row->changes, 6);
     sketch_text(sketch, (Point){split, 4.5}, &(TextStyle){7.5, TEXT_LEFT, INK, 0},
                 "The two outputs: change of b as seen from a, (%s, %s) m/s",
-                show_number((double)row->changes[3] - (double)row->changes[0], 3).text,
-                show_number((double)row->changes[4] - (double)row->changes[1], 3).text);
+                show_decimals((double)row->changes[3] - (double)row->changes[0], 3).text,
+                show_decimals((double)row->changes[4] - (double)row->changes[1], 3).text);
 }
 
 static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int rows) {
-    char changes[2][2 * sizeof(ShownNumber) + 2];
+    char changes[2][2 * sizeof(ShownDecimals) + 2];
     for (int i = 0; i < 2; i++)
-        snprintf(changes[i], sizeof changes[i], "%s, %s", show_number((double)row->changes[3 * i], 2).text,
-                 show_number((double)row->changes[3 * i + 1], 2).text);
+        snprintf(changes[i], sizeof changes[i], "%s, %s", show_decimals((double)row->changes[3 * i], 2).text,
+                 show_decimals((double)row->changes[3 * i + 1], 2).text);
     snprintf(
         caption, CAPTION_SIZE,
         "How training data are made: in stack.yaml the bomb is launched from %d places, x = %s to %s m (every %dth is "
@@ -105,9 +105,9 @@ static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int r
         "right, "
         "of bodies %d and %d in step %d of the launch from x = %s m, has ten inputs, and what the pair's impulses "
         "changed: the velocity of the %s by (%s) m/s and that of the %s by (%s) m/s.",
-        SWEEP_LAUNCHES, show_number((double)sweep_x(0), 0).text,
-        show_number((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row->bodies[0],
-        row->bodies[1], row->step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
+        SWEEP_LAUNCHES, show_decimals((double)sweep_x(0), 0).text,
+        show_decimals((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row->bodies[0],
+        row->bodies[1], row->step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
         is_bomb(row, 0) ? "bomb" : "box", changes[0], is_bomb(row, 1) ? "bomb" : "box", changes[1]);
 }
 
@@ -125,7 +125,7 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     sketch_text(sketch, (Point){1, height - 2.5}, &title, "%d of %d launches",
                 (SWEEP_LAUNCHES - 1) / SWEEP_SHOWN_EVERY + 1, SWEEP_LAUNCHES);
     sketch_text(sketch, (Point){split, height - 2.5}, &title, "One row: bodies %d and %d, step %d, launch from %s m",
-                row.bodies[0], row.bodies[1], row.step, show_number((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text);
+                row.bodies[0], row.bodies[1], row.step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text);
     write_caption(caption, &row, rows);
     return true;
 }

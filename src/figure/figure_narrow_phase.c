@@ -78,8 +78,8 @@ static void write_caption(char caption[CAPTION_SIZE], const Collision *c) {
         "gives the normal (%s, %s), and the incident edge, clipped to the sides of the reference edge, two contact "
         "points, %.0f and %.0f mm deep.",
         c->bodies[0], c->bodies[1], c->step, 1000 * o[0].depth, 1000 * o[1].depth, name_of(c, 0), 1000 * o[2].depth,
-        1000 * o[3].depth, name_of(c, 1), 1000 * o[c->least].depth, show_number((double)manifold->normal.x, 3).text,
-        show_number((double)manifold->normal.y, 3).text, -1000 * (double)manifold->points[0].separation,
+        1000 * o[3].depth, name_of(c, 1), 1000 * o[c->least].depth, show_decimals((double)manifold->normal.x, 3).text,
+        show_decimals((double)manifold->normal.y, 3).text, -1000 * (double)manifold->points[0].separation,
         -1000 * (double)manifold->points[1].separation);
 }
 

@@ -69,7 +69,7 @@ static void put_points(Sketch *sketch, const View *view, const Collision *collis
         bool left = deep.x < (view->low.x + view->high.x) / 2;
         const TextStyle words = {8.5, left ? TEXT_LEFT : TEXT_RIGHT, ACCENT, 0};
         sketch_text(sketch, (Point){deep.x + (left ? -1 : -2.5), deep.y - 4}, &words, "%s mm",
-                    show_number(1000 * (double)point->separation, 0).text);
+                    show_decimals(1000 * (double)point->separation, 0).text);
     }
 }
 
@@ -78,8 +78,8 @@ static void put_normal(Sketch *sketch, const View *view, Vec2 foot, Vec2 front, 
     const Point from = view_place(view, foot), to = view_place(view, vec2_add(foot, vec2_scale(0.35f, front)));
     sketch_arrow(sketch, from, to, HEAD_AT_END, ACCENT, 3);
     const TextStyle words = {8.5, TEXT_CENTER, ACCENT, 0};
-    sketch_text(sketch, (Point){to.x, to.y + 3}, &words, "normal (%s, %s)", show_number((double)normal.x, 3).text,
-                show_number((double)normal.y, 3).text);
+    sketch_text(sketch, (Point){to.x, to.y + 3}, &words, "normal (%s, %s)", show_decimals((double)normal.x, 3).text,
+                show_decimals((double)normal.y, 3).text);
 }
 
 void put_contact(Sketch *sketch, View view, const Collision *collision) {

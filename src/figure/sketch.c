@@ -184,8 +184,8 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
             at.y, aligns[style->align], style->points, style->degrees, style->colour);
 }
 
-ShownNumber show_number(double value, int decimals) {
-    ShownNumber shown;
+ShownDecimals show_decimals(double value, int decimals) {
+    ShownDecimals shown;
     char digits[40];
     snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
     bool negative = value < 0 && strspn(digits, "0.") < strlen(digits);

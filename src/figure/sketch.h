@@ -106,10 +106,10 @@ typedef struct TextStyle {
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* A number with so many decimals, for a text: with a minus as wide as a plus, and none before 0. */
-typedef struct ShownNumber {
+typedef struct ShownDecimals {
     char text[48];
-} ShownNumber;
-ShownNumber show_number(double value, int decimals);
+} ShownDecimals;
+ShownDecimals show_decimals(double value, int decimals);
 
 /* A bar to measure by, and what it stands for. */
 void sketch_bar(Sketch *sketch, Point left, double length, const char *words);
