@@ -55,6 +55,7 @@ typedef struct DatasetOptions {
     PairView view;
     PairTarget target;
     DatasetLabels labels;
+    int every;     /* of the rows of a launch, the first and every so many after it; 0 or 1: all */
     bool context;  /* record it too; for TARGET_PAIR */
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;

@@ -11,12 +11,25 @@ typedef struct Recording {
     Scene *const *scenes;
     const Dataset *dataset;
     LaunchRows *launches;
+    int every; /* rows to keep */
 } Recording;
+
+/* Gives back the memory of the other rows: of many launches it would be more than a machine has. */
+static void thin(LaunchRows *launch, size_t every) {
+    size_t kept = 0;
+    for (size_t row = 0; row < launch->count; row += every) launch->rows[kept++] = launch->rows[row];
+    launch->count = kept;
+    PairRow *smaller = realloc(launch->rows, (kept + 1) * sizeof *smaller);
+    if (smaller != NULL) launch->rows = smaller;
+}
 
 static bool record_launch(void *context, int index, Error *error) {
     const Recording *recording = context;
     Scene scene = dataset_launch(recording->dataset, recording->scenes, index);
-    return dataset_record_rows(recording->dataset, &scene, &recording->launches[index], error);
+    LaunchRows *launch = &recording->launches[index];
+    if (!dataset_record_rows(recording->dataset, &scene, launch, error)) return false;
+    if (recording->every > 1) thin(launch, (size_t)recording->every);
+    return true;
 }
 
 /* Copies the rows of launch i to row `at` and on. */
@@ -65,7 +78,7 @@ static Dataset *record_scenes(const DatasetOptions *options, Scene *const *scene
     if (dataset == NULL) return NULL;
     LaunchRows *launches = calloc((size_t)dataset->launches, sizeof *launches);
     if (launches == NULL) error_memory(error, "dataset");
-    Recording recording = {.scenes = scenes, .dataset = dataset, .launches = launches};
+    Recording recording = {.scenes = scenes, .dataset = dataset, .launches = launches, .every = options->every};
     const ParallelWork work = {record_launch, &recording};
     bool ok = launches != NULL && parallel_for(&work, dataset->launches, "recorded launches", progress, error) &&
               gather(dataset, launches, options->context, error);

@@ -30,11 +30,12 @@ static const struct {
     double iteration, test;
 } paper[] = {{0, 0.105798}, {10, 0.051244}, {50, 0.015246}, {100, 0.007767}, {1000, 0.001212}, {2000, 0.000728}};
 
-enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 6, LINES = NETWORKS + 2 };
+enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 12, OPTIMIZERS = 4, LINES = OPTIMIZERS + 2 };
 
 /* The networks that differ from the baseline in nothing but target or optimizer; their looks; the panels' titles. */
-static const char *const networks[NETWORKS] = {"baseline",     "target-net",     "target-impulse",
-                                               "optimizer-gd", "optimizer-bfgs", "optimizer-lm"};
+static const char *const networks[NETWORKS] = {"baseline",       "target-net",   "target-impulse", "optimizer-gd",
+                                               "optimizer-bfgs", "optimizer-lm", "net-gd",         "net-bfgs",
+                                               "net-lm",         "impulse-gd",   "impulse-bfgs",   "impulse-lm"};
 static const char *const optimizer_names[] = {"Adam", "gradient descent", "BFGS", "Levenberg-Marquardt"};
 static const char *const titles[PANELS] = {"Pair: change by its own impulses", "Net: change by all impulses",
                                            "Impulse: change in one sweep"};
@@ -63,7 +64,7 @@ typedef struct Loss {
     const Row *rows;
     int count;
     FigureAxis x, y;
-    bool used[4]; /* optimizers */
+    bool used[OPTIMIZERS];
 } Loss;
 
 static void choose_axes(Loss *loss) {
@@ -139,7 +140,7 @@ static void put_panel(Loss *loss, int target) {
 static void put_legend(Loss *loss) {
     FigureLook looks[LINES];
     int count = 0;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < OPTIMIZERS; i++)
         if (loss->used[i]) looks[count++] = figure_look(i, optimizer_names[i]);
     looks[count++] = paper_look();
     looks[count++] = figure_dashed("predicting the mean");

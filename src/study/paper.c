@@ -4,6 +4,7 @@
 #include "common/file.h"
 #include "study/paper_outlook.h"
 #include "study/paper_scores.h"
+#include "study/paper_size.h"
 #include "study/paper_training.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
@@ -11,62 +12,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_WEIGHTS = 5, MOST_LAUNCHES = 8 };
-
-/* How much is done. */
-typedef struct PaperSize {
-    PaperDataSize data;
-    int iterations; /* at most, of every training */
-    int rate_launches, closed_launches, repetitions;
-    Sampling sampling;
-    int seeds, law_iterations, transfer_iterations; /* of the outlook */
-    double weights[MOST_WEIGHTS];                   /* of laws, ended by 0 */
-    int launches[MOST_LAUNCHES];                    /* of transfer, ended by 0 */
-    const char *transfer_x[3];                      /* single, stack, pyramid */
-} PaperSize;
-
-static const PaperSize whole_size = {
-    .data = {.swept = "-5:5:0.4",
-             .mixed = "-5:5:0.8",
-             .fine = "-5:5:0.1",
-             .paper = "-5:5:0.05",
-             .random = 26,
-             .mixed_random = 13,
-             .impulse_every = 11},
-    .iterations = 2000,
-    .rate_launches = 20,
-    .closed_launches = 5,
-    .repetitions = 7,
-    .sampling = {.after = 6, .rest = 30},
-    .seeds = 3,
-    .law_iterations = 500,
-    .transfer_iterations = 300,
-    .weights = {0.01, 0.1, 1, 10},
-    .launches = {1, 2, 4, 8, 16},
-    .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
-};
-
-static const PaperSize quick_size = {
-    .data = {.swept = "-5:5:1",
-             .mixed = "-5:5:2",
-             .fine = "-5:5:0.5",
-             .paper = "-5:5:0.5",
-             .random = 11,
-             .mixed_random = 5,
-             .impulse_every = 11},
-    .iterations = 100,
-    .rate_launches = 2,
-    .closed_launches = 1,
-    .repetitions = 3,
-    .sampling = {.after = 20, .rest = 120},
-    .seeds = 3,
-    .law_iterations = 30,
-    .transfer_iterations = 30,
-    .weights = {1},
-    .launches = {1, 4},
-    .transfer_x = {"-5:5:2", "-5:5:2", "-5:5:2"},
-};
 
 static const char *const law_names[] = {"all", "momentum", "energy", "approach", "cone"};
 
@@ -103,7 +48,7 @@ static void choose_networks(Run *run) {
 /* Seconds on two cores, roughly, where all 2000 iterations are done. */
 static double training_weight(const PaperNetwork *network) {
     static const double of_data[PAPER_DATA] = {
-        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_PAPER] = 16};
+        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
     double weight = of_data[network->data];
     if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
     if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
@@ -158,7 +103,7 @@ static bool train_with_laws(Run *run, const char *laws, double law_weight, Error
 static bool study_laws(Run *run, Error *error) {
     if (!train_with_laws(run, NULL, 0, error) || !train_with_laws(run, "none", 0, error)) return false;
     for (int law = 0; law < LAW_SETS; law++)
-        for (int w = 0; w < MOST_WEIGHTS && run->size->weights[w] > 0; w++)
+        for (int w = 0; w < PAPER_WEIGHTS && run->size->weights[w] > 0; w++)
             if (!train_with_laws(run, law_names[law], run->size->weights[w], error)) return false;
     return true;
 }
@@ -166,7 +111,7 @@ static bool study_laws(Run *run, Error *error) {
 static bool study_transfer(Run *run, Error *error) {
     for (int transfer = 0; transfer < 2; transfer++)
         for (int seed = 0; seed < run->size->seeds; seed++)
-            for (int n = 0; n < MOST_LAUNCHES && run->size->launches[n] > 0; n++) {
+            for (int n = 0; n < PAPER_LAUNCHES && run->size->launches[n] > 0; n++) {
                 char name[PART_NAME_SIZE];
                 PaperTransfer own = {&run->outlook,
                                      {.transfer = transfer == 1,
@@ -193,11 +138,12 @@ static bool write_facts(const Run *run, Error *error) {
         return error_input(error, run->options->folder, "the name is too long");
     int length = snprintf(text, sizeof text,
                           "key,value\nquick,%s\nseed,%" PRIu64 "\nnetworks,%d\niterations,%d\nlaunches_swept,%s\n"
-                          "launches_swept_finely,%s\nlaunches_swept_as_in_the_paper,%s\nlaunches_random,%d\n"
+                          "launches_swept_finely,%s\nlaunches_swept_most_finely,%s\n"
+                          "launches_swept_as_in_the_paper,%s\nlaunches_random,%d\n"
                           "launches_rated,%d\nlaunches_in_closed_loop,%d\n",
                           run->options->quick ? "on" : "off", run->options->seed, run->network_count, size->iterations,
-                          size->data.swept, size->data.fine, size->data.paper, size->data.random, size->rate_launches,
-                          size->closed_launches);
+                          size->data.swept, size->data.fine, size->data.finest, size->data.paper, size->data.random,
+                          size->rate_launches, size->closed_launches);
     return file_write(path, text, (size_t)length, error);
 }
 
@@ -238,7 +184,7 @@ static bool begin(Run *run, Error *error) {
 }
 
 bool paper_run(const PaperOptions *options, const Progress *progress, Error *error) {
-    Run run = {.options = options, .size = options->quick ? &quick_size : &whole_size, .counting = true};
+    Run run = {.options = options, .size = options->quick ? &paper_quick_size : &paper_whole_size, .counting = true};
     run.parts.progress = progress;
     bool ok = begin(&run, error) && all_parts(&run, error);
     run.counting = false;

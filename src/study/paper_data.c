@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/paper_data.h"
 
-#include "dataset/dataset_thin.h"
-
 #include <stdio.h>
 
 const char *const paper_scene_names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid_settled"};
@@ -46,12 +44,13 @@ static Dataset *record(const PaperDatasets *datasets, const PaperNetwork *networ
         options.random = size->mixed_random;
         break;
     case DATA_FINE: options.bomb_x = range_of(size->fine); break;
+    case DATA_FINEST: options.bomb_x = range_of(size->finest); break;
     case DATA_PAPER: options.bomb_x = range_of(size->paper); break;
     default: options.bomb_x = range_of(size->swept); break;
     }
-    Dataset *dataset = dataset_record(&options, NULL, error);
-    if (dataset != NULL && network->target == TARGET_IMPULSE) dataset_thin(dataset, size->impulse_every);
-    return dataset;
+    if (network->target == TARGET_IMPULSE)
+        options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
+    return dataset_record(&options, NULL, error);
 }
 
 Dataset *paper_scene_dataset(const PaperDatasets *datasets, int scene, const char *bomb_x, Error *error) {

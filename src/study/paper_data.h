@@ -10,9 +10,10 @@ extern const char *const paper_scene_names[PAPER_SCENES];
 
 /* Launches of each scene. */
 typedef struct PaperDataSize {
-    const char *swept, *mixed, *fine, *paper; /* m: "-5:5:0.05" */
-    int random, mixed_random;                 /* further launches drawn */
-    int impulse_every; /* of the rows of single impulses, of which there are ten times as many, every so many */
+    const char *swept, *mixed, *fine, *finest, *paper; /* m: "-5:5:0.05" */
+    int random, mixed_random;                          /* further launches drawn */
+    /* Of the rows of single impulses, of which there are ten times as many, every so many; fewer of the finest sweep. */
+    int impulse_every, finest_every;
 } PaperDataSize;
 
 typedef struct StoredDataset {

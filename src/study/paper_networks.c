@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-const char *const paper_data_names[PAPER_DATA] = {"swept", "random", "mixed", "swept finely", "swept as in the paper"};
+const char *const paper_data_names[PAPER_DATA] = {
+    "swept", "random", "mixed", "swept finely", "swept most finely", "swept as in the paper"};
 
 #define SEARCHED(form) \
     { .name = "layers-" form, .factor = "layers", .value = form, .layers = form }
@@ -76,10 +77,10 @@ const PaperNetwork paper_networks[] = {
     {.name = "best-impulse",
      .factor = "best",
      .value = "impulse",
-     .data = DATA_FINE,
+     .data = DATA_FINEST,
      .view = PAIR_CONTACT,
      .target = TARGET_IMPULSE,
-     .layers = "20-20-2",
+     .layers = "20-21-2",
      .hidden = "relu",
      .output = "linear"},
     {.name = "contact-net",

@@ -7,7 +7,15 @@
 
 /* What was recorded: launches of the single box and of the stack. DATA_PAPER has the paper's own 201 places; the baseline
    has fewer of them, so that every factor can be tried. */
-typedef enum PaperData { DATA_SWEPT, DATA_RANDOM, DATA_MIXED, DATA_FINE, DATA_PAPER, PAPER_DATA } PaperData;
+typedef enum PaperData {
+    DATA_SWEPT,
+    DATA_RANDOM,
+    DATA_MIXED,
+    DATA_FINE,
+    DATA_FINEST,
+    DATA_PAPER,
+    PAPER_DATA
+} PaperData;
 
 extern const char *const paper_data_names[PAPER_DATA];
 

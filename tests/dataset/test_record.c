@@ -49,6 +49,28 @@ static void visits_add_up_to_the_pairs_change(void **state) {
     dataset_destroy(visits);
 }
 
+/* Row k of a thinned launch is row 3 k of the whole one. */
+static void thinned_rows_are_rows_of_the_whole(void **state) {
+    (void)state;
+    Dataset *all = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT});
+    Dataset *some = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT, .every = 3});
+    const size_t in = 20 * sizeof(float), out = PAIR_CHANGES * sizeof(float);
+    int64_t row = 0, first = 0;
+    for (int64_t i = 0; i < all->rows; i++) {
+        if (i > 0 && all->launch[i] != all->launch[i - 1]) first = i;
+        if ((i - first) % 3 != 0) continue;
+        assert_true(row < some->rows);
+        assert_int_equal(some->launch[row], all->launch[i]);
+        assert_int_equal(some->frame[row], all->frame[i]);
+        assert_memory_equal(some->inputs + 20 * row, all->inputs + 20 * i, in);
+        assert_memory_equal(some->changes + PAIR_CHANGES * row, all->changes + PAIR_CHANGES * i, out);
+        row++;
+    }
+    assert_true(row == some->rows && row > 100);
+    dataset_destroy(all);
+    dataset_destroy(some);
+}
+
 /* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
 static void net_is_pair_where_there_is_one_pair(void **state) {
     (void)state;
@@ -224,6 +246,7 @@ static void what_cannot_be_recorded_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(visits_add_up_to_the_pairs_change),
+                                       cmocka_unit_test(thinned_rows_are_rows_of_the_whole),
                                        cmocka_unit_test(net_is_pair_where_there_is_one_pair),
                                        cmocka_unit_test(the_reference_labels_what_the_engine_met),
                                        cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
