@@ -18,7 +18,7 @@ const PaperNetwork paper_networks[] = {
     {.name = "outputs-six", .factor = "outputs", .value = "six", .layers = "10-10-6", .output = "sigmoid"},
     {.name = "outputs-six-two-layers",
      .factor = "outputs",
-     .value = "six, 10-8-8-6, standardised",
+     .value = "six, 10-8-8-6",
      .layers = "10-8-8-6",
      .output = "linear",
      .quick = true},

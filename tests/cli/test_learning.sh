@@ -81,8 +81,9 @@ assert points["inputs"].shape[1] == 20 and points["changes"].shape[1] == 4
 assert around["inputs"].shape[1] == 32 and around["changes"].shape[1] == 6
 assert str(network["target"]) == "points" and str(network["outputs"]) == "dpn1 dpt1 dpn2 dpt2"
 PYTHON
+grep -v "contact-net:" single.yaml >unnamed.yaml
 # The file ends in the networks of the scene.
-(cat single.yaml; echo "  contact-net: points-net.npz") >named.yaml
+(cat unnamed.yaml; echo "  contact-net: points-net.npz") >named.yaml
 run 0 simulate named.yaml --method contact-net --hash named.hash
 run 0 simulate single.yaml --method contact-net:network=points-net.npz --hash given.hash
 cmp -s named.hash given.hash || fail "the scene's network for contact-net"
@@ -94,7 +95,7 @@ run 0 simulate single.yaml --method pair-net:network=impulse-net.npz --hash ten.
 run 0 simulate single.yaml --method pair-net:network=impulse-net.npz,k=10 --hash same.hash
 cmp -s ten.hash same.hash || fail "pair-net does not take the scene's sweeps"
 cmp -s ten.hash three.hash && fail "k has no effect on single impulses"
-run 2 simulate single.yaml --method contact-net
+run 2 simulate unnamed.yaml --method contact-net
 complains "the scene names no network for it: use contact-net:network=FILE"
 run 2 simulate single.yaml --method contact-net:network=around-net.npz
 complains "around-net.npz: error: a network of the target net, which is pair-net's"
