@@ -11,6 +11,7 @@ extern const ContactSolverKind solver_block;
 extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_pair_net;
 extern const ContactSolverKind solver_contact_net;
+extern const ContactSolverKind solver_relu_net;
 extern const ContactSolverKind solver_constant;
 extern const ContactSolverKind solver_reference;
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A visit of one contact, with J the rows, W the inverse masses, c the coupling J_t W J_n' and d what changes:
+/* A visit of one contact, with J the rows, W the inverse masses, ^T transposed, c the coupling J_t W J_n^T:
 
        there                                              back, x* the loss's derivative by x, w* = W v*
        Pn' = max(Pn - m_n (J_n v - bias), 0)              Pt'* += J_t w*,  Pn'* += J_n w*
        Pt' = clamp(Pt - m_t (J_t v + c dPn), +-mu Pn')    Pt'* into m_t J_t v, c dPn, Pt or into mu Pn'
-       v'  = v + W (J_n' dPn + J_t' dPt)                  w*  += W (J_n' (J_n v)* + J_t' (J_t v)*)
+       v'  = v + W (J_n^T dPn + J_t^T dPt)                w*  += W (J_n^T (J_n v)* + J_t^T (J_t v)*)
 
    Carrying w* and not v* makes a velocity of it: both ways see velocities and push bodies by the same two functions. */
 #include "training/unrolled.h"

@@ -7,6 +7,8 @@
 #include "solvers/sequential_impulses.h"
 #include "solvers/sweeps.h"
 
+#include <math.h>
+
 /* As the engine sweeps. */
 static const SequentialOptions engine_options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
 
@@ -21,6 +23,17 @@ static inline ContactSolution make_solution(const ContactProblem *problem) {
 static inline void free_solution(ContactSolution *solution) {
     free(solution->velocities);
     free(solution->impulses);
+}
+
+/* What rounding makes of the fastest velocity of a problem, m/s and rad/s: the unit of what two solvers may differ by that
+   do the same in another order. */
+static inline double rounding_of(const ContactProblem *problem) {
+    float most = 1;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        most = fmaxf(most, fmaxf(hypotf(body->velocity.x, body->velocity.y), fabsf(body->angular_velocity)));
+    }
+    return ldexp((double)most, -24);
 }
 
 static inline void assert_same_bits(const ContactProblem *problem, const ContactSolution *found,

@@ -189,6 +189,7 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_refused(&solver_over_relaxation, "k=0", "k");
     assert_refused(&solver_block, "k=0", "k");
     assert_refused(&solver_nncg, "k=0", "k");
+    assert_refused(&solver_relu_net, "k=0", "k");
     assert_refused(&solver_nncg, "k=ten", "k");
     assert_refused(&solver_over_relaxation, "omega=0", "omega");
     assert_refused(&solver_over_relaxation, "omega=2", "omega");

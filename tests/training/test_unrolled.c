@@ -32,15 +32,6 @@ static void warm_start(const ContactProblem *problem, double *start) {
     }
 }
 
-static double fastest(const ContactProblem *problem) {
-    double most = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        most = fmax(most, (double)hypotf(problem->bodies[i].velocity.x, problem->bodies[i].velocity.y));
-        most = fmax(most, (double)fabsf(problem->bodies[i].angular_velocity));
-    }
-    return most;
-}
-
 static void assert_same_solution(const ContactProblem *problem, const Unrolled *unrolled,
                                  const ContactSolution *expected, double tolerance) {
     for (int i = 0; i < problem->body_count; i++) {
@@ -56,8 +47,7 @@ static void assert_same_solution(const ContactProblem *problem, const Unrolled *
     }
 }
 
-/* What float sweeps may differ by: `growth` roundings of the fastest velocity. */
-static void assert_equals_plain(Unrolled *unrolled, const ContactProblem *problem, int sweeps, double growth) {
+static void assert_equals_plain(Unrolled *unrolled, const ContactProblem *problem, int sweeps, double roundings) {
     double start[NUMBERS_MAX];
     float in_float[SWEEPS];
     UnrolledProblem rows;
@@ -67,7 +57,7 @@ static void assert_equals_plain(Unrolled *unrolled, const ContactProblem *proble
     assert_true(unrolled_problem_make(&rows, problem));
     assert_true(unrolled_run(unrolled, &rows, start, factors, sweeps));
     momentum_solve_plain(problem, in_float, sweeps, &before, &plain);
-    assert_same_solution(problem, unrolled, &plain, growth * ldexp(1 + fastest(problem), -24));
+    assert_same_solution(problem, unrolled, &plain, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
     free_solution(&plain);
     free_solution(&before);

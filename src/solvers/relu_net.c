@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sequential impulses (sequential_impulses.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
+   and w = Pt - mass_t vt,
+
+       Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
+
+   for max(x, 0) is the rectifier, and a clamp is two of them: below -m both are 0, between only the first is not, above
+   m they differ by 2 m. All else is linear: velocities along a contact, what an impulse does to them, impulses carried
+   on. So k sweeps are a network of 2 k layers for each contact, of one and of two rectifiers, whose weights are read off
+   the contact problem: nothing is trained, and it is right for every scene. Rounding apart it is the engine: a clamp at
+   the upper end of the cone, and what is within, come out of a sum and a difference.
+
+   It is no faster and no better, but says what to expect of a network. One that sees a contact at a time, its velocity
+   and its sum, does not fail for want of neurons: three are enough to be the engine, and a single box needs no more than
+   that. What the engine lacks in stacks and pyramids is sight beyond the contact, which more neurons at it do not
+   give it. Source of rectifier networks as piecewise linear maps, and these as networks: Arora, Basu, Mianjy, Mukherjee,
+   "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
+#include "network/activation.h"
+#include "solvers/contact_velocity.h"
+#include "solvers/sequential_impulses.h"
+#include "solvers/solvers.h"
+#include "solvers/sweeps.h"
+
+#include <stdlib.h>
+
+typedef struct ReluNet {
+    int sweep_count;
+} ReluNet;
+
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
+
+static void *create(const Settings *chosen, Error *error) {
+    ReluNet values = {.sweep_count = 10};
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error)) return NULL;
+    ReluNet *solver = malloc(sizeof *solver);
+    if (solver == NULL)
+        error_memory(error, "relu-net");
+    else
+        *solver = values;
+    return solver;
+}
+
+/* The layers of one contact: the normal impulse, then the tangent impulse against what that left. */
+static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVelocity *velocities,
+                  ContactImpulse *sum) {
+    BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
+    const float parting = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
+    const float normal = relu_float(sum->normal - contact->mass_normal * (parting - contact->bias));
+    contact_apply(a, b, contact, bodies, vec2_scale(normal - sum->normal, contact->normal));
+
+    const Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
+    const float sliding = vec2_dot(contact_relative_velocity(a, b, contact), direction);
+    const float stopping = sum->tangent - contact->mass_tangent * sliding, limit = contact->friction * normal;
+    const float tangent = -limit + relu_float(stopping + limit) - relu_float(stopping - limit);
+    contact_apply(a, b, contact, bodies, vec2_scale(tangent - sum->tangent, direction));
+    *sum = (ContactImpulse){normal, tangent};
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    (void)error;
+    static const SequentialOptions start = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    const ReluNet *solver = state;
+    sequential_impulses_begin(problem, &start, solution);
+    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
+        for (int i = 0; i < problem->contact_count; i++)
+            visit(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i]);
+    return true;
+}
+
+const ContactSolverKind solver_relu_net = {
+    "relu-net", "the engine written as a network of rectifiers, its weights read off the contacts",
+    settings,   create,
+    solve,      free};
