@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A network for the impacts of one scene: from the state of all its bodies it says, for all its contacts at once, how
+   far their impulses go beyond the warm start. A slot is a contact that may be there: two bodies and a feature, met in
+   training; which of them there are, the step says.
+
+       x  = bomb's state; projections (training/principal.h) of the other bodies' state, of which slots there are, and
+            of their warm impulses
+       h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
+       (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
+
+   Only the rows of slots that there are get touched. Sums run in a fixed order (row_kernels.h): the same bits
+   everywhere. */
+#pragma once
+#include "common/error.h"
+#include "network/row_kernels.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    SLOT_NETWORK_VERSION = 1,
+    SLOT_BODIES_MAX = 256,
+    SLOTS_MAX = 20000,
+    SLOT_WIDTH_MAX = 1024,
+    SLOT_BODY_NUMBERS = 6, /* of a body: x, y (m), angle (rad), velocity x, y (m/s), spin (rad/s) */
+    SLOT_SWEEPS_MAX = 64,
+    SLOT_TEXT_SIZE = 512
+};
+
+typedef struct Slot {
+    int32_t a, b;
+    uint32_t feature;
+} Slot;
+
+/* components[to] = sum of numbers[i] * rows[i] - centre; `to` is a multiple of ROW_LANES. */
+typedef struct Projection {
+    int from, to;
+    float *rows;   /* [from, to] */
+    float *centre; /* [to] */
+} Projection;
+
+/* Dense layer, input by input. */
+typedef struct SlotLayer {
+    int from, to;
+    float *rows;   /* [from, to] */
+    float *biases; /* [to] */
+} SlotLayer;
+
+typedef struct SlotNetwork {
+    int body_count, bomb; /* of the scene, with the bomb; its index */
+    int slot_count;
+    Slot *slots;                    /* [slot_count] rising by a, b, feature */
+    Projection bomb_state, state;   /* of SLOT_BODY_NUMBERS, and of as many for each body but the bomb */
+    Projection present, warm;       /* of slot_count, and of (normal, tangent) of each */
+    SlotLayer first, second;        /* from the inputs to the hidden widths */
+    float *rows, *biases;           /* [2 slot_count, second.to], [2 slot_count]: the last layer */
+    float *scale;                   /* [slot_count] N s */
+    float *cap;                     /* [slot_count] N s: a warm impulse is taken up to here */
+    float gate;                     /* m/s: the bomb has to run into a body that can move as fast as this */
+    int sweeps;                     /* that the factors were learned for; 0: none were */
+    float factors[SLOT_SWEEPS_MAX]; /* of momentum, after the network */
+    char scene[SLOT_TEXT_SIZE];     /* that it was trained for */
+    char command[SLOT_TEXT_SIZE];   /* that made it */
+    int32_t *pair_slots;            /* [body_count * body_count + 1] first slot of a pair (a, b) or a later one */
+    float *parameters;              /* what training changes: layers, rows, biases; in one block */
+    size_t parameter_count;
+    const RowKernels *kernels; /* that predict; the fastest there are */
+} SlotNetwork;
+
+/* Numbers of its inputs. */
+static inline int slot_network_inputs(const SlotNetwork *network) { return network->first.from; }
+static inline int slot_network_hidden(const SlotNetwork *network) { return network->second.to; }
+
+typedef struct SlotShape {
+    int body_count, bomb, slot_count;
+    int state, present, warm; /* components of each; the bomb has ROW_LANES */
+    int hidden;               /* width of both hidden layers */
+} SlotShape;
+
+/* All numbers 0, the slots copied. ERROR_INPUT where the shape is out of bounds or the slots do not rise. */
+SlotNetwork *slot_network_create(const SlotShape *shape, const Slot *slots, Error *error);
+void slot_network_destroy(SlotNetwork *network);
+
+/* The slot of a contact, or -1. */
+int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature);
+
+/* What there is to see. */
+typedef struct SlotView {
+    const float *bomb;       /* [SLOT_BODY_NUMBERS] */
+    const float *state;      /* [SLOT_BODY_NUMBERS * (body_count - 1)] */
+    int slot_count;          /* that there are */
+    const int32_t *slots;    /* [slot_count] */
+    const int32_t *impulses; /* [2 slot_count]: 2 slot, 2 slot + 1 */
+    const float *ones;       /* [slot_count] 1 each */
+    const float *warm;       /* [2 slot_count] N s */
+} SlotView;
+
+/* inputs[slot_network_inputs] */
+void slot_network_look(const SlotNetwork *network, const SlotView *view, float *inputs);
+
+/* first[first.to], second[second.to]: the hidden layers; outputs[2 slot_count of the view]: (dPn, dPt) in N s. */
+void slot_network_predict(const SlotNetwork *network, const float *inputs, const SlotView *view, float *first,
+                          float *second, float *outputs);
+
+bool slot_network_write(const SlotNetwork *network, const char *path, Error *error);
+
+/* ERROR_INPUT, naming the file, for what is damaged, of another version or kind, of shapes that do not fit, or holds a
+   number that is not finite. */
+SlotNetwork *slot_network_read(const char *path, Error *error);
