@@ -113,7 +113,8 @@ int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature
     return -1;
 }
 
-static float *project(const Projection *projection, const int32_t *index, const float *numbers, int count, float *out) {
+static float *project(const RowKernels *kernels, const Projection *projection, const int32_t *index,
+                      const float *numbers, int count, float *out) {
     for (int i = 0; i < projection->to; i++) out[i] = -projection->centre[i];
     kernels->add(out, projection->to, projection->rows, index, numbers, count);
     return out + projection->to;
