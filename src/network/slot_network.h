@@ -49,15 +49,15 @@ typedef struct SlotLayer {
 typedef struct SlotNetwork {
     int body_count, bomb; /* of the scene, with the bomb; its index */
     int slot_count;
-    Slot *slots;                    /* [slot_count] rising by a, b, feature */
-    Projection bomb_state, state;   /* of SLOT_BODY_NUMBERS, and of as many for each body but the bomb */
-    Projection present, warm;       /* of slot_count, and of (normal, tangent) of each */
-    SlotLayer first, second;        /* from the inputs to the hidden widths */
-    float *rows, *biases;           /* [2 slot_count, second.to], [2 slot_count]: the last layer */
-    float *scale;                   /* [slot_count] N s */
-    float *cap;                     /* [slot_count] N s: a warm impulse is taken up to here */
-    float gate;                     /* m/s: the bomb has to run into a body that can move as fast as this */
-    int sweeps;                     /* that the factors were learned for; 0: none were */
+    Slot *slots;                  /* [slot_count] rising by a, b, feature */
+    Projection bomb_state, state; /* of SLOT_BODY_NUMBERS, and of as many for each body but the bomb */
+    Projection present, warm;     /* of slot_count, and of (normal, tangent) of each */
+    SlotLayer first, second;      /* from the inputs to the hidden widths */
+    float *rows, *biases;         /* [2 slot_count, second.to], [2 slot_count]: the last layer */
+    float *scale;                 /* [slot_count] N s */
+    float *cap;                   /* [slot_count] N s: a warm impulse is taken up to here */
+    float gate;                   /* m/s: it is asked where the warm start misses the contacts' bias by so much (RMS) */
+    int sweeps;                   /* that the factors were learned for; 0: none were */
     float factors[SLOT_SWEEPS_MAX]; /* of momentum, after the network */
     char scene[SLOT_TEXT_SIZE];     /* that it was trained for */
     char command[SLOT_TEXT_SIZE];   /* that made it */
