@@ -107,16 +107,14 @@ static void orthonormalise(Fit *fit) {
 }
 
 /* Eigenvectors of the covariance within the basis, strongest first. */
-static bool find_axes(Fit *fit, Error *error) {
+static void find_axes(Fit *fit) {
     for (size_t a = 0; a < fit->width; a++) {
         double *row = gsl_matrix_ptr(fit->small, a, 0);
         for (size_t j = 0; j < fit->columns; j++)
             add_scaled(row, fit->basis[j * fit->width + a], fit->image + j * fit->width, fit->width);
     }
-    if (gsl_eigen_symmv(fit->small, fit->variances, fit->axes, fit->eigen) != GSL_SUCCESS ||
-        gsl_eigen_symmv_sort(fit->variances, fit->axes, GSL_EIGEN_SORT_VAL_DESC) != GSL_SUCCESS)
-        return error_input(error, "principal components", "no eigenvectors were found");
-    return true;
+    gsl_eigen_symmv(fit->small, fit->variances, fit->axes, fit->eigen);
+    gsl_eigen_symmv_sort(fit->variances, fit->axes, GSL_EIGEN_SORT_VAL_DESC);
 }
 
 /* Component c: axis c of the basis, divided by its deviation. */
@@ -149,14 +147,14 @@ static void write_components(const Fit *fit, Projection *projection) {
     }
 }
 
-static bool fit_components(Fit *fit, uint64_t seed, Error *error) {
+static void fit_components(Fit *fit, uint64_t seed) {
     start(fit, seed);
     for (int pass = 0; pass <= POWER_ITERATIONS; pass++) {
         if (pass > 0) memcpy(fit->basis, fit->image, fit->columns * fit->width * sizeof *fit->basis);
         orthonormalise(fit);
         sparse_covariance_multiply(&fit->covariance, fit->basis, fit->image);
     }
-    return find_axes(fit, error);
+    find_axes(fit);
 }
 
 bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection, Error *error) {
@@ -164,8 +162,11 @@ bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection
         return error_input(error, "principal components", "%d rows of %d columns for a projection of %d to %d",
                            rows->rows, rows->columns, projection->from, projection->to);
     Fit fit;
-    const bool ok = fit_make(&fit, rows, projection->to, error) && fit_components(&fit, seed, error);
-    if (ok) write_components(&fit, projection);
+    const bool ok = fit_make(&fit, rows, projection->to, error);
+    if (ok) {
+        fit_components(&fit, seed);
+        write_components(&fit, projection);
+    }
     fit_free(&fit);
     return ok;
 }
