@@ -6,7 +6,6 @@
 #include "network/file_floats.h"
 #include "network/slot_network.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,9 +91,9 @@ static bool read_int(NpzFile *file, const char *name, int *number, Error *error)
 static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width, Error *error) {
     int64_t shape[2];
     if (!npz_shape(file, name, NPZ_FLOAT32, 2, shape, error)) return false;
-    if (shape[0] != rows || shape[1] > INT_MAX)
-        return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); %lld rows are needed", name,
-                           (long long)shape[0], (long long)shape[1], (long long)rows);
+    if (shape[0] != rows || shape[1] > SLOT_WIDTH_MAX)
+        return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); (%lld, up to %d) is needed", name,
+                           (long long)shape[0], (long long)shape[1], (long long)rows, SLOT_WIDTH_MAX);
     *width = (int)shape[1];
     return true;
 }
