@@ -165,6 +165,8 @@ void npz_close(NpzFile *file) {
     free(file);
 }
 
+const char *npz_path(const NpzFile *file) { return file->path; }
+
 bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {

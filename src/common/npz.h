@@ -40,6 +40,9 @@ typedef struct NpzFile NpzFile;
 NpzFile *npz_open(const char *path, Error *error);
 void npz_close(NpzFile *file);
 
+/* As it was opened. */
+const char *npz_path(const NpzFile *file);
+
 bool npz_has(const NpzFile *file, const char *name);
 
 /* Fills shape[rank] of an array; an error where it is missing or its type or rank is another. */
@@ -52,3 +55,12 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
 
 /* Reads a NPZ_TEXT of at most size - 1 bytes into text. */
 bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Error *error);
+
+/* The same for a text that gets shown: one with control characters is refused. */
+bool npz_read_name(NpzFile *file, const char *name, char *text, size_t size, Error *error);
+
+/* Reads the `size` bytes of an array of rank 0. */
+bool npz_read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error);
+
+/* That the text `kind` is this one and the int32 `version` this number. */
+bool npz_check_kind(NpzFile *file, const char *kind, int32_t version, Error *error);

@@ -69,18 +69,6 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
     return npz_write(path, arrays, dataset->context != NULL ? count : count - 1, error);
 }
 
-static bool check_version(NpzFile *file, const char *path, Error *error) {
-    char kind[32] = "";
-    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) || strcmp(kind, KIND) != 0)
-        return error_input(error, path, "holds no dataset");
-    int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
-    if (version == NULL) return false;
-    int32_t found = *version;
-    free(version);
-    if (found == DATASET_VERSION) return true;
-    return error_input(error, path, "dataset of version %d; this program reads version %d", found, DATASET_VERSION);
-}
-
 static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
     char text[SCENES_SIZE], *line = text;
     if (!npz_read_text(file, "scenes", text, sizeof text, error)) return false;
@@ -208,9 +196,9 @@ Dataset *dataset_read(const char *path, Error *error) {
     if (file == NULL) return NULL;
     Dataset *dataset = calloc(1, sizeof *dataset);
     if (dataset == NULL) error_memory(error, path);
-    if (dataset != NULL && !(check_version(file, path, error) && read_scenes(file, path, dataset, error) &&
-                             read_words(file, path, dataset, error) && read_arrays(file, path, dataset, error) &&
-                             check_contents(dataset, path, error))) {
+    if (dataset != NULL && !(npz_check_kind(file, KIND, DATASET_VERSION, error) &&
+                             read_scenes(file, path, dataset, error) && read_words(file, path, dataset, error) &&
+                             read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
         dataset_destroy(dataset);
         dataset = NULL;
     }

@@ -7,37 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error) {
-    void *data = npz_read(file, name, type, 0, NULL, error);
-    if (data != NULL) memcpy(value, data, size);
-    free(data);
-    return data != NULL;
-}
-
-static bool check_version(NpzFile *file, const char *path, Error *error) {
-    char kind[32] = "";
-    int32_t version = 0;
-    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) ||
-        strcmp(kind, PROBLEM_KIND) != 0)
-        return error_input(error, path, "holds no contact problem");
-    if (!read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
-    return version == PROBLEM_VERSION ||
-           error_input(error, path, "contact problem of version %d; this program reads %d", (int)version,
-                       PROBLEM_VERSION);
-}
-
 static bool read_head(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     int32_t frame, bomb;
     float dt;
-    if (!check_version(file, path, error) ||
-        !npz_read_text(file, "scene", stored->scene, sizeof stored->scene, error) ||
-        !read_scalar(file, "frame", NPZ_INT32, &frame, sizeof frame, error) ||
-        !read_scalar(file, "dt", NPZ_FLOAT32, &dt, sizeof dt, error) ||
-        !read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
+    if (!npz_check_kind(file, PROBLEM_KIND, PROBLEM_VERSION, error) ||
+        !npz_read_name(file, "scene", stored->scene, sizeof stored->scene, error) ||
+        !npz_read_scalar(file, "frame", NPZ_INT32, &frame, sizeof frame, error) ||
+        !npz_read_scalar(file, "dt", NPZ_FLOAT32, &dt, sizeof dt, error) ||
+        !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
         return false;
-    for (const char *c = stored->scene; *c != '\0'; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return error_input(error, path, "the name of the scene holds control characters");
     if (frame < 1) return error_input(error, path, "frame is %d; 1 is the first", (int)frame);
     if (!isfinite(dt) || !(dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)dt);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "network/momentum_schedule.h"
 
-#include "common/npz.h"
+#include "network/file_floats.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -53,18 +53,6 @@ bool momentum_schedules_write(const MomentumSchedules *schedules, const char *pa
     return ok;
 }
 
-static bool check_head(NpzFile *file, const char *path, Error *error) {
-    char kind[64];
-    if (!npz_read_text(file, "kind", kind, sizeof kind, error)) return false;
-    if (strcmp(kind, KIND) != 0) return error_input(error, path, "holds a '%s', not '%s'", kind, KIND);
-    int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
-    if (version == NULL) return false;
-    bool ok = *version == MOMENTUM_VERSION;
-    if (!ok) error_input(error, path, "has version %d; this program reads %d", (int)*version, MOMENTUM_VERSION);
-    free(version);
-    return ok;
-}
-
 /* The numbers of sweeps, checked; their sum in *total. */
 static int32_t *read_sweeps(NpzFile *file, const char *path, int64_t *count, int64_t *total, Error *error) {
     if (!npz_shape(file, "sweeps", NPZ_INT32, 1, count, error)) return NULL;
@@ -87,23 +75,17 @@ static int32_t *read_sweeps(NpzFile *file, const char *path, int64_t *count, int
     return sweeps;
 }
 
-static bool check_factors(const float *factors, int64_t count, const char *path, Error *error) {
-    for (int64_t i = 0; i < count; i++)
-        if (!(factors[i] >= 0.0f && factors[i] <= MOMENTUM_MAX_FACTOR))
-            return error_input(error, path, "factors[%lld] is %g; 0 to %g is possible", (long long)i,
-                               (double)factors[i], (double)MOMENTUM_MAX_FACTOR);
-    return true;
-}
-
 static bool read_schedules(MomentumSchedules *schedules, NpzFile *file, const char *path, Error *error) {
     int64_t count, total;
-    if (!check_head(file, path, error) ||
+    if (!npz_check_kind(file, KIND, MOMENTUM_VERSION, error) ||
         !npz_read_text(file, "command", schedules->command, sizeof schedules->command, error))
         return false;
     int32_t *sweeps = read_sweeps(file, path, &count, &total, error);
     if (sweeps == NULL) return false;
-    float *factors = npz_read(file, "factors", NPZ_FLOAT32, 1, &total, error);
-    bool ok = factors != NULL && check_factors(factors, total, path, error);
+    float *factors = malloc((size_t)total * sizeof *factors);
+    bool ok = factors != NULL || error_memory(error, path);
+    const FileFloats stored = {"factors", 1, {total}, factors, &float_momentum};
+    ok = ok && file_floats_read(file, &stored, 1, error);
     const float *next = factors;
     for (int i = 0; ok && i < count; i++) {
         ok = momentum_schedules_add(schedules, sweeps[i], next, error);

@@ -4,16 +4,15 @@
    target, command. */
 #include "network/network.h"
 
-#include "common/npz.h"
+#include "network/file_floats.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define KIND "network"
 
-enum { ACTIVATIONS_SIZE = 256, MAX_ARRAYS = 13 + 2 * NETWORK_MAX_LAYERS };
+enum { ACTIVATIONS_SIZE = 256, MAX_FLOATS = 5 + 2 * NETWORK_MAX_LAYERS, MAX_ARRAYS = 8 + MAX_FLOATS };
 
 static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
                                                [ACTIVATION_SIGMOID] = "sigmoid",
@@ -22,35 +21,22 @@ static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
 
 enum { ACTIVATION_COUNT = sizeof activation_names / sizeof activation_names[0] };
 
-/* The arrays of float32 numbers of a network, by name; the same list serves writing and reading. */
-typedef struct Member {
-    char name[24];
-    int rank;
-    int64_t shape[2];
-    float *numbers;
-} Member;
-
-enum { MAX_MEMBERS = 2 * NETWORK_MAX_LAYERS + 5 };
-
-static int list_members(const Network *network, Member members[MAX_MEMBERS]) {
+/* One list serves writing and reading. */
+static int list_floats(const Network *network, FileFloats list[MAX_FLOATS]) {
     int count = 0, inputs = network->widths[0], outputs = network->widths[network->layers];
     for (int l = 0; l < network->layers; l++) {
         int rows = network->widths[l + 1], columns = network->widths[l];
-        members[count] = (Member){.rank = 2, .shape = {rows, columns}, .numbers = network->weights[l]};
-        snprintf(members[count++].name, sizeof members->name, "weights_%d", l);
-        members[count] = (Member){.rank = 1, .shape = {rows}, .numbers = network->biases[l]};
-        snprintf(members[count++].name, sizeof members->name, "biases_%d", l);
+        list[count] = (FileFloats){"", 2, {rows, columns}, network->weights[l], &float_any};
+        snprintf(list[count++].name, sizeof list->name, "weights_%d", l);
+        list[count] = (FileFloats){"", 1, {rows}, network->biases[l], &float_any};
+        snprintf(list[count++].name, sizeof list->name, "biases_%d", l);
     }
-    members[count++] = (Member){"input_offset", 1, {inputs}, network->input.offset};
-    members[count++] = (Member){"input_scale", 1, {inputs}, network->input.scale};
-    members[count++] = (Member){"output_offset", 1, {outputs}, network->output.offset};
-    members[count++] = (Member){"output_scale", 1, {outputs}, network->output.scale};
-    members[count++] = (Member){"output_mean", 1, {outputs}, network->output_mean};
+    list[count++] = (FileFloats){"input_offset", 1, {inputs}, network->input.offset, &float_any};
+    list[count++] = (FileFloats){"input_scale", 1, {inputs}, network->input.scale, &float_positive};
+    list[count++] = (FileFloats){"output_offset", 1, {outputs}, network->output.offset, &float_any};
+    list[count++] = (FileFloats){"output_scale", 1, {outputs}, network->output.scale, &float_positive};
+    list[count++] = (FileFloats){"output_mean", 1, {outputs}, network->output_mean, &float_any};
     return count;
-}
-
-static size_t member_size(const Member *member) {
-    return (size_t)member->shape[0] * (size_t)(member->rank == 2 ? member->shape[1] : 1);
 }
 
 /* "sigmoid linear" */
@@ -79,27 +65,10 @@ bool network_write(const Network *network, const char *path, Error *error) {
         {.name = "activations", .type = NPZ_TEXT, .data = activations},
     };
     size_t count = 8;
-    Member members[MAX_MEMBERS];
-    int member_count = list_members(network, members);
-    for (int m = 0; m < member_count; m++)
-        arrays[count++] = (NpzArray){.name = members[m].name,
-                                     .type = NPZ_FLOAT32,
-                                     .rank = members[m].rank,
-                                     .shape = {members[m].shape[0], members[m].shape[1]},
-                                     .data = members[m].numbers};
+    FileFloats floats[MAX_FLOATS];
+    const int float_count = list_floats(network, floats);
+    for (int f = 0; f < float_count; f++) arrays[count++] = file_floats_array(&floats[f]);
     return npz_write(path, arrays, count, error);
-}
-
-static bool check_version(NpzFile *file, const char *path, Error *error) {
-    char kind[32] = "";
-    if (!npz_has(file, "kind") || !npz_read_text(file, "kind", kind, sizeof kind, error) || strcmp(kind, KIND) != 0)
-        return error_input(error, path, "holds no network");
-    int32_t *version = npz_read(file, "version", NPZ_INT32, 0, NULL, error);
-    if (version == NULL) return false;
-    int32_t found = *version;
-    free(version);
-    if (found == NETWORK_VERSION) return true;
-    return error_input(error, path, "network of version %d; this program reads version %d", found, NETWORK_VERSION);
 }
 
 /* Returns the number of layers and fills widths, or 0 with error set. */
@@ -143,28 +112,12 @@ static bool read_activations(NpzFile *file, const char *path, Network *network, 
     return error_input(error, path, "%d activations for %d layers", count, network->layers);
 }
 
-static bool read_member(NpzFile *file, const char *path, const Member *member, Error *error) {
-    float *numbers = npz_read(file, member->name, NPZ_FLOAT32, member->rank, member->shape, error);
-    if (numbers == NULL) return false;
-    size_t size = member_size(member), i = 0;
-    bool is_scale = strstr(member->name, "scale") != NULL;
-    while (i < size && isfinite(numbers[i]) && !(is_scale && numbers[i] <= 0)) i++;
-    if (i == size)
-        memcpy(member->numbers, numbers, size * sizeof *numbers);
-    else
-        error_input(error, path, "%s: number %zu is %g; it must be finite%s", member->name, i, (double)numbers[i],
-                    is_scale ? " and greater than 0" : "");
-    free(numbers);
-    return i == size;
-}
-
 static bool read_contents(NpzFile *file, const char *path, Network *network, Error *error) {
     if (!read_activations(file, path, network, error)) return false;
-    Member members[MAX_MEMBERS];
-    int count = list_members(network, members);
-    for (int m = 0; m < count; m++)
-        if (!read_member(file, path, &members[m], error)) return false;
-    return npz_read_text(file, "inputs", network->inputs, sizeof network->inputs, error) &&
+    FileFloats floats[MAX_FLOATS];
+    const int count = list_floats(network, floats);
+    return file_floats_read(file, floats, count, error) &&
+           npz_read_text(file, "inputs", network->inputs, sizeof network->inputs, error) &&
            npz_read_text(file, "outputs", network->outputs, sizeof network->outputs, error) &&
            npz_read_text(file, "target", network->target, sizeof network->target, error) &&
            npz_read_text(file, "command", network->command, sizeof network->command, error);
@@ -175,7 +128,7 @@ Network *network_read(const char *path, Error *error) {
     if (file == NULL) return NULL;
     int widths[NETWORK_MAX_LAYERS + 1];
     Network *network = NULL;
-    int layers = check_version(file, path, error) ? read_widths(file, path, widths, error) : 0;
+    int layers = npz_check_kind(file, KIND, NETWORK_VERSION, error) ? read_widths(file, path, widths, error) : 0;
     if (layers > 0) network = network_create(layers, widths, error);
     if (network != NULL && !read_contents(file, path, network, error)) {
         network_destroy(network);

@@ -25,17 +25,17 @@ static bool make_projection(Projection *projection, int from, int to) {
     return projection->rows != NULL && projection->centre != NULL;
 }
 
-static int widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
+static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
 
-static bool check(const SlotShape *shape, const Slot *slots, Error *error) {
+bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *where, Error *error) {
     if (shape->body_count < 2 || shape->body_count > SLOT_BODIES_MAX || shape->bomb < 0 ||
         shape->bomb >= shape->body_count)
-        return error_input(error, "slot network", "%d bodies, of which %d is the bomb", shape->body_count, shape->bomb);
+        return error_input(error, where, "%d bodies, of which %d is the bomb", shape->body_count, shape->bomb);
     if (shape->slot_count < 1 || shape->slot_count > SLOTS_MAX)
-        return error_input(error, "slot network", "%d slots, not 1 to %d", shape->slot_count, SLOTS_MAX);
+        return error_input(error, where, "%d slots, not 1 to %d", shape->slot_count, SLOTS_MAX);
     if (!widths_are_whole(shape->state) || !widths_are_whole(shape->present) || !widths_are_whole(shape->warm) ||
         !widths_are_whole(shape->hidden))
-        return error_input(error, "slot network", "a width is no multiple of %d up to %d", ROW_LANES, SLOT_WIDTH_MAX);
+        return error_input(error, where, "a width is no multiple of %d up to %d", ROW_LANES, SLOT_WIDTH_MAX);
     for (int i = 0; i < shape->slot_count; i++) {
         const Slot *slot = &slots[i];
         bool known = slot->a >= 0 && slot->a < slot->b && slot->b < shape->body_count;
@@ -44,7 +44,7 @@ static bool check(const SlotShape *shape, const Slot *slots, Error *error) {
             known = last->a < slot->a || (last->a == slot->a &&
                                           (last->b < slot->b || (last->b == slot->b && last->feature < slot->feature)));
         }
-        if (!known) return error_input(error, "slot network", "slot %d is of no two bodies or out of order", i);
+        if (!known) return error_input(error, where, "slot %d is of no two bodies or out of order", i);
     }
     return true;
 }
@@ -77,7 +77,7 @@ static void index_pairs(SlotNetwork *network) {
 }
 
 SlotNetwork *slot_network_create(const SlotShape *shape, const Slot *slots, Error *error) {
-    if (!check(shape, slots, error)) return NULL;
+    if (!slot_shape_check(shape, slots, "slot network", error)) return NULL;
     SlotNetwork *network = calloc(1, sizeof *network);
     const size_t count = (size_t)shape->slot_count, bodies = (size_t)shape->body_count;
     bool ok = network != NULL;

@@ -77,7 +77,10 @@ typedef struct SlotShape {
     int hidden;               /* width of both hidden layers */
 } SlotShape;
 
-/* All numbers 0, the slots copied. ERROR_INPUT where the shape is out of bounds or the slots do not rise. */
+/* ERROR_INPUT, naming `where`, where the shape is out of bounds or the slots do not rise. */
+bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *where, Error *error);
+
+/* All numbers 0, the slots copied. ERROR_INPUT as from slot_shape_check(). */
 SlotNetwork *slot_network_create(const SlotShape *shape, const Slot *slots, Error *error);
 void slot_network_destroy(SlotNetwork *network);
 
@@ -105,5 +108,5 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 bool slot_network_write(const SlotNetwork *network, const char *path, Error *error);
 
 /* ERROR_INPUT, naming the file, for what is damaged, of another version or kind, of shapes that do not fit, or holds a
-   number that is not finite. */
+   number that is not finite, a scale, cap or gate below 0, or factors that momentum_schedule.h would not have. */
 SlotNetwork *slot_network_read(const char *path, Error *error);

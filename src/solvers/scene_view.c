@@ -2,6 +2,7 @@
 #include "solvers/scene_view.h"
 
 #include "common/array.h"
+#include "solvers/contact_velocity.h"
 
 #include <stdlib.h>
 
@@ -40,8 +41,6 @@ static void put_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) 
     numbers[5] = body->angular_velocity;
 }
 
-static float within(float value, float limit) { return value < -limit ? -limit : value > limit ? limit : value; }
-
 static void put_contact(SceneView *view, const SlotNetwork *network, const ContactPoint *contact, int i) {
     ContactImpulse *base = &view->base[i];
     *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
@@ -54,8 +53,9 @@ static void put_contact(SceneView *view, const SlotNetwork *network, const Conta
     view->impulses[2 * k + 1] = 2 * slot + 1;
     view->warm[2 * k] = base->normal;
     view->warm[2 * k + 1] = base->tangent;
-    if (base->normal > network->cap[slot]) base->normal = network->cap[slot];
-    base->tangent = within(base->tangent, contact->friction * base->normal);
+    base->normal = contact_clamp(base->normal, 0, network->cap[slot]);
+    const float most = contact->friction * base->normal;
+    base->tangent = contact_clamp(base->tangent, -most, most);
 }
 
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {

@@ -12,7 +12,7 @@ typedef struct SceneView {
     SlotView slots;
     int32_t *contacts;    /* [slots.slot_count] the contact of each */
     ContactImpulse *base; /* [contact_count] the start without the network: warm impulses, those with a slot up to
-                             its cap; inside the cone */
+                             its cap and inside the cone */
     /* What `slots` points to: */
     float bomb[SLOT_BODY_NUMBERS], *state, *ones, *warm;
     int32_t *present, *impulses;

@@ -6,28 +6,11 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-static bool read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error) {
-    void *data = npz_read(file, name, type, 0, NULL, error);
-    if (data != NULL) memcpy(value, data, size);
-    free(data);
-    return data != NULL;
-}
-
-static bool read_name(NpzFile *file, const char *name, char text[TRAJECTORY_NAME_SIZE], const char *path,
-                      Error *error) {
-    if (!npz_read_text(file, name, text, TRAJECTORY_NAME_SIZE, error)) return false;
-    for (const char *c = text; *c != '\0'; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return error_input(error, path, "the name of the %s holds control characters", name);
-    return true;
-}
 
 static bool read_version(NpzFile *file, const char *path, Error *error) {
     int32_t version = 0;
     if (!npz_has(file, "version") || !npz_has(file, "position")) return error_input(error, path, "no trajectory");
-    if (!read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
+    if (!npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
     return version == TRAJECTORY_VERSION ||
            error_input(error, path, "trajectory version %d; this program reads %d", (int)version, TRAJECTORY_VERSION);
 }
@@ -35,11 +18,11 @@ static bool read_version(NpzFile *file, const char *path, Error *error) {
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     int32_t bomb;
     const int64_t two_by_two[] = {2, 2};
-    if (!read_version(file, path, error) || !read_name(file, "scene", t->scene, path, error) ||
-        !read_name(file, "method", t->method, path, error) ||
-        !read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error) ||
-        !read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
-        !read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
+    if (!read_version(file, path, error) || !npz_read_name(file, "scene", t->scene, sizeof t->scene, error) ||
+        !npz_read_name(file, "method", t->method, sizeof t->method, error) ||
+        !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error) ||
+        !npz_read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
+        !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
         return false;
     t->bomb = bomb;
     Vec2 *camera = npz_read(file, "camera", NPZ_FLOAT32, 2, two_by_two, error);

@@ -208,7 +208,7 @@ cmp -s schedule.hash again.hash || fail "a schedule is not repeatable"
 run 2 simulate single.yaml --method learned-momentum:k=7,network=schedule.npz
 complains "schedule.npz: error: has no factors for k=7; it has them for 5, 10, 20, 50"
 run 2 simulate single.yaml --method learned-momentum:network=net.npz
-complains "net.npz: error: holds a 'network'"
+complains "net.npz: error: holds no momentum-schedules"
 run 2 train --kind magic single.yaml -o x.npz
 complains "--kind"
 run 2 train --kind momentum-schedule nowhere.yaml -o x.npz

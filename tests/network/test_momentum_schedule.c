@@ -54,16 +54,16 @@ static void hostile_files_are_refused(void **state) {
     const float fine[] = {0, 0.5f, 0.6f, 0.7f, 0, 0.5f};
     const int32_t two[] = {2, 4};
     assert_refused(write_file(2, kind, 2, two, 6, fine), "version 2");
-    assert_refused(write_file(1, "network", 2, two, 6, fine), "holds a 'network'");
+    assert_refused(write_file(1, "network", 2, two, 6, fine), "holds no momentum-schedules");
     assert_refused(write_file(1, kind, 2, two, 5, fine), "factors");
     assert_refused(write_file(1, kind, 0, two, 0, fine), "0 schedules");
     assert_refused(write_file(1, kind, 2, (const int32_t[]){4, 2}, 6, fine), "sweeps[1] is 2");
     assert_refused(write_file(1, kind, 2, (const int32_t[]){3, 3}, 6, fine), "sweeps[1] is 3");
     assert_refused(write_file(1, kind, 2, (const int32_t[]){-1, 7}, 6, fine), "sweeps[0] is -1");
     assert_refused(write_file(1, kind, 1, (const int32_t[]){1001}, 6, fine), "sweeps[0] is 1001");
-    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){0, NAN}), "factors[1]");
-    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){0, -0.1f}), "factors[1]");
-    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){2.1f, 0}), "factors[0]");
+    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){0, NAN}), "factors: number 1");
+    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){0, -0.1f}), "factors: number 1");
+    assert_refused(write_file(1, kind, 1, (const int32_t[]){2}, 2, (const float[]){2.1f, 0}), "factors: number 0");
     const int32_t many[17] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
     assert_refused(write_file(1, kind, 17, many, 6, fine), "17 schedules");
 }

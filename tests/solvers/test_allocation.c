@@ -2,6 +2,9 @@
 /* A step allocates nothing once the world has warmed up. The linker hands every call of malloc, calloc and realloc
    in this program to the functions below (tests/CMakeLists.txt). */
 #include "pair_networks.h"
+#include "slot_problems.h"
+
+#include "solvers/scene_view.h"
 
 static int allocations;
 
@@ -91,8 +94,29 @@ static void pair_networks_solve_without_allocating(void **state) {
     world_destroy(world);
 }
 
+static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
+    (void)state;
+    static RandomProblem large, small;
+    uint32_t seed = 1;
+    SceneView view = {0};
+    SlotNetwork *network = make_slot_problem(&large, &seed, 20, 0.5f, 1);
+    SlotNetwork *smaller = make_slot_problem(&small, &seed, 12, 0.5f, 1);
+    allocations = 0;
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_true(allocations > 0);
+    allocations = 0;
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_true(scene_view_take(&view, smaller, &small.problem));
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_int_equal(allocations, 0);
+    scene_view_free(&view);
+    slot_network_destroy(smaller);
+    slot_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
-                                       cmocka_unit_test(pair_networks_solve_without_allocating)};
+                                       cmocka_unit_test(pair_networks_solve_without_allocating),
+                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Slot network files: .npz with version, kind ("scene-net"), scene, command, body_count, bomb, sweeps, slot_a, slot_b,
+   slot_feature [slots], and as float32, with the shapes of slot_network.h: P_rows and P_centre of the projections P =
+   bomb_state, state, present, warm; L_rows and L_biases of the layers L = first, second, last; scale, cap, gate,
+   factors[sweeps]. */
+#include "network/file_floats.h"
+#include "network/slot_network.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define KIND "scene-net"
+
+enum { HEAD_ARRAYS = 10, FLOAT_ARRAYS = 18 };
+
+/* One list serves writing and reading. */
+static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
+    const Projection *bomb = &network->bomb_state, *state = &network->state, *present = &network->present,
+                     *warm = &network->warm;
+    const SlotLayer *first = &network->first, *second = &network->second;
+    const int slots = network->slot_count;
+    const FileFloats all[FLOAT_ARRAYS] = {
+        {"bomb_state_rows", 2, {bomb->from, bomb->to}, bomb->rows, &float_any},
+        {"bomb_state_centre", 1, {bomb->to}, bomb->centre, &float_any},
+        {"state_rows", 2, {state->from, state->to}, state->rows, &float_any},
+        {"state_centre", 1, {state->to}, state->centre, &float_any},
+        {"present_rows", 2, {present->from, present->to}, present->rows, &float_any},
+        {"present_centre", 1, {present->to}, present->centre, &float_any},
+        {"warm_rows", 2, {warm->from, warm->to}, warm->rows, &float_any},
+        {"warm_centre", 1, {warm->to}, warm->centre, &float_any},
+        {"first_rows", 2, {first->from, first->to}, first->rows, &float_any},
+        {"first_biases", 1, {first->to}, first->biases, &float_any},
+        {"second_rows", 2, {second->from, second->to}, second->rows, &float_any},
+        {"second_biases", 1, {second->to}, second->biases, &float_any},
+        {"last_rows", 2, {2 * slots, second->to}, network->rows, &float_any},
+        {"last_biases", 1, {2 * slots}, network->biases, &float_any},
+        {"scale", 1, {slots}, network->scale, &float_not_negative},
+        {"cap", 1, {slots}, network->cap, &float_not_negative},
+        {"gate", 0, {0}, &network->gate, &float_not_negative},
+        {"factors", 1, {network->sweeps}, network->factors, &float_momentum},
+    };
+    memcpy(list, all, sizeof all);
+}
+
+/* a, b and feature of the slots, one after the other; NULL when memory is short. */
+static int32_t *slot_columns(const SlotNetwork *network) {
+    const int count = network->slot_count;
+    int32_t *columns = malloc(3 * (size_t)count * sizeof *columns);
+    for (int i = 0; columns != NULL && i < count; i++) {
+        columns[i] = network->slots[i].a;
+        columns[count + i] = network->slots[i].b;
+        memcpy(&columns[2 * count + i], &network->slots[i].feature, sizeof *columns);
+    }
+    return columns;
+}
+
+bool slot_network_write(const SlotNetwork *network, const char *path, Error *error) {
+    const int32_t version = SLOT_NETWORK_VERSION, body_count = network->body_count, bomb = network->bomb,
+                  sweeps = network->sweeps, count = network->slot_count;
+    int32_t *slots = slot_columns(network);
+    if (slots == NULL) return error_memory(error, path);
+    NpzArray arrays[HEAD_ARRAYS + FLOAT_ARRAYS] = {
+        {.name = "version", .type = NPZ_INT32, .data = &version},
+        {.name = "kind", .type = NPZ_TEXT, .data = KIND},
+        {.name = "scene", .type = NPZ_TEXT, .data = network->scene},
+        {.name = "command", .type = NPZ_TEXT, .data = network->command},
+        {.name = "body_count", .type = NPZ_INT32, .data = &body_count},
+        {.name = "bomb", .type = NPZ_INT32, .data = &bomb},
+        {.name = "sweeps", .type = NPZ_INT32, .data = &sweeps},
+        {.name = "slot_a", .type = NPZ_INT32, .rank = 1, .shape = {count}, .data = slots},
+        {.name = "slot_b", .type = NPZ_INT32, .rank = 1, .shape = {count}, .data = slots + count},
+        {.name = "slot_feature", .type = NPZ_UINT32, .rank = 1, .shape = {count}, .data = slots + 2 * count},
+    };
+    SlotNetwork copy = *network; /* the list is one to read into, too */
+    FileFloats floats[FLOAT_ARRAYS];
+    list_floats(&copy, floats);
+    for (int i = 0; i < FLOAT_ARRAYS; i++) arrays[HEAD_ARRAYS + i] = file_floats_array(&floats[i]);
+    bool ok = npz_write(path, arrays, HEAD_ARRAYS + FLOAT_ARRAYS, error);
+    free(slots);
+    return ok;
+}
+
+static bool read_int(NpzFile *file, const char *name, int *number, Error *error) {
+    int32_t stored;
+    if (!npz_read_scalar(file, name, NPZ_INT32, &stored, sizeof stored, error)) return false;
+    *number = stored;
+    return true;
+}
+
+/* The columns of a matrix that must have so many rows: what is made room for, the file must hold. */
+static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width, Error *error) {
+    int64_t shape[2];
+    if (!npz_shape(file, name, NPZ_FLOAT32, 2, shape, error)) return false;
+    if (shape[0] != rows || shape[1] > SLOT_WIDTH_MAX)
+        return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); (%lld, up to %d) is needed", name,
+                           (long long)shape[0], (long long)shape[1], (long long)rows, SLOT_WIDTH_MAX);
+    *width = (int)shape[1];
+    return true;
+}
+
+static bool read_shape(NpzFile *file, SlotShape *shape, Error *error) {
+    int64_t slots;
+    if (!read_int(file, "body_count", &shape->body_count, error) || !read_int(file, "bomb", &shape->bomb, error) ||
+        !npz_shape(file, "slot_a", NPZ_INT32, 1, &slots, error))
+        return false;
+    if (slots > SLOTS_MAX)
+        return error_input(error, npz_path(file), "%lld slots, not 1 to %d", (long long)slots, SLOTS_MAX);
+    shape->slot_count = (int)slots;
+    return read_width(file, "state_rows", SLOT_BODY_NUMBERS * ((int64_t)shape->body_count - 1), &shape->state, error) &&
+           read_width(file, "present_rows", slots, &shape->present, error) &&
+           read_width(file, "warm_rows", 2 * slots, &shape->warm, error) &&
+           read_width(file, "last_rows", 2 * slots, &shape->hidden, error);
+}
+
+static Slot *read_slots(NpzFile *file, int64_t count, Error *error) {
+    int32_t *a = npz_read(file, "slot_a", NPZ_INT32, 1, &count, error);
+    int32_t *b = a != NULL ? npz_read(file, "slot_b", NPZ_INT32, 1, &count, error) : NULL;
+    uint32_t *feature = b != NULL ? npz_read(file, "slot_feature", NPZ_UINT32, 1, &count, error) : NULL;
+    Slot *slots = NULL;
+    if (feature != NULL && (slots = malloc(((size_t)count + 1) * sizeof *slots)) == NULL)
+        error_memory(error, npz_path(file));
+    for (int64_t i = 0; slots != NULL && i < count; i++) slots[i] = (Slot){a[i], b[i], feature[i]};
+    free(a);
+    free(b);
+    free(feature);
+    return slots;
+}
+
+static bool read_contents(NpzFile *file, SlotNetwork *network, Error *error) {
+    if (!npz_read_name(file, "scene", network->scene, sizeof network->scene, error) ||
+        !npz_read_text(file, "command", network->command, sizeof network->command, error) ||
+        !read_int(file, "sweeps", &network->sweeps, error))
+        return false;
+    if (network->sweeps < 0 || network->sweeps > SLOT_SWEEPS_MAX)
+        return error_input(error, npz_path(file), "sweeps is %d; 0 to %d are possible", network->sweeps,
+                           SLOT_SWEEPS_MAX);
+    FileFloats floats[FLOAT_ARRAYS];
+    list_floats(network, floats);
+    return file_floats_read(file, floats, FLOAT_ARRAYS, error);
+}
+
+static SlotNetwork *read_network(NpzFile *file, Error *error) {
+    SlotShape shape;
+    if (!npz_check_kind(file, KIND, SLOT_NETWORK_VERSION, error) || !read_shape(file, &shape, error)) return NULL;
+    Slot *slots = read_slots(file, shape.slot_count, error);
+    SlotNetwork *network = NULL;
+    if (slots != NULL && slot_shape_check(&shape, slots, npz_path(file), error))
+        network = slot_network_create(&shape, slots, error);
+    free(slots);
+    if (network == NULL || read_contents(file, network, error)) return network;
+    slot_network_destroy(network);
+    return NULL;
+}
+
+SlotNetwork *slot_network_read(const char *path, Error *error) {
+    NpzFile *file = npz_open(path, error);
+    if (file == NULL) return NULL;
+    SlotNetwork *network = read_network(file, error);
+    npz_close(file);
+    return network;
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "slot_networks.h"
+
+#include <math.h>
+
+enum { BODIES = 5, STATE = SLOT_BODY_NUMBERS * (BODIES - 1), INPUTS = ROW_LANES + 16 + 32 + 48, HIDDEN = 64 };
+
+/* A view with the numbers that it points to; of all slots, until a test says otherwise. */
+typedef struct Scene {
+    float bomb[SLOT_BODY_NUMBERS], state[STATE], ones[FIVE_SLOTS], warm[2 * FIVE_SLOTS];
+    int32_t slots[FIVE_SLOTS], impulses[2 * FIVE_SLOTS];
+    SlotView view;
+} Scene;
+
+static void see(Scene *scene, int count, const int32_t *slots) {
+    for (int i = 0; i < count; i++) {
+        scene->slots[i] = slots[i];
+        scene->ones[i] = 1;
+        for (int k = 0; k < 2; k++) scene->impulses[2 * i + k] = 2 * slots[i] + k;
+    }
+    scene->view = (SlotView){scene->bomb, scene->state, count, scene->slots, scene->impulses, scene->ones, scene->warm};
+}
+
+static const int32_t all_slots[FIVE_SLOTS] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, few_slots[] = {7, 1, 4};
+
+static void make_scene(Scene *scene, uint32_t *seed) {
+    fill(scene->bomb, SLOT_BODY_NUMBERS, -1, 1, seed);
+    fill(scene->state, STATE, -1, 1, seed);
+    fill(scene->warm, 2 * FIVE_SLOTS, 0, 1, seed);
+    see(scene, FIVE_SLOTS, all_slots);
+}
+
+static void every_slot_is_found(void **state) {
+    (void)state;
+    uint32_t seed = 1;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    for (int i = 0; i < FIVE_SLOTS; i++)
+        assert_int_equal(slot_network_find(network, five_slots[i].a, five_slots[i].b, five_slots[i].feature), i);
+    slot_network_destroy(network);
+}
+
+/* Every pair, in both orders, with every feature that some pair has and some that none has. */
+static void a_contact_without_a_slot_has_none(void **state) {
+    (void)state;
+    const uint32_t features[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, UINT32_MAX - 1, UINT32_MAX};
+    uint32_t seed = 1;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    int found = 0;
+    for (int a = 0; a < BODIES; a++)
+        for (int b = 0; b < BODIES; b++)
+            for (size_t f = 0; f < sizeof features / sizeof features[0]; f++) {
+                const int slot = slot_network_find(network, a, b, features[f]);
+                if (slot < 0) continue;
+                assert_true(five_slots[slot].a == a && five_slots[slot].b == b &&
+                            five_slots[slot].feature == features[f]);
+                found++;
+            }
+    assert_int_equal(found, FIVE_SLOTS);
+    slot_network_destroy(network);
+}
+
+static void a_new_network_is_zero_and_has_its_own_slots(void **state) {
+    (void)state;
+    Error error = {0};
+    Slot slots[FIVE_SLOTS];
+    memcpy(slots, five_slots, sizeof slots);
+    SlotNetwork *network = slot_network_create(&five_shape, slots, &error);
+    assert_ok(network != NULL, error);
+    memset(slots, 0, sizeof slots);
+    assert_memory_equal(network->slots, five_slots, sizeof five_slots);
+    assert_int_equal(slot_network_inputs(network), INPUTS);
+    assert_int_equal(slot_network_hidden(network), HIDDEN);
+    assert_int_equal(network->parameter_count,
+                     (INPUTS + 1) * HIDDEN + (HIDDEN + 1) * HIDDEN + (HIDDEN + 1) * 2 * FIVE_SLOTS);
+    for (size_t p = 0; p < network->parameter_count; p++) assert_true(network->parameters[p] == 0);
+    for (int i = 0; i < FIVE_SLOTS; i++) assert_true(network->scale[i] == 0 && network->cap[i] == 0);
+    slot_network_destroy(network);
+}
+
+/* Small whole numbers: every sum of them is exact. */
+static void make_whole(float *numbers, size_t count) {
+    for (size_t i = 0; i < count; i++) numbers[i] = roundf(8 * numbers[i]);
+}
+
+static void centre(Projection *projection, const int32_t *index, const float *numbers, int count) {
+    make_whole(projection->rows, (size_t)projection->from * (size_t)projection->to);
+    for (int c = 0; c < projection->to; c++) {
+        projection->centre[c] = 0;
+        for (int i = 0; i < count; i++)
+            projection->centre[c] += numbers[i] * projection->rows[(index != NULL ? index[i] : i) * projection->to + c];
+    }
+}
+
+static void what_lies_at_the_centre_projects_to_zero(void **state) {
+    (void)state;
+    Scene scene;
+    uint32_t seed = 3;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    make_scene(&scene, &seed);
+    see(&scene, 3, few_slots);
+    make_whole(scene.bomb, SLOT_BODY_NUMBERS);
+    make_whole(scene.state, STATE);
+    make_whole(scene.warm, 2 * FIVE_SLOTS);
+    centre(&network->bomb_state, NULL, scene.bomb, SLOT_BODY_NUMBERS);
+    centre(&network->state, NULL, scene.state, STATE);
+    centre(&network->present, scene.slots, scene.ones, 3);
+    centre(&network->warm, scene.impulses, scene.warm, 6);
+    float inputs[INPUTS];
+    slot_network_look(network, &scene.view, inputs);
+    for (int i = 0; i < INPUTS; i++) assert_true(inputs[i] == 0);
+    scene.warm[5] += 1; /* and what lies elsewhere does not */
+    slot_network_look(network, &scene.view, inputs);
+    bool moved = false;
+    for (int i = INPUTS - 48; i < INPUTS; i++) moved |= inputs[i] != 0;
+    for (int i = 0; i < INPUTS - 48; i++) assert_true(inputs[i] == 0);
+    assert_true(moved);
+    slot_network_destroy(network);
+}
+
+static double *project(const Projection *projection, const int32_t *index, const float *numbers, int count,
+                       double *out) {
+    for (int c = 0; c < projection->to; c++) {
+        out[c] = -(double)projection->centre[c];
+        for (int i = 0; i < count; i++)
+            out[c] +=
+                (double)numbers[i] * (double)projection->rows[(index != NULL ? index[i] : i) * projection->to + c];
+    }
+    return out + projection->to;
+}
+
+static void run_layer(const SlotLayer *layer, const double *in, double *out) {
+    for (int o = 0; o < layer->to; o++) {
+        double sum = (double)layer->biases[o];
+        for (int i = 0; i < layer->from; i++) sum += (double)layer->rows[i * layer->to + o] * in[i];
+        out[o] = tanh(sum);
+    }
+}
+
+/* The formula at the head of slot_network.h, for every slot of the network. */
+static void predict(const SlotNetwork *network, const SlotView *view, double inputs[INPUTS],
+                    double outputs[2 * FIVE_SLOTS]) {
+    double first[HIDDEN], second[HIDDEN];
+    double *next = project(&network->bomb_state, NULL, view->bomb, SLOT_BODY_NUMBERS, inputs);
+    next = project(&network->state, NULL, view->state, STATE, next);
+    next = project(&network->present, view->slots, view->ones, view->slot_count, next);
+    project(&network->warm, view->impulses, view->warm, 2 * view->slot_count, next);
+    run_layer(&network->first, inputs, first);
+    run_layer(&network->second, first, second);
+    for (int i = 0; i < 2 * FIVE_SLOTS; i++) {
+        double sum = (double)network->biases[i];
+        for (int h = 0; h < HIDDEN; h++) sum += (double)network->rows[i * HIDDEN + h] * second[h];
+        outputs[i] = (double)network->scale[i / 2] * sum;
+    }
+}
+
+/* About a hundred additions, each off by at most 2^-24 of a partial sum of a few units. */
+static const double rounding = 1e-5;
+
+static void a_prediction_is_the_formula(void **state) {
+    (void)state;
+    uint32_t seed = 4;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    for (int test = 0; test < 20; test++) {
+        Scene scene;
+        float inputs[INPUTS], first[HIDDEN], second[HIDDEN], outputs[2 * FIVE_SLOTS];
+        double exact_inputs[INPUTS], exact[2 * FIVE_SLOTS];
+        make_scene(&scene, &seed);
+        if (test % 2 == 1) see(&scene, 3, few_slots);
+        slot_network_look(network, &scene.view, inputs);
+        slot_network_predict(network, inputs, &scene.view, first, second, outputs);
+        predict(network, &scene.view, exact_inputs, exact);
+        for (int i = 0; i < INPUTS; i++) assert_near(inputs[i], exact_inputs[i], rounding);
+        for (int i = 0; i < 2 * scene.view.slot_count; i++)
+            assert_near(outputs[i], exact[2 * scene.slots[i / 2] + i % 2], rounding);
+    }
+    slot_network_destroy(network);
+}
+
+/* For the same inputs, each alone and in any company. */
+static void a_slot_does_not_mind_the_others(void **state) {
+    (void)state;
+    Scene scene;
+    uint32_t seed = 5;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    float inputs[INPUTS], first[HIDDEN], second[HIDDEN], all[2 * FIVE_SLOTS], few[6], one[2];
+    make_scene(&scene, &seed);
+    slot_network_look(network, &scene.view, inputs);
+    slot_network_predict(network, inputs, &scene.view, first, second, all);
+    see(&scene, 3, few_slots);
+    slot_network_predict(network, inputs, &scene.view, first, second, few);
+    for (int i = 0; i < 3; i++) assert_memory_equal(&few[2 * i], &all[2 * few_slots[i]], sizeof one);
+    for (int32_t slot = 0; slot < FIVE_SLOTS; slot++) {
+        see(&scene, 1, &slot);
+        slot_network_predict(network, inputs, &scene.view, first, second, one);
+        assert_memory_equal(one, &all[2 * slot], sizeof one);
+        assert_true(one[0] != 0 && one[0] != one[1]);
+    }
+    slot_network_destroy(network);
+}
+
+/* A step without contacts. */
+static void no_slots_are_none(void **state) {
+    (void)state;
+    Scene scene;
+    uint32_t seed = 6;
+    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    float inputs[INPUTS], first[HIDDEN], second[HIDDEN], none = 5;
+    make_scene(&scene, &seed);
+    see(&scene, 0, NULL);
+    slot_network_look(network, &scene.view, inputs);
+    for (int c = 0; c < network->present.to; c++)
+        assert_true(inputs[ROW_LANES + network->state.to + c] == -network->present.centre[c]);
+    slot_network_predict(network, inputs, &scene.view, first, second, &none);
+    assert_true(none == 5);
+    slot_network_destroy(network);
+}
+
+static void assert_refused(SlotShape shape, const Slot *slots, const char *text) {
+    Error error = {0};
+    assert_null(slot_network_create(&shape, slots, &error));
+    assert_error(error, ERROR_INPUT, text);
+}
+
+static void shapes_out_of_bounds_are_refused(void **state) {
+    (void)state;
+    const SlotShape fine = {3, 2, 1, 16, 16, 16, 16};
+    const Slot slot = {0, 1, 0};
+#define REFUSE(member, value, text)         \
+    do {                                    \
+        SlotShape shape = fine;             \
+        shape.member = (value);             \
+        assert_refused(shape, &slot, text); \
+    } while (0)
+    REFUSE(body_count, 1, "1 bodies");
+    REFUSE(body_count, -1, "-1 bodies");
+    REFUSE(body_count, SLOT_BODIES_MAX + 1, "257 bodies");
+    REFUSE(bomb, -1, "of which -1 is the bomb");
+    REFUSE(bomb, 3, "of which 3 is the bomb");
+    REFUSE(slot_count, 0, "0 slots");
+    REFUSE(slot_count, -5, "-5 slots");
+    REFUSE(slot_count, SLOTS_MAX + 1, "20001 slots");
+    const int bad[] = {0, -16, 8, 17, SLOT_WIDTH_MAX + ROW_LANES};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        REFUSE(state, bad[i], "a width");
+        REFUSE(present, bad[i], "a width");
+        REFUSE(warm, bad[i], "a width");
+        REFUSE(hidden, bad[i], "a width");
+    }
+#undef REFUSE
+}
+
+static void slots_that_do_not_rise_are_refused(void **state) {
+    (void)state;
+    const SlotShape three = {4, 0, 3, 16, 16, 16, 16};
+    assert_refused(three, (const Slot[]){{1, 1, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
+    assert_refused(three, (const Slot[]){{1, 0, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
+    assert_refused(three, (const Slot[]){{-1, 2, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
+    assert_refused(three, (const Slot[]){{0, 1, 0}, {1, 2, 0}, {1, 4, 0}}, "slot 2");
+    assert_refused(three, (const Slot[]){{0, 3, 0}, {1, 2, 0}, {0, 3, 1}}, "slot 2");
+    assert_refused(three, (const Slot[]){{0, 3, 0}, {0, 2, 1}, {1, 3, 0}}, "slot 1");
+    assert_refused(three, (const Slot[]){{0, 3, 5}, {0, 3, 4}, {1, 3, 0}}, "slot 1");
+    assert_refused(three, (const Slot[]){{0, 3, 5}, {0, 3, 5}, {1, 3, 0}}, "slot 1");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_slot_is_found),
+        cmocka_unit_test(a_contact_without_a_slot_has_none),
+        cmocka_unit_test(a_new_network_is_zero_and_has_its_own_slots),
+        cmocka_unit_test(what_lies_at_the_centre_projects_to_zero),
+        cmocka_unit_test(a_prediction_is_the_formula),
+        cmocka_unit_test(a_slot_does_not_mind_the_others),
+        cmocka_unit_test(no_slots_are_none),
+        cmocka_unit_test(shapes_out_of_bounds_are_refused),
+        cmocka_unit_test(slots_that_do_not_rise_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

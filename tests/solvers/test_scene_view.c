@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How random contact problems look to slot networks that know a part of their contacts. */
+#include "slot_problems.h"
+
+#include "solvers/scene_view.h"
+
+/* Bodies, and the share of their pairs that touch: none, few, many. */
+static const struct {
+    int bodies;
+    float density;
+} sizes[] = {{2, 1}, {3, 0}, {5, 0.5f}, {12, 0.3f}, {40, 0.1f}};
+enum { SIZES = sizeof sizes / sizeof sizes[0] };
+
+/* Calls check with a view of each problem; the view is one and the same, so stale numbers are met too. */
+static void for_all(void (*check)(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem)) {
+    static RandomProblem random;
+    SceneView view = {0};
+    uint32_t seed = 1;
+    for (int round = 0; round < 6; round++)
+        for (int s = 0; s < SIZES; s++) {
+            SlotNetwork *network = make_slot_problem(&random, &seed, sizes[s].bodies, sizes[s].density, 0.6f);
+            assert_true(scene_view_take(&view, network, &random.problem));
+            check(&view, network, &random.problem);
+            slot_network_destroy(network);
+        }
+    scene_view_free(&view);
+}
+
+static int slot_of(const SlotNetwork *network, const ContactPoint *contact) {
+    return slot_network_find(network, contact->a, contact->b, contact->feature);
+}
+
+static void check_list(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+    const SlotView *slots = &view->slots;
+    int k = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const int slot = slot_of(network, contact);
+        if (slot < 0) continue;
+        assert_true(k < slots->slot_count);
+        assert_int_equal(view->contacts[k], i);
+        assert_int_equal(slots->slots[k], slot);
+        assert_int_equal(slots->impulses[2 * k], 2 * slot);
+        assert_int_equal(slots->impulses[2 * k + 1], 2 * slot + 1);
+        assert_true(slots->ones[k] == 1);
+        assert_memory_equal(&slots->warm[2 * k], &contact->warm_normal, sizeof(float));
+        assert_memory_equal(&slots->warm[2 * k + 1], &contact->warm_tangent, sizeof(float));
+        k++;
+    }
+    assert_int_equal(slots->slot_count, k);
+}
+
+static void what_has_a_slot_is_listed_in_the_order_of_contacts(void **state) {
+    (void)state;
+    for_all(check_list);
+}
+
+/* What lies within is taken as it is. */
+static void check_base(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const ContactImpulse *base = &view->base[i];
+        const int slot = slot_of(network, contact);
+        if (slot < 0) {
+            assert_memory_equal(&base->normal, &contact->warm_normal, sizeof(float));
+            assert_memory_equal(&base->tangent, &contact->warm_tangent, sizeof(float));
+            continue;
+        }
+        const float most = contact->friction * base->normal;
+        assert_true(base->normal >= 0 && base->normal <= network->cap[slot]);
+        assert_true(fabsf(base->tangent) <= most);
+        if (contact->warm_normal >= 0 && contact->warm_normal <= network->cap[slot])
+            assert_true(base->normal == contact->warm_normal);
+        else
+            assert_true(base->normal == (contact->warm_normal < 0 ? 0 : network->cap[slot]));
+        if (fabsf(contact->warm_tangent) <= most)
+            assert_true(base->tangent == contact->warm_tangent);
+        else
+            assert_true(base->tangent == copysignf(most, contact->warm_tangent));
+    }
+}
+
+static void the_start_is_the_nearest_within_cap_and_cone(void **state) {
+    (void)state;
+    for_all(check_base);
+}
+
+static void assert_body(const float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
+    const float expected[SLOT_BODY_NUMBERS] = {body->position.x, body->position.y, body->angle,
+                                               body->velocity.x, body->velocity.y, body->angular_velocity};
+    assert_memory_equal(numbers, expected, sizeof expected);
+}
+
+static void check_state(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+    const float *next = view->slots.state;
+    assert_body(view->slots.bomb, &problem->bodies[network->bomb]);
+    for (int i = 0; i < problem->body_count; i++) {
+        if (i == network->bomb) continue;
+        assert_body(next, &problem->bodies[i]);
+        next += SLOT_BODY_NUMBERS;
+    }
+    assert_int_equal(next - view->slots.state, network->state.from);
+}
+
+static void the_state_leaves_out_the_bomb_only(void **state) {
+    (void)state;
+    for_all(check_state);
+}
+
+/* Else the laws above would hold of nothing. */
+static int with_slot, without_slot, capped, outside;
+
+static void count_cases(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+    (void)view;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const int slot = slot_of(network, contact);
+        with_slot += slot >= 0;
+        without_slot += slot < 0;
+        capped += slot >= 0 && contact->warm_normal > network->cap[slot];
+        outside += slot >= 0 && fabsf(contact->warm_tangent) > contact->friction * contact->warm_normal;
+    }
+}
+
+static void every_case_is_among_the_problems(void **state) {
+    (void)state;
+    for_all(count_cases);
+    assert_true(with_slot > 100 && without_slot > 100 && capped > 100 && outside > 100);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_has_a_slot_is_listed_in_the_order_of_contacts),
+        cmocka_unit_test(the_start_is_the_nearest_within_cap_and_cone),
+        cmocka_unit_test(the_state_leaves_out_the_bomb_only),
+        cmocka_unit_test(every_case_is_among_the_problems),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
