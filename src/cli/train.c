@@ -3,6 +3,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/train_momentum.h"
+#include "cli/train_scene_net.h"
 #include "training/training.h"
 
 #include <stdio.h>
@@ -20,13 +21,20 @@ enum {
     OUTPUT_ACTIVATION,
     SCALE,
     LOSS,
-    LAWS_IN_LOSS
+    LAWS_IN_LOSS,
+    LAUNCHES,
+    ROUNDS,
+    WIDTH,
+    SWEEPS,
+    MOMENTUM
 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NET.npz", 0, "Where the network goes", 0},
     {"kind", KIND, "NAME", 0,
-     "pair-net (default): from a dataset; momentum-schedule: a SCENE's factors for learned-momentum, by CMA-ES", 0},
+     "pair-net (default): from a dataset; momentum-schedule: a SCENE's factors for learned-momentum, by CMA-ES; "
+     "scene-net: a network for a SCENE's impacts",
+     0},
     {"layers", LAYERS, "WIDTHS", 0,
      "10-10-2 (default; change of relative velocity, min-max outputs, as in the paper's 3.2) or, with two hidden "
      "layers and all six changes, 10-8-8-6 (standardised, as in its 3.1)",
@@ -43,15 +51,20 @@ static const struct argp_option option_table[] = {
     {"laws", LAWS_IN_LOSS, "NAME=W,...", 0,
      "Weights of laws in the loss of six outputs: momentum, energy, approach, cone; from a dataset made with --context",
      0},
-    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), or generations (100)", 0},
+    {"iterations", ITERATIONS, "N", 0, "Full-batch steps (default: 2000), generations (100), or epochs (40)", 0},
     {"seed", SEED, "N", 0, "Of the initial weights, or of the search (default: 1)", 0},
     {"bomb-x", BOMB_X, "A:B:STEP", 0, "Launches that a momentum schedule is fitted to, m (default: -5:5:0.5)", 0},
+    {"launches", LAUNCHES, "N", 0, "scene-net: launches of each round, half of them turned and spinning (3000)", 0},
+    {"rounds", ROUNDS, "N", 0, "scene-net: the first without the network, the others with it (3)", 0},
+    {"width", WIDTH, "N", 0, "scene-net: of both hidden layers, a multiple of 16 (64)", 0},
+    {"sweeps", SWEEPS, "K", 0, "scene-net: that follow the network (14)", 0},
+    {"momentum", MOMENTUM, "on|off", 0, "scene-net: those sweeps have learned factors of momentum (on)", 0},
     {"from", FROM, "NET.npz", 0, "Go on from the weights of this network, such as one cut short by Ctrl-C", 0},
     {0}};
 
 typedef struct Options {
     const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x, *hidden,
-        *output_activation, *scale, *loss, *laws;
+        *output_activation, *scale, *loss, *laws, *launches, *rounds, *width, *sweeps, *momentum;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -70,6 +83,11 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case SCALE: options->scale = value; break;
     case LOSS: options->loss = value; break;
     case LAWS_IN_LOSS: options->laws = value; break;
+    case LAUNCHES: options->launches = value; break;
+    case ROUNDS: options->rounds = value; break;
+    case WIDTH: options->width = value; break;
+    case SWEEPS: options->sweeps = value; break;
+    case MOMENTUM: options->momentum = value; break;
     case ARGP_KEY_ARG:
         if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
         options->data = value;
@@ -86,7 +104,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 static const struct argp argp = {
     option_table,
     parse,
-    "DATA.npz\n--kind momentum-schedule SCENE",
+    "DATA.npz\n--kind momentum-schedule SCENE\n--kind scene-net SCENE",
     "Train a network on a dataset; print its mean squared error as the paper's Table 1 does, beside that of always "
     "predicting the mean. Ctrl-C stops and keeps the best network so far.\v"
     "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100",
@@ -189,7 +207,16 @@ static int train_pair_net(const Options *options, Error *error) {
 }
 
 int command_train(int argc, char **argv, Error *error) {
-    Options options = {.layers = "10-10-2", .optimizer = "adam", .seed = "1", .kind = "pair-net", .bomb_x = "-5:5:0.5"};
+    Options options = {.layers = "10-10-2",
+                       .optimizer = "adam",
+                       .seed = "1",
+                       .kind = "pair-net",
+                       .bomb_x = "-5:5:0.5",
+                       .launches = "3000",
+                       .rounds = "3",
+                       .width = "64",
+                       .sweeps = "14",
+                       .momentum = "on"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     if (strcmp(options.kind, "momentum-schedule") == 0) {
         const TrainMomentum momentum = {options.data, options.output,
@@ -197,7 +224,14 @@ int command_train(int argc, char **argv, Error *error) {
                                         options.bomb_x};
         return train_momentum(&momentum, error) ? STATUS_SAME : STATUS_DIFFERENT;
     }
+    if (strcmp(options.kind, "scene-net") == 0) {
+        const TrainSceneNet scene_net = {
+            options.data,  options.output,   options.iterations != NULL ? options.iterations : "40",
+            options.seed,  options.launches, options.rounds,
+            options.width, options.sweeps,   options.momentum};
+        return train_scene_net(&scene_net, error) ? STATUS_SAME : STATUS_DIFFERENT;
+    }
     if (strcmp(options.kind, "pair-net") == 0) return train_pair_net(&options, error);
-    error_input(error, "--kind", "'%s' is no kind; there are pair-net and momentum-schedule", options.kind);
+    error_input(error, "--kind", "'%s' is no kind; there are pair-net, momentum-schedule and scene-net", options.kind);
     return STATUS_DIFFERENT;
 }
