@@ -238,6 +238,8 @@ static void kind_and_version_are_checked(void **state) {
     assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
     assert_false(is_table("tables", 3, &error));
     assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
+    assert_false(is_table("table", 2, &error));
+    assert_error(error, ERROR_INPUT, "table of version 2; this program reads version 3");
     assert_false(is_table("table", 4, &error));
     assert_error(error, ERROR_INPUT, "kind.npz: error: table of version 4; this program reads version 3");
 }
