@@ -14,6 +14,8 @@ void slot_network_destroy(SlotNetwork *network) {
     free(network->slots);
     free(network->scale);
     free(network->cap);
+    free(network->low);
+    free(network->high);
     free(network->pair_slots);
     free(network->parameters);
     free(network);
@@ -60,9 +62,11 @@ static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
     at += (inputs + 1) * hidden;
     network->second = (SlotLayer){(int)hidden, (int)hidden, at, at + hidden * hidden};
     at += (hidden + 1) * hidden;
+    network->low = calloc(inputs, sizeof *network->low);
+    network->high = calloc(inputs, sizeof *network->high);
     network->rows = at;
     network->biases = at + outputs * hidden;
-    return true;
+    return network->low != NULL && network->high != NULL;
 }
 
 /* Where the slots of each pair begin. */

@@ -57,6 +57,8 @@ typedef struct SlotNetwork {
     float *scale;                 /* [slot_count] N s */
     float *cap;                   /* [slot_count] N s: a warm impulse is taken up to here */
     float gate;                   /* m/s: it is asked where the warm start misses the contacts' bias by so much (RMS) */
+    float *low, *high;            /* [inputs] between which it was trained */
+    float bomb_inv_mass;          /* 1/kg: that it was trained with */
     int sweeps;                   /* that the factors were learned for; 0: none were */
     float factors[SLOT_SWEEPS_MAX]; /* of momentum, after the network */
     char scene[SLOT_TEXT_SIZE];     /* that it was trained for */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Slot network files: .npz with version, kind ("scene-net"), scene, command, body_count, bomb, sweeps, slot_a, slot_b,
    slot_feature [slots], and as float32, with the shapes of slot_network.h: P_rows and P_centre of the projections P =
-   bomb_state, state, present, warm; L_rows and L_biases of the layers L = first, second, last; scale, cap, gate,
-   factors[sweeps]. */
+   bomb_state, state, present, warm; L_rows and L_biases of the layers L = first, second, last; scale, cap, low,
+   high, gate, bomb_inv_mass, factors[sweeps]. */
 #include "network/file_floats.h"
 #include "network/slot_network.h"
 
@@ -11,7 +11,7 @@
 
 #define KIND "scene-net"
 
-enum { HEAD_ARRAYS = 10, FLOAT_ARRAYS = 18 };
+enum { HEAD_ARRAYS = 10, FLOAT_ARRAYS = 21 };
 
 /* One list serves writing and reading. */
 static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
@@ -36,7 +36,10 @@ static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
         {"last_biases", 1, {2 * slots}, network->biases, &float_any},
         {"scale", 1, {slots}, network->scale, &float_not_negative},
         {"cap", 1, {slots}, network->cap, &float_not_negative},
+        {"low", 1, {first->from}, network->low, &float_any},
+        {"high", 1, {first->from}, network->high, &float_any},
         {"gate", 0, {0}, &network->gate, &float_not_negative},
+        {"bomb_inv_mass", 0, {0}, &network->bomb_inv_mass, &float_not_negative},
         {"factors", 1, {network->sweeps}, network->factors, &float_momentum},
     };
     memcpy(list, all, sizeof all);

@@ -12,6 +12,7 @@ const ContactSolverKind *const solver_kinds[] = {&solver_sequential_impulses,
                                                  &solver_pair_net,
                                                  &solver_contact_net,
                                                  &solver_relu_net,
+                                                 &solver_scene_net,
                                                  &solver_constant,
                                                  &solver_reference,
                                                  NULL};

@@ -12,6 +12,7 @@ extern const ContactSolverKind solver_nncg;
 extern const ContactSolverKind solver_pair_net;
 extern const ContactSolverKind solver_contact_net;
 extern const ContactSolverKind solver_relu_net;
+extern const ContactSolverKind solver_scene_net;
 extern const ContactSolverKind solver_constant;
 extern const ContactSolverKind solver_reference;
 
