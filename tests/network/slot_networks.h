@@ -27,6 +27,8 @@ static inline SlotNetwork *make_slot_network(const SlotShape *shape, const Slot 
     fill(network->parameters, network->parameter_count, -0.1f, 0.1f, seed);
     fill(network->scale, (size_t)shape->slot_count, 0, 2, seed);
     fill(network->cap, (size_t)shape->slot_count, 0, 2, seed);
+    fill(network->low, (size_t)slot_network_inputs(network), -2, -1, seed);
+    fill(network->high, (size_t)slot_network_inputs(network), 1, 2, seed);
     return network;
 }
 

@@ -9,6 +9,7 @@ static SlotNetwork *example(void) {
     uint32_t seed = 1;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
     network->gate = 0.1f;
+    network->bomb_inv_mass = 0.02f;
     network->sweeps = 3;
     network->factors[0] = 0, network->factors[1] = 0.7f, network->factors[2] = 2;
     network->cap[2] = 0;
@@ -35,6 +36,9 @@ static void assert_same(const SlotNetwork *a, const SlotNetwork *b) {
     assert_memory_equal(a->parameters, b->parameters, a->parameter_count * sizeof(float));
     assert_memory_equal(a->scale, b->scale, slots * sizeof(float));
     assert_memory_equal(a->cap, b->cap, slots * sizeof(float));
+    assert_memory_equal(a->low, b->low, (size_t)slot_network_inputs(a) * sizeof(float));
+    assert_memory_equal(a->high, b->high, (size_t)slot_network_inputs(a) * sizeof(float));
+    assert_memory_equal(&a->bomb_inv_mass, &b->bomb_inv_mass, sizeof a->bomb_inv_mass);
     assert_memory_equal(&a->gate, &b->gate, sizeof a->gate);
     assert_int_equal(a->sweeps, b->sweeps);
     assert_memory_equal(a->factors, b->factors, sizeof a->factors);
@@ -95,7 +99,8 @@ static void numpy_sees_the_shapes(void **state) {
                "  'state_centre': (16,), 'present_rows': (9, 32), 'present_centre': (32,), 'warm_rows': (18, 48),\n"
                "  'warm_centre': (48,), 'first_rows': (112, 64), 'first_biases': (64,), 'second_rows': (64, 64),\n"
                "  'second_biases': (64,), 'last_rows': (18, 64), 'last_biases': (18,), 'scale': (9,), 'cap': (9,),\n"
-               "  'gate': (), 'factors': (3,)}\n"
+               "  'low': (112,), 'high': (112,), 'gate': (), 'bomb_inv_mass': (),\n"
+               "  'factors': (3,)}\n"
                "assert f.files == list(want), f.files\n"
                "kinds = dict(version='i', body_count='i', bomb='i', sweeps='i', slot_a='i', slot_b='i',\n"
                "  slot_feature='u', kind='U', scene='U', command='U')\n"
@@ -141,6 +146,9 @@ static void numbers_out_of_range_are_refused(void **state) {
                  {&network->scale[0], -1e-30f, "scale: number 0 is -1e-30; it must be finite and not negative"},
                  {&network->cap[5], -1, "cap: number 5 is -1"},
                  {&network->cap[5], INFINITY, "cap: number 5 is inf"},
+                 {&network->low[111], NAN, "low: number 111 is nan"},
+                 {&network->high[0], INFINITY, "high: number 0 is inf"},
+                 {&network->bomb_inv_mass, -1, "bomb_inv_mass: number 0 is -1"},
                  {&network->gate, -0.5f, "gate: number 0 is -0.5"},
                  {&network->gate, NAN, "gate: number 0 is nan"},
                  {&network->factors[1], -0.1f, "factors: number 1 is -0.1; it must be from 0 to 2"},

@@ -36,7 +36,10 @@ static const NpzArray valid[] = {
     {"last_biases", NPZ_FLOAT32, 1, {4}, numbers},
     {"scale", NPZ_FLOAT32, 1, {2}, numbers},
     {"cap", NPZ_FLOAT32, 1, {2}, numbers},
+    {"low", NPZ_FLOAT32, 1, {64}, numbers},
+    {"high", NPZ_FLOAT32, 1, {64}, numbers},
     {"gate", NPZ_FLOAT32, 0, {0}, numbers},
+    {"bomb_inv_mass", NPZ_FLOAT32, 0, {0}, numbers},
     {"factors", NPZ_FLOAT32, 1, {0}, NULL},
 };
 enum { VALID_COUNT = sizeof valid / sizeof valid[0] };
