@@ -110,5 +110,5 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 bool slot_network_write(const SlotNetwork *network, const char *path, Error *error);
 
 /* ERROR_INPUT, naming the file, for what is damaged, of another version or kind, of shapes that do not fit, or holds a
-   number that is not finite, a scale, cap or gate below 0, or factors that momentum_schedule.h would not have. */
+   number that is not finite, a scale, cap, gate or mass below 0, or factors that momentum_schedule.h would not have. */
 SlotNetwork *slot_network_read(const char *path, Error *error);

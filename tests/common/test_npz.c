@@ -217,6 +217,60 @@ static void failed_writes_tell(void **state) {
     assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
 }
 
+/* A file with this kind and version; whether it is a table of version 3. */
+static bool is_table(const char *kind, int32_t version, Error *error) {
+    const NpzArray head[] = {{"kind", NPZ_TEXT, 0, {0}, kind}, {"version", NPZ_INT32, 0, {0}, &version}};
+    const char *path = temporary_path("kind.npz");
+    *error = (Error){0};
+    assert_ok(npz_write(path, head, 2, error), *error);
+    NpzFile *file = open_file(path);
+    assert_string_equal(npz_path(file), path);
+    const bool is = npz_check_kind(file, "table", 3, error);
+    npz_close(file);
+    return is;
+}
+
+static void kind_and_version_are_checked(void **state) {
+    (void)state;
+    Error error;
+    assert_true(is_table("table", 3, &error));
+    assert_false(is_table("chair", 3, &error));
+    assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
+    assert_false(is_table("tables", 3, &error));
+    assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
+    assert_false(is_table("table", 2, &error));
+    assert_error(error, ERROR_INPUT, "table of version 2; this program reads version 3");
+    assert_false(is_table("table", 4, &error));
+    assert_error(error, ERROR_INPUT, "kind.npz: error: table of version 4; this program reads version 3");
+}
+
+static void scalars_and_names_are_read(void **state) {
+    (void)state;
+    const NpzArray fields[] = {{"hash", NPZ_UINT64, 0, {0}, &hash},
+                               {"good", NPZ_TEXT, 0, {0}, "z\xc3\xa4h"},
+                               {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
+                               {"worse", NPZ_TEXT, 0, {0}, "\x7f"}};
+    const char *path = temporary_path("fields.npz");
+    Error error = {0};
+    assert_ok(npz_write(path, fields, 4, &error), error);
+    NpzFile *file = open_file(path);
+    uint64_t found = 0;
+    char text[16];
+    assert_ok(npz_read_scalar(file, "hash", NPZ_UINT64, &found, sizeof found, &error), error);
+    assert_true(found == hash);
+    assert_ok(npz_read_name(file, "good", text, sizeof text, &error), error);
+    assert_string_equal(text, "z\xc3\xa4h");
+    assert_false(npz_read_name(file, "bad", text, sizeof text, &error));
+    assert_error(error, ERROR_INPUT, "fields.npz: error: the name of the bad holds control characters");
+    error = (Error){0};
+    assert_false(npz_read_name(file, "worse", text, sizeof text, &error));
+    assert_error(error, ERROR_INPUT, "worse");
+    error = (Error){0};
+    assert_false(npz_read_scalar(file, "hash", NPZ_INT64, &found, sizeof found, &error));
+    assert_error(error, ERROR_INPUT, "hash");
+    npz_close(file);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(written_is_read),
@@ -227,6 +281,8 @@ int main(void) {
         cmocka_unit_test(flipped_bytes_are_refused_or_harmless),
         cmocka_unit_test(large_arrays_of_floats_are_stored),
         cmocka_unit_test(failed_writes_tell),
+        cmocka_unit_test(kind_and_version_are_checked),
+        cmocka_unit_test(scalars_and_names_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

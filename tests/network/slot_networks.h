@@ -27,6 +27,8 @@ static inline SlotNetwork *make_slot_network(const SlotShape *shape, const Slot 
     fill(network->parameters, network->parameter_count, -0.1f, 0.1f, seed);
     fill(network->scale, (size_t)shape->slot_count, 0, 2, seed);
     fill(network->cap, (size_t)shape->slot_count, 0, 2, seed);
+    fill(network->low, (size_t)slot_network_inputs(network), -2, -1, seed);
+    fill(network->high, (size_t)slot_network_inputs(network), 1, 2, seed);
     return network;
 }
 
@@ -35,3 +37,10 @@ static const Slot five_slots[] = {{0, 2, 7}, {0, 2, 9},          {0, 4, 0}, {1, 
                                   {1, 2, 5}, {1, 2, UINT32_MAX}, {2, 3, 1}, {2, 4, 7}};
 enum { FIVE_SLOTS = sizeof five_slots / sizeof five_slots[0] };
 static const SlotShape five_shape = {5, 3, FIVE_SLOTS, 16, 32, 48, 64};
+
+static inline void assert_slot_network_refused(const char *path, const char *text) {
+    Error error = {0};
+    assert_null(slot_network_read(path, &error));
+    assert_error(error, ERROR_INPUT, text);
+    assert_error(error, ERROR_INPUT, path);
+}

@@ -74,6 +74,7 @@ static void a_new_network_is_zero_and_has_its_own_slots(void **state) {
                      (INPUTS + 1) * HIDDEN + (HIDDEN + 1) * HIDDEN + (HIDDEN + 1) * 2 * FIVE_SLOTS);
     for (size_t p = 0; p < network->parameter_count; p++) assert_true(network->parameters[p] == 0);
     for (int i = 0; i < FIVE_SLOTS; i++) assert_true(network->scale[i] == 0 && network->cap[i] == 0);
+    for (int i = 0; i < INPUTS; i++) assert_true(network->low[i] == 0 && network->high[i] == 0);
     slot_network_destroy(network);
 }
 
