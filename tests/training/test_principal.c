@@ -314,6 +314,27 @@ static void seed_and_numbers_decide_every_bit(void **state) {
     free_table(&dense);
 }
 
+/* In double, where the order of a sum shows. */
+static void sums_do_not_depend_on_threads(void **state) {
+    (void)state;
+    enum { COLUMNS = 40, WIDTH = 2 * DIRECTIONS_BLOCK };
+    Table table = make_random(300, COLUMNS, 0.99, true);
+    double directions[COLUMNS * WIDTH], images[2][COLUMNS * WIDTH];
+    for (int i = 0; i < COLUMNS * WIDTH; i++) directions[i] = sin(i);
+    const int threads = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        Error error = {0};
+        SparseCovariance covariance;
+        omp_set_num_threads(i + 1);
+        assert_ok(sparse_covariance_make(&covariance, &table.sparse, WIDTH, &error), error);
+        sparse_covariance_multiply(&covariance, directions, images[i]);
+        sparse_covariance_free(&covariance);
+    }
+    omp_set_num_threads(threads);
+    assert_memory_equal(images[0], images[1], sizeof images[0]);
+    free_table(&table);
+}
+
 static void the_largest_number_is_positive(void **state) {
     (void)state;
     Table table = make_random(300, 40, 0.9, true);
@@ -364,6 +385,7 @@ int main(void) {
         cmocka_unit_test(rows_that_are_all_the_same_have_no_components),
         cmocka_unit_test(columns_that_never_change_have_no_part),
         cmocka_unit_test(seed_and_numbers_decide_every_bit),
+        cmocka_unit_test(sums_do_not_depend_on_threads),
         cmocka_unit_test(the_largest_number_is_positive),
         cmocka_unit_test(rows_that_are_none_are_refused),
     };
