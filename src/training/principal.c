@@ -63,13 +63,9 @@ static bool fit_make(Fit *fit, const SparseRows *rows, int wanted, Error *error)
            error_memory(error, "principal components");
 }
 
-/* Directions at random, with no part in columns that never change: theirs would be rounding. */
 static void start(Fit *fit, uint64_t seed) {
     gsl_rng_set(fit->generator, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* it takes 32 bits */
-    for (size_t i = 0; i < fit->columns * fit->width; i++) {
-        const double normal = gsl_ran_gaussian_ziggurat(fit->generator, 1);
-        fit->basis[i] = fit->covariance.changes[i / fit->width] ? normal : 0;
-    }
+    for (size_t i = 0; i < fit->columns * fit->width; i++) fit->basis[i] = gsl_ran_gaussian_ziggurat(fit->generator, 1);
 }
 
 /* products[k] = column j of the basis times column k, for k >= from. */

@@ -13,7 +13,7 @@ enum { TWOS = DIRECTIONS_BLOCK / 2 };
 
 void sparse_covariance_free(SparseCovariance *covariance) {
     free(covariance->mean);
-    free(covariance->changes);
+    free(covariance->still);
     free(covariance->centre);
     free(covariance->parts);
 }
@@ -48,7 +48,7 @@ static bool read_rows(SparseCovariance *covariance, Error *error) {
     bool ok = columns != NULL || error_memory(error, "sparse rows");
     for (int i = 0; ok && i < rows; i++) ok = read_row(covariance, i, columns, error);
     for (size_t j = 0; ok && j < covariance->columns; j++) {
-        covariance->changes[j] = columns[j].differs || (columns[j].count < rows && columns[j].first != 0);
+        covariance->still[j] = columns[j].count == rows && !columns[j].differs;
         covariance->mean[j] /= rows;
     }
     free(columns);
@@ -59,10 +59,10 @@ bool sparse_covariance_make(SparseCovariance *covariance, const SparseRows *rows
     const size_t columns = (size_t)rows->columns;
     *covariance = (SparseCovariance){.rows = rows, .columns = columns, .width = width};
     covariance->mean = calloc(columns, sizeof *covariance->mean);
-    covariance->changes = calloc(columns, sizeof *covariance->changes);
+    covariance->still = calloc(columns, sizeof *covariance->still);
     covariance->centre = calloc(width, sizeof *covariance->centre);
     covariance->parts = calloc(PARTS * (columns + 1) * width, sizeof *covariance->parts);
-    if (!covariance->mean || !covariance->changes || !covariance->centre || !covariance->parts)
+    if (!covariance->mean || !covariance->still || !covariance->centre || !covariance->parts)
         return error_memory(error, "sparse rows");
     return read_rows(covariance, error);
 }
@@ -104,7 +104,7 @@ void sparse_covariance_multiply(SparseCovariance *covariance, const double *dire
     for (int p = 1; p < PARTS; p++) add_scaled(sums, 1, covariance->parts + (size_t)p * part_size, part_size);
     memset(image, 0, columns * width * sizeof *image);
     for (size_t j = 0; j < columns; j++) {
-        if (!covariance->changes[j]) continue;
+        if (covariance->still[j]) continue;
         add_scaled(sums + j * width, -covariance->mean[j], sums + columns * width, width);
         add_scaled(image + j * width, 1.0 / covariance->rows->rows, sums + j * width, width);
     }

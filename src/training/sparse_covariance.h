@@ -3,7 +3,8 @@
 
        C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of A Q - 1 mean^T Q)^T / n
 
-   C is never formed. The mean is taken from the products with the directions; taken from the rows it would fill them. */
+   C is never formed. The mean is taken from the products with the directions; taken from the rows it would fill them.
+   The last term is 0 but for rounding; without it a large mean would cost digits. */
 #pragma once
 #include "common/error.h"
 
@@ -25,7 +26,7 @@ typedef struct SparseCovariance {
     const SparseRows *rows;
     size_t columns, width; /* width: number of directions, a multiple of DIRECTIONS_BLOCK */
     double *mean;          /* [columns] */
-    bool *changes;         /* [columns] whether a column does */
+    bool *still;           /* [columns] the same number in every row */
     double *centre;        /* [width] the mean's product with the directions */
     double *parts;         /* [parts, columns + 1, width] sums, and in the last row those of the products */
 } SparseCovariance;
@@ -35,8 +36,8 @@ typedef struct SparseCovariance {
 bool sparse_covariance_make(SparseCovariance *covariance, const SparseRows *rows, size_t width, Error *error);
 void sparse_covariance_free(SparseCovariance *covariance);
 
-/* image = C directions, both [columns, width]. Directions are to be 0 in columns that never change; the image is. The
-   same bits at any number of threads. */
+/* image = C directions, both [columns, width]; exactly 0 in columns that never change. The same bits at any number of
+   threads. */
 void sparse_covariance_multiply(SparseCovariance *covariance, const double *directions, double *image);
 
 /* sums[i] += scale * numbers[i] for i < count */

@@ -232,28 +232,64 @@ static void components_beyond_the_rank_are_0(void **state) {
     free_table(&narrow);
 }
 
-/* Their mean is rounded: 0.1 is no float. */
+/* One of two independent columns is weaker by a factor: of deviation, so the variance by its square. */
+static void components_too_weak_for_float_are_0(void **state) {
+    (void)state;
+    const float weak[] = {1e-4F, 1e-6F};
+    for (int rank = 2; rank >= 1; rank--) {
+        Table table = make_table(4, 2);
+        for (int i = 0; i < 4; i++) add_row(&table, (float[]){i % 2 == 0 ? 1 : -1, i < 2 ? weak[2 - rank] : 0}, true);
+        Projection projection = fit(&table, 2, 1);
+        assert_white(&table, &projection, rank, 1e-5);
+        free_projection(&projection);
+        free_table(&table);
+    }
+}
+
+/* Of independent deviations 1/2 and 1/4, which are 1e-6 of the mean and less. */
+static void a_large_mean_costs_no_digits(void **state) {
+    (void)state;
+    Table table = make_table(1000, 2);
+    for (int i = 0; i < 1000; i++)
+        add_row(&table, (float[]){1e6F + (i % 2 == 0 ? 0.5F : -0.5F), -1e6F + (i % 4 < 2 ? 0.25F : -0.25F)}, true);
+    Projection projection = fit(&table, 2, 1);
+    const double expected[] = {2, 0, 0, 4};
+    for (int i = 0; i < 4; i++) assert_near(projection.rows[i], expected[i], 1e-6);
+    free_projection(&projection);
+    free_table(&table);
+}
+
+/* What differs between rows of the same numbers is only rounding, and that must not be taken for variance. */
+static void rows_that_are_all_the_same_have_no_components(void **state) {
+    (void)state;
+    Table table = make_table(1000, 10);
+    for (int i = 0; i < 1000; i++) {
+        float numbers[10];
+        for (int j = 0; j < 10; j++) numbers[j] = sqrtf((float)j) * powf(7, (float)(j % 5));
+        add_row(&table, numbers, i % 2 == 0);
+    }
+    Projection projection = fit(&table, 3, 1);
+    assert_white(&table, &projection, 0, 0);
+    free_projection(&projection);
+    free_table(&table);
+}
+
 static void columns_that_never_change_have_no_part(void **state) {
     (void)state;
-    Table table = make_table(1000, 3), still = make_table(1000, 3), faint = make_table(1000, 3);
+    Table table = make_table(1000, 3), faint = make_table(1000, 3);
     for (int i = 0; i < 1000; i++) {
-        add_row(&table, (float[]){0.1F, (float)(i % 2), 1e6F}, true);
-        add_row(&still, (float[]){0.1F, 0, 1e6F}, i % 2 == 0);
+        add_row(&table, (float[]){0.1F, i % 5 == 0, 1e6F}, true);
         add_row(&faint, (float[]){0, i % 2 == 0 ? 1e-40F : 0, 0}, true);
     }
     Projection projection = fit(&table, 3, 1);
-    const float alone[] = {0, 0, 0, 2, 0, 0, 0, 0, 0}; /* 0 or 1: its deviation is 1/2 */
-    for (int i = 0; i < 9; i++) assert_near(projection.rows[i], alone[i], 1e-6);
+    for (int i = 0; i < 9; i++) assert_true(projection.rows[i] == 0 || i == 3);
+    assert_near(projection.rows[3], 2.5, 1e-6); /* 1 in every fifth row: a variance of 1/5 - 1/25 */
     assert_white(&table, &projection, 1, 1e-5);
-    free_projection(&projection);
-    projection = fit(&still, 3, 1);
-    assert_white(&still, &projection, 0, 0);
     free_projection(&projection);
     projection = fit(&faint, 3, 1);
     assert_white(&faint, &projection, 0, 0);
     free_projection(&projection);
     free_table(&table);
-    free_table(&still);
     free_table(&faint);
 }
 
@@ -276,6 +312,27 @@ static void seed_and_numbers_decide_every_bit(void **state) {
     free_projection(&other);
     free_table(&sparse);
     free_table(&dense);
+}
+
+/* In double, where the order of a sum shows. */
+static void sums_do_not_depend_on_threads(void **state) {
+    (void)state;
+    enum { COLUMNS = 40, WIDTH = 2 * DIRECTIONS_BLOCK };
+    Table table = make_random(300, COLUMNS, 0.99, true);
+    double directions[COLUMNS * WIDTH], images[2][COLUMNS * WIDTH];
+    for (int i = 0; i < COLUMNS * WIDTH; i++) directions[i] = sin(i);
+    const int threads = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        Error error = {0};
+        SparseCovariance covariance;
+        omp_set_num_threads(i + 1);
+        assert_ok(sparse_covariance_make(&covariance, &table.sparse, WIDTH, &error), error);
+        sparse_covariance_multiply(&covariance, directions, images[i]);
+        sparse_covariance_free(&covariance);
+    }
+    omp_set_num_threads(threads);
+    assert_memory_equal(images[0], images[1], sizeof images[0]);
+    free_table(&table);
 }
 
 static void the_largest_number_is_positive(void **state) {
@@ -323,8 +380,12 @@ int main(void) {
         cmocka_unit_test(components_are_white_and_the_strongest),
         cmocka_unit_test(variances_that_hardly_fall_off_are_nearly_caught),
         cmocka_unit_test(components_beyond_the_rank_are_0),
+        cmocka_unit_test(components_too_weak_for_float_are_0),
+        cmocka_unit_test(a_large_mean_costs_no_digits),
+        cmocka_unit_test(rows_that_are_all_the_same_have_no_components),
         cmocka_unit_test(columns_that_never_change_have_no_part),
         cmocka_unit_test(seed_and_numbers_decide_every_bit),
+        cmocka_unit_test(sums_do_not_depend_on_threads),
         cmocka_unit_test(the_largest_number_is_positive),
         cmocka_unit_test(rows_that_are_none_are_refused),
     };
