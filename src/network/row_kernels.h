@@ -9,7 +9,8 @@ enum { ROW_LANES = 16 }; /* the width of a row is a multiple of this */
 
 typedef struct RowKernels {
     const char *name;
-    /* sums[width] += numbers[i] * rows[index[i]] for each i < count, rising; index NULL: rows[i]. */
+    /* sums[width] += numbers[i] * rows[index[i]] for each i < count; index NULL: rows[i]. In four sums, one for each i
+       modulo 4 in rising order, the first from what was there; then (0 + 1) + (2 + 3). */
     void (*add)(float *sums, int width, const float *rows, const int32_t *index, const float *numbers, int count);
     /* products[2 i], [2 i + 1]: the products of rows 2 index[i] and the one after it with vector[width], each as
        ROW_LANES sums that are added in halves. */

@@ -10,25 +10,37 @@ typedef float Four __attribute__((vector_size(16), aligned(sizeof(float)), may_a
 
 enum {
     FLOATS = VECTOR_BYTES / sizeof(float),
-    LANE_VECTORS = ROW_LANES / FLOATS, /* registers for the lanes of one row */
-    GROUP = 8                          /* sums in registers: enough to hide the time that an addition takes */
+    LANE_VECTORS = ROW_LANES / FLOATS,            /* registers for the lanes of one row */
+    CHAINS = 4,                                   /* sums of each column */
+    GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once: so many registers times CHAINS there are */
 };
 
 static inline const float *row_of(const float *rows, int width, const int32_t *index, int i) {
     return rows + (int64_t)(index != NULL ? index[i] : i) * width;
 }
 
-/* The columns from `at` on, as many as `vectors` registers hold. */
+/* The columns from `at` on, as many as `vectors` registers hold, in CHAINS sums each: an addition waits for the one
+   before it, and one chain of them would leave the processor idle. */
 static inline __attribute__((always_inline)) void add_columns(float *sums, int width, const float *rows,
                                                               const int32_t *index, const float *numbers, int count,
                                                               int at, const int vectors) {
-    Floats held[GROUP];
-    for (int v = 0; v < vectors; v++) held[v] = ((const Floats *)(sums + at))[v];
-    for (int i = 0; i < count; i++) {
-        const float *row = row_of(rows, width, index, i) + at;
-        for (int v = 0; v < vectors; v++) held[v] += numbers[i] * ((const Floats *)row)[v];
+    Floats held[CHAINS][GROUP];
+    for (int v = 0; v < vectors; v++) {
+        held[0][v] = ((const Floats *)(sums + at))[v];
+        for (int c = 1; c < CHAINS; c++) held[c][v] = (Floats){0};
     }
-    for (int v = 0; v < vectors; v++) ((Floats *)(sums + at))[v] = held[v];
+    int i = 0;
+    for (; i + CHAINS <= count; i += CHAINS)
+        for (int c = 0; c < CHAINS; c++) {
+            const float *row = row_of(rows, width, index, i + c) + at;
+            for (int v = 0; v < vectors; v++) held[c][v] += numbers[i + c] * ((const Floats *)row)[v];
+        }
+    for (int c = 0; i < count; i++, c++) {
+        const float *row = row_of(rows, width, index, i) + at;
+        for (int v = 0; v < vectors; v++) held[c][v] += numbers[i] * ((const Floats *)row)[v];
+    }
+    for (int v = 0; v < vectors; v++)
+        ((Floats *)(sums + at))[v] = (held[0][v] + held[1][v]) + (held[2][v] + held[3][v]);
 }
 
 static void add(float *sums, int width, const float *rows, const int32_t *index, const float *numbers, int count) {

@@ -4,12 +4,8 @@
    it goes.
 
    Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
-   bomb of the same mass, and no input beyond those of the training. Its start is kept where its dual energy
-
-       E(p) = v(p)' M v(p) / 2 - b' pn,   v(p): velocities under impulses p, b: biases
-
-   is lower than that of the cached start; the converged impulses have the least. All other steps are momentum's
-   (momentum.c). Impulses act on both bodies alike, and the sweeps bring them into their cones, so momentum is kept
+   bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c), and so
+   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring them into their cones, so momentum is kept
    whatever the network says. Source: a warm start by a network for the whole problem as in Sambharya, Hall, Amos,
    Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024), which trains through the iterations
    that follow, too. Fails on other scenes, which have no slots; it says so. */
@@ -154,36 +150,20 @@ static void find_change(SceneNet *solver, const ContactProblem *problem) {
     }
 }
 
-/* Of the sweeps as they are. */
-static float dual_energy(const Sweeps *sweeps, const ContactProblem *problem) {
-    float energy = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        const SweepBody *body = &sweeps->bodies[i];
-        if (body->inv_mass > 0) energy += (body->x * body->x + body->y * body->y) / (2 * body->inv_mass);
-        if (problem->bodies[i].inv_inertia > 0)
-            energy += body->spin * body->spin / (2 * problem->bodies[i].inv_inertia);
-    }
-    const ContactPoint *contact = problem->contacts;
-    for (int i = 0; i < sweeps->pair_count; i++)
-        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++, contact++)
-            energy -= contact->bias * sweeps->pairs[i].sums[k].normal;
-    return energy;
-}
-
-/* Moves the sweeps to the network's start, if that is the better one. A number that is none is not. */
-static bool start(SceneNet *solver, const ContactProblem *problem) {
+static bool run_after(SceneNet *solver) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    find_change(solver, problem);
-    const float cached = dual_energy(sweeps, problem);
-    sweeps_push(sweeps, solver->change);
-    return dual_energy(sweeps, problem) < cached;
-}
-
-static bool run(SceneNet *solver, bool asked) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    if (!asked) return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
     return solver->after_plain ? sweeps_run(sweeps, solver->after)
                                : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
+}
+
+/* Where the network did not help, the step is still as far off as when it was asked. */
+static bool run(SceneNet *solver, const ContactProblem *problem, bool asked) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    if (asked) {
+        if (!run_after(solver)) return false;
+        if (!impact_gap_reaches(sweeps, problem->contact_count, solver->network->gate)) return true;
+    }
+    return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -192,13 +172,13 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     const SweepKernel kernel = sweeps_best_kernel();
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
-    bool asked = problem->bomb >= 0 && impact_gap_reaches(sweeps, problem, solver->network->gate);
+    bool asked = problem->bomb >= 0 && impact_gap_reaches(sweeps, problem->contact_count, solver->network->gate);
     if (asked && !is_known(solver, problem, &asked, error)) return false;
-    if (asked && !start(solver, problem)) {
-        asked = false;
-        if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
+    if (asked) {
+        find_change(solver, problem);
+        sweeps_push(sweeps, solver->change);
     }
-    if (!run(solver, asked)) return error_memory(error, "scene-net");
+    if (!run(solver, problem, asked)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
     return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->rest, solution, error);
 }

@@ -49,7 +49,7 @@ static bool run_launch(void *context, int i, Error *error) {
         if (phase != PHASE_IMPACT) continue;
         Sweeps *sweeps = &runs->sweeps[thread];
         if (!sweeps_begin(sweeps, sweeps_best_kernel(), &problem, true, 1)) return error_memory(error, "samples");
-        if (impact_gap_reaches(sweeps, &problem, rollout->gate) &&
+        if (impact_gap_reaches(sweeps, problem.contact_count, rollout->gate) &&
             !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
             return error_memory(error, "samples");
     }
