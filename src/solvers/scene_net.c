@@ -5,10 +5,10 @@
 
    Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
    bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c), and so
-   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring them into their cones, so momentum is kept
-   whatever the network says. Source: a warm start by a network for the whole problem as in Sambharya, Hall, Amos,
-   Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024), which trains through the iterations
-   that follow, too. Fails on other scenes, which have no slots; it says so. */
+   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring
+   them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network for the whole
+   problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024),
+   which trains through the iterations that follow, too. Fails on other scenes, which have no slots; it says so. */
 #include "solvers/scene_net.h"
 
 #include "common/array.h"
