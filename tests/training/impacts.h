@@ -27,14 +27,18 @@ static inline bool make_momentum(void *context, ContactSolver *solver, Error *er
     return solver->state != NULL;
 }
 
-/* Launches `first` and so on of those over the midpoints of the paper's grid; every second one turned. */
-static inline void record_impacts(SlotSamples *samples, int launches, int first, const Progress *progress) {
+/* Over the midpoints of the paper's grid; every second one turned. */
+static inline void throw_over_grid(const Scene *scene, int count, Launch *launches) {
+    launches_for_scoring(scene, count, launches);
+    for (int i = 1; i < count; i += 2) launches[i].rotation = 0.4f;
+}
+
+static inline void record_impacts(SlotSamples *samples, int launches, int first) {
     Error error = {0};
     Scene *scene = read_stack();
     Launch table[200];
     assert_in_range(launches, 1, 200);
-    launches_for_scoring(scene, launches, table);
-    for (int i = 1; i < launches; i += 2) table[i].rotation = 0.4f;
+    throw_over_grid(scene, launches, table);
     const SlotRollout rollout = {.scene = scene,
                                  .launches = table,
                                  .launch_count = launches,
@@ -42,14 +46,14 @@ static inline void record_impacts(SlotSamples *samples, int launches, int first,
                                  .steps = IMPACT_STEPS,
                                  .gate = impact_gate,
                                  .make_solver = make_momentum};
-    assert_ok(slot_rollout(&rollout, samples, progress, &error), error);
+    assert_ok(slot_rollout(&rollout, samples, NULL, &error), error);
     scene_destroy(scene);
 }
 
 static inline SlotSamples labelled_impacts(int launches) {
     SlotSamples samples = {0};
     Error error = {0};
-    record_impacts(&samples, launches, 0, NULL);
+    record_impacts(&samples, launches, 0);
     assert_ok(slot_samples_label(&samples, 0, IMPACT_VISITS, NULL, &error), error);
     return samples;
 }
