@@ -9,7 +9,7 @@
 
 enum { IMPACT_STEPS = 8, IMPACT_VISITS = 20000 };
 
-static const float impact_gate = 0.3f; /* m/s */
+static const float impact_gate = 2; /* m/s */
 static const SlotWidths small_widths = {16, 16, 16, 32};
 
 static inline Scene *read_stack(void) {

@@ -143,7 +143,7 @@ static void assert_gradient(double near, double far, const double *factors) {
     const size_t count = trial.network->parameter_count;
     float *gradient = calloc(count, sizeof *gradient);
     assert_non_null(gradient);
-    for (int i = 0; i < trial.samples.count; i += 5) {
+    for (int i = 0; i < trial.samples.count; i += 3) {
         double by_factors[SWEEPS];
         SlotScore score;
         choose(&trial, i, near, far, factors);
