@@ -10,10 +10,15 @@
 enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };
 
 /* With plain sweeps behind it. */
-static SlotNetwork *begin(SlotSamples *samples) {
-    *samples = labelled_impacts(LAUNCHES);
+static SlotNetwork *begin_with(SlotSamples *samples, int launches) {
+    *samples = labelled_impacts(launches);
     SlotNetwork *network = network_for(samples);
     network->sweeps = SWEEPS;
+    return network;
+}
+
+static SlotNetwork *begin(SlotSamples *samples) {
+    SlotNetwork *network = begin_with(samples, LAUNCHES);
     assert_in_range(samples->count, SAMPLES / 2, SAMPLES);
     return network;
 }
@@ -99,6 +104,7 @@ static void the_first_step_is_of_the_rate(void **state) {
     end(&samples, network);
 }
 
+/* So many samples that all parts of a batch are met, and a second batch. */
 static void threads_change_no_bit(void **state) {
     (void)state;
     SlotSamples samples[2];
@@ -106,9 +112,10 @@ static void threads_change_no_bit(void **state) {
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(1 + i);
-        networks[i] = begin(&samples[i]);
+        networks[i] = begin_with(&samples[i], 24);
+        assert_true(samples[i].count > 130);
         fit_to(networks[i], &samples[i],
-               &(SlotFit){.near = 0.1, .near_epochs = 3, .epochs = 10, .rate = 0.01, .learn_factors = true, .seed = 5});
+               &(SlotFit){.near = 0.1, .near_epochs = 2, .epochs = 5, .rate = 0.01, .learn_factors = true, .seed = 5});
     }
     omp_set_num_threads(threads);
     assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));

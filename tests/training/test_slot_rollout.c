@@ -2,7 +2,7 @@
 /* Which steps of a scene's launches become samples. */
 #include "impacts.h"
 
-#include "solvers/kernels.h"
+#include "solvers/gaps.h"
 
 #include <omp.h>
 
@@ -66,23 +66,6 @@ static void samples_are_appended(void **state) {
     for (int i = 0; i < count; i++) assert_same_problem(&twice.items[i].problem, &twice.items[count + i].problem);
     slot_samples_free(&once);
     slot_samples_free(&twice);
-}
-
-/* From the text of impact_gap.h, after the plain text of the warm start. */
-static double gap_of(const ContactProblem *problem) {
-    ContactSolution warm = make_solution(problem);
-    sequential_impulses_begin(problem, &engine_options, &warm);
-    double sum = 0;
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        const BodyVelocity *a = &warm.velocities[contact->a], *b = &warm.velocities[contact->b];
-        const Vec2 of_a = vec2_add(a->linear, scalar_cross_vec2(a->angular, contact->arm_a));
-        const Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
-        const double missing = (double)(contact->bias - vec2_dot(vec2_sub(of_b, of_a), contact->normal));
-        if (missing > 0 || warm.impulses[i].normal > 0) sum += missing * missing;
-    }
-    free_solution(&warm);
-    return problem->contact_count > 0 ? sqrt(sum / problem->contact_count) : 0;
 }
 
 static bool bomb_touches(const ContactProblem *problem) {
