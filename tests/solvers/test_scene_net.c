@@ -233,7 +233,7 @@ static void a_network_that_says_nothing_changes_nothing(void **state) {
     assert_in_range(more, RUNS / 8, RUNS - RUNS / 8);
 }
 
-/* Nothing is faster than what may be taken back. */
+/* Near the bound on what is pushed; random effective masses may add to it. */
 static void assert_sane(const Known *known, double most) {
     for (int i = 0; i < known->random.problem.body_count; i++) {
         const BodyVelocity *v = &known->found.velocities[i];
@@ -268,7 +268,7 @@ static void no_answer_throws_a_body_away(void **state) {
             for (int i = 0; i < outputs; i++)
                 if (run % 3 == 0 || uniform(&seed, 0, 1) < 0.3f) network->biases[i] = wild[w];
             solve_by_network(&known);
-            assert_sane(&known, 1e4);
+            assert_sane(&known, 5e4);
             assert_impulses_explain(&known, 1e-3);
             solve_by_momentum(&known);
             if (run % 3 == 0 && wild[w] > 1 && pushes_a_body(&known.random)) assert_true(same_bits(&known));
