@@ -21,11 +21,11 @@ typedef struct Known {
 } Known;
 
 static void make_known(Known *known, uint32_t *seed, int run, float share) {
-    do {
-        if (run < 0) slot_network_destroy(known->network);
-        known->network = make_slot_problem(&known->random, seed, 3 + abs(run), 0.4f, share);
-        run = -abs(run);
-    } while (known->random.problem.contact_count < 2);
+    known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+    while (known->random.problem.contact_count < 2) {
+        slot_network_destroy(known->network);
+        known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+    }
     SlotNetwork *network = known->network;
     strcpy(network->scene, "random");
     known->random.problem.bomb = network->bomb;
