@@ -4,11 +4,11 @@
 . "$(dirname "$0")/checks.sh"
 
 sed 's/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
-small="--launches 40 --rounds 2 --iterations 6 --width 16"
+small="--launches 16 --rounds 2 --iterations 6 --width 16"
 
 run 0 train --kind scene-net stack.yaml -o net.npz $small --seed 3
 equal "rounds printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 1 "
-awk '$1 == 0 { first = $2 } $1 == 1 { exit !($2 > first && first > 40) }' out || fail "samples: $(cat out)"
+awk '$1 == 0 { first = $2 } $1 == 1 { exit !($2 > first && first > 16) }' out || fail "samples: $(cat out)"
 says "parameters -> net.npz"
 OMP_NUM_THREADS=1 run 0 train --kind scene-net stack.yaml -o again.npz $small --seed 3
 run 0 train --kind scene-net stack.yaml -o other.npz $small --seed 4
@@ -20,7 +20,7 @@ for name in net.files:
     assert name == "command" or (net[name] == again[name]).all(), name
 assert (net["first_rows"] != other["first_rows"]).any() and net["first_rows"].shape[1] == 16
 assert (str(net["kind"]), str(net["scene"]), int(net["sweeps"])) == ("scene-net", "stack", 14)
-assert str(net["command"]).startswith("twinbox train --kind scene-net stack.yaml -o net.npz --launches 40 --rounds 2")
+assert str(net["command"]).startswith("twinbox train --kind scene-net stack.yaml -o net.npz --launches 16 --rounds 2")
 assert int(plain["sweeps"]) == 4 and (plain["factors"] == 0).all() and (net["factors"][1:] > 0).any()
 assert int(net["bomb"]) == 11 and abs(net["bomb_inv_mass"] - 1 / 50) < 1e-6
 PYTHON

@@ -19,6 +19,7 @@ static void a_sample_is_a_copy(void **state) {
     for (int i = 20; i < 22; i++) assert_true(slot_samples_add(&more, &problem, i, 2 * i));
     assert_true(slot_samples_take(&samples, &more));
     assert_int_equal(more.count, 0);
+    assert_true(slot_samples_take(&samples, &more));
     assert_int_equal(samples.count, 22);
     for (int i = 0; i < 22; i++) {
         const SlotSample *sample = &samples.items[i];
@@ -29,6 +30,19 @@ static void a_sample_is_a_copy(void **state) {
     }
     slot_samples_free(&more);
     slot_samples_free(&samples);
+}
+
+/* A run that touches nothing gives none. */
+static void nothing_is_taken_from_nothing(void **state) {
+    (void)state;
+    SlotSamples samples = {0}, none = {0};
+    const ProblemBody body = {.inv_mass = 1};
+    assert_true(slot_samples_take(&samples, &none));
+    assert_int_equal(samples.count, 0);
+    assert_true(slot_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
+    assert_int_equal(samples.items[0].problem.contact_count, 0);
+    slot_samples_free(&samples);
+    slot_samples_free(&none);
 }
 
 static void labels_are_the_references(void **state) {
@@ -100,6 +114,7 @@ static void those_looked_at_have_inputs_of_the_network(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sample_is_a_copy),
+        cmocka_unit_test(nothing_is_taken_from_nothing),
         cmocka_unit_test(labels_are_the_references),
         cmocka_unit_test(only_those_from_the_first_asked_for_are_labelled),
         cmocka_unit_test(those_looked_at_have_inputs_of_the_network),
