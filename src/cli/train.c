@@ -26,7 +26,9 @@ enum {
     ROUNDS,
     WIDTH,
     SWEEPS,
-    MOMENTUM
+    MOMENTUM,
+    WITHIN,
+    SMALLEST
 };
 
 static const struct argp_option option_table[] = {
@@ -59,12 +61,15 @@ static const struct argp_option option_table[] = {
     {"width", WIDTH, "N", 0, "scene-net: of both hidden layers, a multiple of 16 (64)", 0},
     {"sweeps", SWEEPS, "K", 0, "scene-net: that follow the network (14)", 0},
     {"momentum", MOMENTUM, "on|off", 0, "scene-net: those sweeps have learned factors of momentum (on)", 0},
+    {"smallest", SMALLEST, NULL, 0, "scene-net: the smallest width that does", 0},
+    {"within", WITHIN, "E", 0, "With --smallest: the held-out error that it has to reach, m/s", 0},
     {"from", FROM, "NET.npz", 0, "Go on from the weights of this network, such as one cut short by Ctrl-C", 0},
     {0}};
 
 typedef struct Options {
     const char *data, *output, *layers, *optimizer, *iterations, *seed, *from, *kind, *bomb_x, *hidden,
-        *output_activation, *scale, *loss, *laws, *launches, *rounds, *width, *sweeps, *momentum;
+        *output_activation, *scale, *loss, *laws, *launches, *rounds, *width, *sweeps, *momentum, *within;
+    bool smallest;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -88,6 +93,8 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case WIDTH: options->width = value; break;
     case SWEEPS: options->sweeps = value; break;
     case MOMENTUM: options->momentum = value; break;
+    case SMALLEST: options->smallest = true; break;
+    case WITHIN: options->within = value; break;
     case ARGP_KEY_ARG:
         if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
         options->data = value;
@@ -226,9 +233,10 @@ int command_train(int argc, char **argv, Error *error) {
     }
     if (strcmp(options.kind, "scene-net") == 0) {
         const TrainSceneNet scene_net = {
-            options.data,  options.output,   options.iterations != NULL ? options.iterations : "40",
-            options.seed,  options.launches, options.rounds,
-            options.width, options.sweeps,   options.momentum};
+            options.data,     options.output,   options.iterations != NULL ? options.iterations : "40",
+            options.seed,     options.launches, options.rounds,
+            options.width,    options.sweeps,   options.momentum,
+            options.smallest, options.within};
         return train_scene_net(&scene_net, error) ? STATUS_SAME : STATUS_DIFFERENT;
     }
     if (strcmp(options.kind, "pair-net") == 0) return train_pair_net(&options, error);

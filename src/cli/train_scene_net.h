@@ -8,6 +8,8 @@
 /* As given; texts are numbers. */
 typedef struct TrainSceneNet {
     const char *scene, *output, *iterations, *seed, *launches, *rounds, *width, *sweeps, *momentum;
+    bool smallest;      /* the smallest network that reaches .. */
+    const char *within; /* .. this error, m/s */
 } TrainSceneNet;
 
 bool train_scene_net(const TrainSceneNet *options, Error *error);

@@ -121,7 +121,9 @@ static void describe(const char *method, const char **title, char *note, size_t 
         *title = "Physics engine";
         snprintf(note, size, "sequential impulses, %s", text);
     } else {
+        if (is_method(method, "reference")) *title = "Converged solution";
         if (is_method(method, "pair-net")) *title = "Neural network";
+        if (is_method(method, "scene-net")) *title = "Network of the scene";
         snprintf(note, size, "%s", text);
     }
 }

@@ -22,6 +22,7 @@ static const Entry entries[] = {
     {"substepping", "substeps=2 substeps=4 substeps=10 substeps=20 substeps=50", "substeps=10"},
     {"pair-net", NULL, NULL},
     {"contact-net", NULL, NULL},
+    {"scene-net", NULL, NULL},
     {"constant", NULL, NULL},
     {"playback", "launches=25 launches=100", "launches=25"},
     {"reference", NULL, NULL}};
