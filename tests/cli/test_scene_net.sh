@@ -3,7 +3,7 @@
 # train --kind scene-net -> simulate by the network, small.
 . "$(dirname "$0")/checks.sh"
 
-sed 's/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
+sed '/scene-net:/d; s/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
 small="--launches 16 --rounds 2 --iterations 6 --width 16"
 
 run 0 train --kind scene-net stack.yaml -o net.npz $small --seed 3
@@ -58,6 +58,14 @@ run 2 train --kind scene-net stack.yaml -o x.npz $small --rounds 0
 complains "--rounds"
 run 2 train --kind scene-net stack.yaml -o x.npz $small --sweeps 65
 complains "--sweeps"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --smallest
+complains "--smallest: error: goes with --within E"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --within 0.1
+complains "--smallest: error: goes with --within E"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --smallest --within -1
+complains "--within"
+run 0 train --kind scene-net stack.yaml -o x.npz $small --smallest --within 100
+says "no network is needed: momentum with 20 sweeps is within 100 m/s"
 grep -v '^bomb:' stack.yaml >quiet.yaml
 run 2 train --kind scene-net quiet.yaml -o x.npz $small
 complains "quiet: error: has no bomb to launch"
@@ -70,7 +78,7 @@ run 3 train --kind scene-net stack.yaml -o nowhere/x.npz $small
 # Ctrl-C keeps the network of the rounds so far. (Started from a script, it would ignore the signal but for the trap.)
 (trap - INT; exec "$twinbox" train --kind scene-net stack.yaml -o cut.npz $small --rounds 100 >cut.out 2>cut.err) &
 training=$!
-until grep -q '^ *1 ' cut.out; do kill -0 $training || break; sleep 0.05; done
+until grep -qs '^ *1 ' cut.out; do kill -0 $training || break; sleep 0.05; done
 kill -INT $training
 wait $training
 equal "status after Ctrl-C" $? 0
