@@ -5,10 +5,10 @@
 
    Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
    bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c), and so
-   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring them into their cones, so momentum is kept
-   whatever the network says. Source: a warm start by a network for the whole problem as in Sambharya, Hall, Amos,
-   Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024), which trains through the iterations
-   that follow, too. Fails on other scenes, which have no slots; it says so. */
+   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring
+   them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network for the whole
+   problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024),
+   which trains through the iterations that follow, too. Fails on other scenes, which have no slots; it says so. */
 #include "solvers/scene_net.h"
 
 #include "common/array.h"
@@ -18,9 +18,13 @@
 #include "solvers/scene_view.h"
 #include "solvers/solvers.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { REST_SWEEPS = 20 };
+
+/* What is pushed beyond it cannot be taken back: rounding alone would leave more than 1e-3 m/s. */
+static const float speed_max = 1e4f; /* m/s and rad/s */
 
 typedef struct SceneNet {
     SlotNetwork *own;           /* or NULL */
@@ -107,9 +111,12 @@ static void *create(const Settings *chosen, Error *error) {
 /* Before the bomb comes there is one body less. */
 static bool fits(const SlotNetwork *network, const ContactProblem *problem, Error *error) {
     const int bodies = problem->bomb < 0 ? network->body_count - 1 : network->body_count;
-    if (problem->body_count == bodies && (problem->bomb < 0 || problem->bomb == network->bomb)) return true;
-    return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
-                       network->scene, bodies, problem->body_count);
+    if (problem->body_count != bodies)
+        return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
+                           network->scene, bodies, problem->body_count);
+    if (problem->bomb < 0 || problem->bomb == network->bomb) return true;
+    return error_input(error, "scene-net", "the network is for the scene %s, where the bomb is body %d; here it is %d",
+                       network->scene, network->bomb, problem->bomb);
 }
 
 /* Whether a step is like those of the training; where it is, the view and inputs are there. False with error set where
@@ -150,6 +157,15 @@ static void find_change(SceneNet *solver, const ContactProblem *problem) {
     }
 }
 
+static bool is_bounded(const Sweeps *sweeps) {
+    bool bounded = true;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        const SweepBody *body = &sweeps->bodies[i];
+        bounded &= fabsf(body->x) <= speed_max && fabsf(body->y) <= speed_max && fabsf(body->spin) <= speed_max;
+    }
+    return bounded;
+}
+
 static bool run_after(SceneNet *solver) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     return solver->after_plain ? sweeps_run(sweeps, solver->after)
@@ -166,6 +182,10 @@ static bool run(SceneNet *solver, const ContactProblem *problem, bool asked) {
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
 }
 
+static bool solve_without(SceneNet *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->rest, solution, error);
+}
+
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SceneNet *solver = state;
     Sweeps *sweeps = &solver->momentum.sweeps;
@@ -177,10 +197,11 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (asked) {
         find_change(solver, problem);
         sweeps_push(sweeps, solver->change);
+        if (!is_bounded(sweeps)) return solve_without(solver, problem, solution, error);
     }
     if (!run(solver, problem, asked)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
-    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->rest, solution, error);
+    return solve_without(solver, problem, solution, error);
 }
 
 const ContactSolverKind solver_scene_net = {

@@ -25,11 +25,13 @@ static const double near_weight = 0.1, first_rate = 4e-3;
 typedef struct Stage {
     const Progress *whole;
     double begin, share;
+    bool stopped; /* progress asked to */
 } Stage;
 
 static bool report_stage(void *context, double done, double total) {
-    const Stage *stage = context;
-    return progress_report(stage->whole, stage->begin + stage->share * done / total, 1);
+    Stage *stage = context;
+    stage->stopped = stage->stopped || !progress_report(stage->whole, stage->begin + stage->share * done / total, 1);
+    return !stage->stopped;
 }
 
 typedef struct Trainer {
@@ -173,7 +175,10 @@ static bool momentum_error(const SlotSamples *samples, double *result, Error *er
         if (ok) sum += solution_error(problem, velocities, samples->items[i].reference).rms;
         free(start);
         free(velocities);
-        if (!ok) return error_memory(error, "scene-net");
+        if (!ok) {
+            unrolled_free(&unrolled);
+            return error_memory(error, "scene-net");
+        }
     }
     unrolled_free(&unrolled);
     *result = samples->count > 0 ? sum / samples->count : NAN;
@@ -228,10 +233,15 @@ static bool train(Trainer *trainer, Error *error) {
     draw_launches(trainer, trainer->training->launches);
     if (!first_round(trainer, error) || !slot_samples_look(&trainer->held_out, 0, trainer->network, error))
         return false;
-    for (int round = 0; round < rounds; round++) {
-        if (round > 0 && !progress_report(&trainer->progress, 1, 1)) break;
-        if (round > 0 && !next_round(trainer, 0.3 * share, error)) return false;
-        if (!fit_round(trainer, round, round > 0 ? 0.7 * share : share, error)) return false;
+    if (!fit_round(trainer, 0, share, error)) return false;
+    for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {
+        Error failure = {0};
+        if (next_round(trainer, 0.3 * share, &failure)) {
+            if (!fit_round(trainer, round, 0.7 * share, error)) return false;
+        } else if (!trainer->stage.stopped) {
+            *error = failure;
+            return false;
+        }
     }
     return true;
 }
@@ -242,7 +252,7 @@ SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *trainin
         error_input(error, scene->name, "has no bomb to launch");
         return NULL;
     }
-    Trainer trainer = {.scene = scene, .training = training, .stage = {progress, 0, 0}};
+    Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){report_stage, &trainer.stage};
     const int launches = training->launches > HELD_OUT_LAUNCHES ? training->launches : HELD_OUT_LAUNCHES;
     trainer.launches = malloc((size_t)launches * sizeof *trainer.launches);

@@ -41,14 +41,13 @@ bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int l
     sample->problem.contacts = contact_copy;
     if (body_copy == NULL || contact_copy == NULL) return false;
     memcpy(body_copy, problem->bodies, bodies);
-    memcpy(contact_copy, problem->contacts, contacts);
+    if (contacts > 0) memcpy(contact_copy, problem->contacts, contacts);
     return true;
 }
 
 bool slot_samples_take(SlotSamples *samples, SlotSamples *from) {
     if (!reserve(samples, from->count + 1)) return false;
-    memcpy(samples->items + samples->count, from->items, (size_t)from->count * sizeof *from->items);
-    samples->count += from->count;
+    for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
     free(from->items);
     *from = (SlotSamples){0};
     return true;

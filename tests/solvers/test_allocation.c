@@ -4,6 +4,7 @@
 #include "pair_networks.h"
 #include "slot_problems.h"
 
+#include "solvers/scene_net.h"
 #include "solvers/scene_view.h"
 
 static int allocations;
@@ -114,9 +115,36 @@ static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
     slot_network_destroy(network);
 }
 
+static void a_network_of_a_scene_solves_without_allocating(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 4;
+    Error error = {0};
+    ContactSolver solver;
+    BodyVelocity velocities[BODIES_MAX];
+    ContactImpulse impulses[CONTACTS_MAX];
+    ContactSolution solution = {velocities, impulses, 0};
+    SlotNetwork *network = make_slot_problem(&random, &seed, 20, 0.5f, 0.7f);
+    random.problem.bomb = network->bomb;
+    network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
+    network->sweeps = 6;
+    fill(network->low, (size_t)slot_network_inputs(network), -1e30f, -1e30f, &seed);
+    fill(network->high, (size_t)slot_network_inputs(network), 1e30f, 1e30f, &seed);
+    assert_ok(scene_net_make(&solver, network, &error), error);
+    allocations = 0;
+    assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
+    assert_true(allocations > 5);
+    allocations = 0;
+    assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
+    assert_int_equal(allocations, 0);
+    free_solver(&solver);
+    slot_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
                                        cmocka_unit_test(pair_networks_solve_without_allocating),
-                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing)};
+                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing),
+                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

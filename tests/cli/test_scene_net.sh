@@ -1,0 +1,87 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# train --kind scene-net -> simulate by the network, small.
+. "$(dirname "$0")/checks.sh"
+
+sed '/scene-net:/d; s/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
+small="--launches 16 --rounds 2 --iterations 6 --width 16"
+
+run 0 train --kind scene-net stack.yaml -o net.npz $small --seed 3
+equal "rounds printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 1 "
+awk '$1 == 0 { first = $2 } $1 == 1 { exit !($2 > first && first > 16) }' out || fail "samples: $(cat out)"
+says "parameters -> net.npz"
+OMP_NUM_THREADS=1 run 0 train --kind scene-net stack.yaml -o again.npz $small --seed 3
+run 0 train --kind scene-net stack.yaml -o other.npz $small --seed 4
+run 0 train --kind scene-net stack.yaml -o plain.npz $small --seed 3 --momentum off --sweeps 4
+/usr/bin/python3 - <<'PYTHON' || fail "what the networks hold"
+import numpy
+net, again, other, plain = (numpy.load(name + ".npz", allow_pickle=False) for name in ("net", "again", "other", "plain"))
+for name in net.files:
+    assert name == "command" or (net[name] == again[name]).all(), name
+assert (net["first_rows"] != other["first_rows"]).any() and net["first_rows"].shape[1] == 16
+assert (str(net["kind"]), str(net["scene"]), int(net["sweeps"])) == ("scene-net", "stack", 14)
+assert str(net["command"]).startswith("twinbox train --kind scene-net stack.yaml -o net.npz --launches 16 --rounds 2")
+assert int(plain["sweeps"]) == 4 and (plain["factors"] == 0).all() and (net["factors"][1:] > 0).any()
+assert int(net["bomb"]) == 11 and abs(net["bomb_inv_mass"] - 1 / 50) < 1e-6
+PYTHON
+
+for network in net again other plain; do
+    run 0 simulate stack.yaml --method scene-net:network=$network.npz --bomb-x 1.3 --hash $network.hash
+done
+cmp -s net.hash again.hash || fail "the number of threads changes the run"
+cmp -s net.hash other.hash && fail "two networks, one run"
+run 0 simulate stack.yaml --method momentum:k=20 --bomb-x 1.3 --hash momentum.hash
+cmp -s net.hash momentum.hash && fail "the network is never asked"
+# Another bomb than it was trained with: momentum's bits.
+sed 's/mass: 50/mass: 51/' stack.yaml >heavier.yaml
+run 0 simulate heavier.yaml --method scene-net:network=net.npz --hash net.hash
+run 0 simulate heavier.yaml --method momentum:k=20 --hash momentum.hash
+cmp -s net.hash momentum.hash || fail "a bomb of another mass is not momentum's"
+
+run 2 simulate stack.yaml --method scene-net
+complains "scene-net: error: the scene names no network for it: use scene-net:network=FILE"
+run 2 simulate "$scenes/single.yaml" --method scene-net:network=net.npz
+complains "the network is for the scene stack of 12 bodies; this one has 3"
+run 2 simulate stack.yaml --method scene-net:network=net.npz,after=65
+complains "after"
+run 2 simulate stack.yaml --method scene-net:network=net.npz,rest=0
+complains "rest"
+run 0 simulate stack.yaml --method scene-net:network=net.npz,after=2,rest=3
+
+run 2 train --kind scene-net stack.yaml -o x.npz $small --width 20
+complains "--width: error: 20 is no multiple of 16"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --momentum maybe
+complains "--momentum: error: 'maybe' is neither on nor off"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --launches 1
+complains "--launches"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --rounds 0
+complains "--rounds"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --sweeps 65
+complains "--sweeps"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --smallest
+complains "--smallest: error: goes with --within E"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --within 0.1
+complains "--smallest: error: goes with --within E"
+run 2 train --kind scene-net stack.yaml -o x.npz $small --smallest --within -1
+complains "--within"
+run 0 train --kind scene-net stack.yaml -o x.npz $small --smallest --within 100
+says "no network is needed: momentum with 20 sweeps is within 100 m/s"
+grep -v '^bomb:' stack.yaml >quiet.yaml
+run 2 train --kind scene-net quiet.yaml -o x.npz $small
+complains "quiet: error: has no bomb to launch"
+sed 's/^frames:.*/frames: 5/' stack.yaml >short.yaml
+run 2 train --kind scene-net short.yaml -o x.npz $small
+complains "no launch touches a box"
+run 3 train --kind scene-net stack.yaml -o nowhere/x.npz $small
+[ -e x.npz ] && fail "a refused command left a file"
+
+# Ctrl-C keeps the network of the rounds so far. (Started from a script, it would ignore the signal but for the trap.)
+(trap - INT; exec "$twinbox" train --kind scene-net stack.yaml -o cut.npz $small --rounds 100 >cut.out 2>cut.err) &
+training=$!
+until grep -qs '^ *1 ' cut.out; do kill -0 $training || break; sleep 0.05; done
+kill -INT $training
+wait $training
+equal "status after Ctrl-C" $? 0
+grep -q "stopped early; .* -> cut.npz" cut.out || fail "Ctrl-C: $(tail -n 2 cut.out cut.err)"
+run 0 simulate stack.yaml --method scene-net:network=cut.npz
+finish

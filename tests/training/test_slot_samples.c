@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Samples are copies, labelled by the reference and shown to a network. */
+#include "impacts.h"
+
+#include <omp.h>
+
+enum { LAUNCHES = 4 };
+
+static void a_sample_is_a_copy(void **state) {
+    (void)state;
+    ProblemBody bodies[2] = {{.inv_mass = 1}, {.inv_mass = 2}};
+    ContactPoint contact = {.a = 0, .b = 1, .feature = 5};
+    const ContactProblem problem = {
+        .body_count = 2, .contact_count = 1, .bomb = 1, .bodies = bodies, .contacts = &contact};
+    SlotSamples samples = {0}, more = {0};
+    for (int i = 0; i < 20; i++) assert_true(slot_samples_add(&samples, &problem, i, 2 * i));
+    bodies[1].inv_mass = 9;
+    contact.feature = 9;
+    for (int i = 20; i < 22; i++) assert_true(slot_samples_add(&more, &problem, i, 2 * i));
+    assert_true(slot_samples_take(&samples, &more));
+    assert_int_equal(more.count, 0);
+    assert_true(slot_samples_take(&samples, &more));
+    assert_int_equal(samples.count, 22);
+    for (int i = 0; i < 22; i++) {
+        const SlotSample *sample = &samples.items[i];
+        assert_int_equal(sample->launch, i);
+        assert_int_equal(sample->since, 2 * i);
+        assert_int_equal(sample->problem.contacts[0].feature, i < 20 ? 5 : 9);
+        assert_true(sample->problem.bodies[1].inv_mass == (i < 20 ? 2 : 9));
+    }
+    slot_samples_free(&more);
+    slot_samples_free(&samples);
+}
+
+/* A run that touches nothing gives none. */
+static void nothing_is_taken_from_nothing(void **state) {
+    (void)state;
+    SlotSamples samples = {0}, none = {0};
+    const ProblemBody body = {.inv_mass = 1};
+    assert_true(slot_samples_take(&samples, &none));
+    assert_int_equal(samples.count, 0);
+    assert_true(slot_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
+    assert_int_equal(samples.items[0].problem.contact_count, 0);
+    slot_samples_free(&samples);
+    slot_samples_free(&none);
+}
+
+static void labels_are_the_references(void **state) {
+    (void)state;
+    Error error = {0};
+    const int threads = omp_get_max_threads();
+    Reference reference = {0};
+    for (int t = 1; t <= 2; t++) {
+        omp_set_num_threads(t);
+        SlotSamples samples = labelled_impacts(LAUNCHES);
+        for (int i = 0; i < samples.count; i++) {
+            const SlotSample *sample = &samples.items[i];
+            const ContactProblem *problem = &sample->problem;
+            assert_ok(reference_solve(&reference, problem, REFERENCE_TOLERANCE, IMPACT_VISITS, NULL, &error), error);
+            assert_memory_equal(sample->reference, reference.velocities,
+                                (size_t)problem->body_count * sizeof *sample->reference);
+            for (int k = 0; k < problem->contact_count; k++) {
+                assert_true(sample->goal[k].normal == (float)reference.impulses[k].normal);
+                assert_true(sample->goal[k].tangent == (float)reference.impulses[k].tangent);
+            }
+            assert_int_equal(sample->unrolled.contact_count, problem->contact_count);
+        }
+        slot_samples_free(&samples);
+    }
+    omp_set_num_threads(threads);
+    reference_free(&reference);
+}
+
+static bool stop(void *context, double done, double total) {
+    (void)context, (void)done, (void)total;
+    return false;
+}
+
+static void only_those_from_the_first_asked_for_are_labelled(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples samples = {0};
+    record_impacts(&samples, LAUNCHES, 0);
+    const int half = samples.count / 2;
+    const Progress stopping = {stop, NULL};
+    assert_ok(slot_samples_label(&samples, half, IMPACT_VISITS, NULL, &error), error);
+    for (int i = 0; i < samples.count; i++) assert_int_equal(samples.items[i].goal != NULL, i >= half);
+    slot_samples_free(&samples);
+    record_impacts(&samples, LAUNCHES, 0);
+    assert_false(slot_samples_label(&samples, 0, IMPACT_VISITS, &stopping, &error));
+    assert_error(error, ERROR_INPUT, "labels: error: stopped after");
+    slot_samples_free(&samples);
+}
+
+static void those_looked_at_have_inputs_of_the_network(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
+    SlotNetwork *network = network_for(&shaped);
+    record_impacts(&samples, LAUNCHES, 0);
+    assert_int_equal(samples.count, shaped.count);
+    assert_ok(slot_samples_look(&samples, 3, network, &error), error);
+    for (int i = 0; i < samples.count; i++) {
+        assert_int_equal(samples.items[i].inputs != NULL, i >= 3);
+        if (i < 3) continue;
+        assert_memory_equal(samples.items[i].inputs, shaped.items[i].inputs,
+                            (size_t)slot_network_inputs(network) * sizeof(float));
+    }
+    slot_network_destroy(network);
+    slot_samples_free(&samples);
+    slot_samples_free(&shaped);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sample_is_a_copy),
+        cmocka_unit_test(nothing_is_taken_from_nothing),
+        cmocka_unit_test(labels_are_the_references),
+        cmocka_unit_test(only_those_from_the_first_asked_for_are_labelled),
+        cmocka_unit_test(those_looked_at_have_inputs_of_the_network),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
