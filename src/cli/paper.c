@@ -46,9 +46,8 @@ static const struct argp argp = {
     parse,
     "",
     "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every reading, "
-    "one "
-    "factor at a time, rate them, put them in the solver's place, and try what it leaves to future work. Writes "
-    "report.md, report.html, every table as CSV, every figure as PNG and SVG. Takes a quarter of an hour on two cores; "
+    "one factor at a time, rate them, put them in the solver's place, and try what it leaves to future work. Writes "
+    "report.md, report.html, every table as CSV, every figure as PNG and SVG. Takes some ten minutes on two cores; "
     "what is cut off goes on where it stopped.\v"
     "Example: twinbox paper -o out/paper\n"
     "         twinbox paper -o out/paper-quick --quick",

@@ -3,8 +3,8 @@
 
 #include "solvers/momentum.h"
 #include "solvers/scene_net.h"
-#include "solvers/solution_error.h"
 #include "solvers/solvers.h"
+#include "training/slot_fit.h"
 #include "training/slot_rollout.h"
 
 #include <gsl/gsl_rng.h>
@@ -14,7 +14,7 @@
 
 /* Steps from the touch on that are learned from, beyond the scene's impact; visits of the reference for a label: a tenth
    of what the studies ask for, and within 1e-3 m/s on nearly all. */
-enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, MOMENTUM_SWEEPS = 20, HELD_OUT_SEED = 7919 };
+enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
 
 static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
 /* RMS over the contacts: at rest they miss their bias by less, where a shock runs through them by more. */
@@ -146,57 +146,9 @@ static bool next_round(Trainer *trainer, double share, Error *error) {
            slot_samples_look(&trainer->samples, had, trainer->network, error);
 }
 
-static double mean(const double *numbers, int count) {
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += numbers[i];
-    return count > 0 ? sum / count : NAN;
-}
-
-/* Mean error of momentum from the cached start. */
-static bool momentum_error(const SlotSamples *samples, double *result, Error *error) {
-    double factors[MOMENTUM_SWEEPS], sum = 0;
-    for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = (double)momentum_factor_by_hand(s, MOMENTUM_SWEEPS);
-    Unrolled unrolled = {0};
-    for (int i = 0; i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].problem;
-        const int contacts = problem->contact_count, bodies = problem->body_count;
-        double *start = malloc((2 * (size_t)contacts + 1) * sizeof *start);
-        BodyVelocity *velocities = malloc((size_t)bodies * sizeof *velocities);
-        bool ok = start != NULL && velocities != NULL;
-        for (int k = 0; ok && k < contacts; k++) {
-            start[2 * k] = (double)problem->contacts[k].warm_normal;
-            start[2 * k + 1] = (double)problem->contacts[k].warm_tangent;
-        }
-        ok = ok && unrolled_run(&unrolled, &samples->items[i].unrolled, start, factors, MOMENTUM_SWEEPS);
-        for (int k = 0; ok && k < bodies; k++) {
-            const double *v = unrolled.velocities + 3 * k;
-            velocities[k] = (BodyVelocity){vec2((float)v[0], (float)v[1]), (float)v[2]};
-        }
-        if (ok) sum += solution_error(problem, velocities, samples->items[i].reference).rms;
-        free(start);
-        free(velocities);
-        if (!ok) {
-            unrolled_free(&unrolled);
-            return error_memory(error, "scene-net");
-        }
-    }
-    unrolled_free(&unrolled);
-    *result = samples->count > 0 ? sum / samples->count : NAN;
-    return true;
-}
-
-static bool score(Trainer *trainer, int round, Error *error) {
-    const SlotSamples *samples = &trainer->samples, *held_out = &trainer->held_out;
-    const int most = samples->count > held_out->count ? samples->count : held_out->count;
-    double *errors = malloc(((size_t)most + 1) * sizeof *errors);
-    SceneScore result = {.round = round, .samples = samples->count};
-    bool ok = errors != NULL || error_memory(error, "scene-net");
-    ok = ok && slot_errors(trainer->network, samples, 0, errors, error);
-    if (ok) result.train = mean(errors, samples->count);
-    ok = ok && slot_errors(trainer->network, held_out, 0, errors, error);
-    if (ok) result.held_out = mean(errors, held_out->count);
-    free(errors);
-    if (!ok || !momentum_error(held_out, &result.momentum, error)) return false;
+static bool score(const Trainer *trainer, int round, Error *error) {
+    SceneScore result = {.round = round};
+    if (!scene_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
     if (trainer->training->on_score != NULL) trainer->training->on_score(trainer->training->context, &result);
     return true;
 }

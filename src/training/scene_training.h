@@ -7,14 +7,8 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "scene/scene.h"
-#include "training/slot_fit.h"
+#include "training/scene_score.h"
 #include "training/slot_shape.h"
-
-typedef struct SceneScore {
-    int round, samples;
-    double train, held_out; /* m/s, mean error after the network and its sweeps; held-out: of launches kept apart */
-    double momentum;        /* the held-out ones by momentum with 20 sweeps from the cached start */
-} SceneScore;
 
 typedef struct SceneTraining {
     int launches;  /* of each round: x in +-5 m; of a half, rotation in +-1.5 rad and spin in +-20 rad/s */

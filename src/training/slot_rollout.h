@@ -9,10 +9,10 @@
 typedef struct SlotRollout {
     const Scene *scene;
     const Launch *launches; /* [launch_count] */
-    int launch_count;
-    int first_launch; /* number that the first gets in the samples */
-    int steps;        /* that are looked at from the touch on */
-    float gate;       /* m/s */
+    int launch_count;       /* all with the scene's own frame of the bomb */
+    int first_launch;       /* number that the first gets in the samples */
+    int steps;              /* that are looked at from the touch on */
+    float gate;             /* m/s */
     /* Makes a solver for one thread; solvers are destroyed by their kind. */
     bool (*make_solver)(void *context, ContactSolver *solver, Error *error);
     void *context;

@@ -121,7 +121,7 @@ static void weigh_row(Projection *projection, int i, float weight) {
 }
 
 /* One over the spread of each number of the bodies, which has to be more than what does not matter. */
-static bool find_units(const SlotSamples *samples, bool bomb, int count, float *units) {
+static void find_units(const SlotSamples *samples, bool bomb, int count, float *units) {
     static const double least[SLOT_BODY_NUMBERS] = {0.01, 0.01, 0.01, 0.1, 0.1, 0.1}; /* m, rad, m/s, rad/s */
     for (int k = 0; k < count; k++) {
         double sum = 0, squares = 0;
@@ -134,7 +134,6 @@ static bool find_units(const SlotSamples *samples, bool bomb, int count, float *
         const double mean = sum / samples->count, variance = fmax(squares / samples->count - mean * mean, 0);
         units[k] = (float)(1 / hypot(sqrt(variance), least[k % SLOT_BODY_NUMBERS]));
     }
-    return true;
 }
 
 static bool see_bodies(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
