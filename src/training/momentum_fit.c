@@ -100,17 +100,6 @@ static double cost(void *context, const double *knots) {
     return mean_error(context, factors) + out;
 }
 
-/* Part of a longer work. */
-typedef struct Stage {
-    const Progress *whole;
-    double begin, share;
-} Stage;
-
-static bool report_stage(void *context, double done, double total) {
-    const Stage *stage = context;
-    return progress_report(stage->whole, stage->begin + stage->share * done / total, 1);
-}
-
 /* Fits one schedule and appends it. */
 static bool fit_schedule(Fit *fit, MomentumSchedules *schedules, const MomentumFitOptions *options,
                          const Progress *progress, Error *error) {
@@ -138,8 +127,8 @@ bool momentum_fit(MomentumSchedules *schedules, const Scene *scene, const Moment
                   const Progress *progress, Error *error) {
     *schedules = (MomentumSchedules){0};
     Fit fit = {0};
-    Stage stage = {progress, 0, 0.5};
-    const Progress within = {report_stage, &stage};
+    ProgressStage stage = {.whole = progress, .share = 0.5};
+    const Progress within = {progress_stage, &stage};
     bool ok = impact_problems_record(&fit.problems, scene, &options->bomb_x, &within, error) && fit_begin(&fit, error);
     for (int i = 0; ok && i < FITTED; i++) {
         stage.begin += stage.share;

@@ -21,19 +21,6 @@ static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m,
 static const float gate = 0.3f; /* m/s */
 static const double near_weight = 0.1, first_rate = 4e-3;
 
-/* Part of a longer work. */
-typedef struct Stage {
-    const Progress *whole;
-    double begin, share;
-    bool stopped; /* progress asked to */
-} Stage;
-
-static bool report_stage(void *context, double done, double total) {
-    Stage *stage = context;
-    stage->stopped = stage->stopped || !progress_report(stage->whole, stage->begin + stage->share * done / total, 1);
-    return !stage->stopped;
-}
-
 typedef struct Trainer {
     const Scene *scene;
     const SceneTraining *training;
@@ -42,7 +29,7 @@ typedef struct Trainer {
     SlotSamples samples, held_out;
     SlotNetwork *network;
     int launches_done;
-    Stage stage;
+    ProgressStage stage;
     Progress progress; /* of the stage */
 } Trainer;
 
@@ -205,7 +192,7 @@ SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *trainin
         return NULL;
     }
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
-    trainer.progress = (Progress){report_stage, &trainer.stage};
+    trainer.progress = (Progress){progress_stage, &trainer.stage};
     const int launches = training->launches > HELD_OUT_LAUNCHES ? training->launches : HELD_OUT_LAUNCHES;
     trainer.launches = malloc((size_t)launches * sizeof *trainer.launches);
     trainer.generator = gsl_rng_alloc(gsl_rng_mt19937);
