@@ -4,6 +4,9 @@
 #include "network/row_kernels.h"
 
 #include <string.h>
+#if VECTOR_BYTES > 16
+#include <immintrin.h>
+#endif
 
 typedef float Floats __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(float)), may_alias));
 typedef float Four __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
@@ -15,39 +18,45 @@ enum {
     GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once: so many registers times CHAINS there are */
 };
 
-static inline const float *row_of(const float *rows, int width, const int32_t *index, int i) {
-    return rows + (int64_t)(index != NULL ? index[i] : i) * width;
+/* As floats; gcc 12 takes a conversion of vectors apart into single bytes. */
+static inline Floats load(const int8_t *bytes) {
+#if VECTOR_BYTES == 64
+    return (Floats)_mm512_cvtepi32_ps(_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)bytes)));
+#elif VECTOR_BYTES == 32
+    return (Floats)_mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)bytes)));
+#else
+    return (Floats){bytes[0], bytes[1], bytes[2], bytes[3]};
+#endif
 }
+
+static inline int64_t row_at(const int32_t *index, int i) { return index != NULL ? index[i] : i; }
 
 /* The columns from `at` on, as many as `vectors` registers hold, in CHAINS sums each: an addition waits for the one
    before it, and one chain of them would leave the processor idle. */
-static inline __attribute__((always_inline)) void add_columns(float *sums, int width, const float *rows,
-                                                              const int32_t *index, const float *numbers, int count,
-                                                              int at, const int vectors) {
+static inline __attribute__((always_inline)) void add_columns(float *sums, const PackedRows *rows, const int32_t *index,
+                                                              const float *numbers, int count, int at,
+                                                              const int vectors) {
     Floats held[CHAINS][GROUP];
     for (int v = 0; v < vectors; v++) {
         held[0][v] = ((const Floats *)(sums + at))[v];
         for (int c = 1; c < CHAINS; c++) held[c][v] = (Floats){0};
     }
-    int i = 0;
-    for (; i + CHAINS <= count; i += CHAINS)
-        for (int c = 0; c < CHAINS; c++) {
-            const float *row = row_of(rows, width, index, i + c) + at;
-            for (int v = 0; v < vectors; v++) held[c][v] += numbers[i + c] * ((const Floats *)row)[v];
+    for (int i = 0; i < count; i += CHAINS)
+        for (int c = 0; c < CHAINS && i + c < count; c++) {
+            const int64_t row = row_at(index, i + c);
+            const int8_t *from = rows->numbers + row * rows->width + at;
+            const float number = numbers[i + c] * rows->units[row];
+            for (int v = 0; v < vectors; v++) held[c][v] += number * load(from + v * FLOATS);
         }
-    for (int c = 0; i < count; i++, c++) {
-        const float *row = row_of(rows, width, index, i) + at;
-        for (int v = 0; v < vectors; v++) held[c][v] += numbers[i] * ((const Floats *)row)[v];
-    }
     for (int v = 0; v < vectors; v++)
         ((Floats *)(sums + at))[v] = (held[0][v] + held[1][v]) + (held[2][v] + held[3][v]);
 }
 
-static void add(float *sums, int width, const float *rows, const int32_t *index, const float *numbers, int count) {
+static void add(float *sums, const PackedRows *rows, const int32_t *index, const float *numbers, int count) {
     int at = 0;
-    for (; at + GROUP * FLOATS <= width; at += GROUP * FLOATS)
-        add_columns(sums, width, rows, index, numbers, count, at, GROUP);
-    for (; at < width; at += ROW_LANES) add_columns(sums, width, rows, index, numbers, count, at, LANE_VECTORS);
+    for (; at + GROUP * FLOATS <= rows->width; at += GROUP * FLOATS)
+        add_columns(sums, rows, index, numbers, count, at, GROUP);
+    for (; at < rows->width; at += ROW_LANES) add_columns(sums, rows, index, numbers, count, at, LANE_VECTORS);
 }
 
 /* Lanes l, l + 4, l + 8, l + 12. */
@@ -57,28 +66,30 @@ static inline Four fold(const Floats sums[LANE_VECTORS]) {
     return (quarters[0] + quarters[2]) + (quarters[1] + quarters[3]);
 }
 
-static void multiply(float *products, int width, const float *rows, const int32_t *index, const float *vector,
-                     int count) {
+static void multiply(float *products, const PackedRows *rows, const int32_t *index, const float *vector, int count) {
+    const int width = rows->width;
     for (int i = 0; i < count; i++) {
-        const float *row = row_of(rows, 2 * width, index, i);
+        const int64_t pair = 2 * row_at(index, i);
+        const int8_t *row = rows->numbers + pair * width;
         Floats first[LANE_VECTORS], second[LANE_VECTORS];
         for (int v = 0; v < LANE_VECTORS; v++) first[v] = second[v] = (Floats){0};
         for (int at = 0; at < width; at += ROW_LANES)
             for (int v = 0; v < LANE_VECTORS; v++) {
-                const Floats x = ((const Floats *)(vector + at))[v];
-                first[v] += ((const Floats *)(row + at))[v] * x;
-                second[v] += ((const Floats *)(row + width + at))[v] * x;
+                const int lane = at + v * FLOATS;
+                const Floats x = *(const Floats *)(vector + lane);
+                first[v] += load(row + lane) * x;
+                second[v] += load(row + width + lane) * x;
             }
         const Four a = fold(first), b = fold(second);
         const Four sums = __builtin_shufflevector(a, b, 0, 4, 1, 5) + __builtin_shufflevector(a, b, 2, 6, 3, 7);
-        products[2 * i] = sums[0] + sums[2];
-        products[2 * i + 1] = sums[1] + sums[3];
+        products[2 * i] = rows->units[pair] * (sums[0] + sums[2]);
+        products[2 * i + 1] = rows->units[pair + 1] * (sums[1] + sums[3]);
     }
 }
 
 static void spread(float *rows, int width, const int32_t *index, const float *numbers, const float *vector, int count) {
     for (int i = 0; i < count; i++) {
-        float *row = rows + (int64_t)(index != NULL ? index[i] : i) * width;
+        float *row = rows + row_at(index, i) * width;
         for (int at = 0; at < width; at += FLOATS) *(Floats *)(row + at) += numbers[i] * *(const Floats *)(vector + at);
     }
 }

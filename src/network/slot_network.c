@@ -10,7 +10,11 @@ void slot_network_destroy(SlotNetwork *network) {
     for (int i = 0; i < 4; i++) {
         free(projections[i]->rows);
         free(projections[i]->centre);
+        packed_rows_free(&projections[i]->packed);
     }
+    packed_rows_free(&network->first.packed);
+    packed_rows_free(&network->second.packed);
+    packed_rows_free(&network->packed);
     free(network->slots);
     free(network->scale);
     free(network->cap);
@@ -22,9 +26,11 @@ void slot_network_destroy(SlotNetwork *network) {
 }
 
 static bool make_projection(Projection *projection, int from, int to) {
-    *projection =
-        (Projection){from, to, calloc((size_t)from * (size_t)to, sizeof(float)), calloc((size_t)to, sizeof(float))};
-    return projection->rows != NULL && projection->centre != NULL;
+    projection->from = from;
+    projection->to = to;
+    projection->rows = calloc((size_t)from * (size_t)to, sizeof(float));
+    projection->centre = calloc((size_t)to, sizeof(float));
+    return packed_rows_make(&projection->packed, from, to) && projection->rows != NULL && projection->centre != NULL;
 }
 
 static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
@@ -58,15 +64,18 @@ static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
     network->parameter_count = (inputs + 1) * hidden + (hidden + 1) * hidden + (hidden + 1) * outputs;
     float *at = network->parameters = calloc(network->parameter_count, sizeof *at);
     if (at == NULL) return false;
-    network->first = (SlotLayer){(int)inputs, (int)hidden, at, at + inputs * hidden};
+    network->first = (SlotLayer){.from = (int)inputs, .to = (int)hidden, .rows = at, .biases = at + inputs * hidden};
     at += (inputs + 1) * hidden;
-    network->second = (SlotLayer){(int)hidden, (int)hidden, at, at + hidden * hidden};
+    network->second = (SlotLayer){.from = (int)hidden, .to = (int)hidden, .rows = at, .biases = at + hidden * hidden};
     at += (hidden + 1) * hidden;
     network->low = calloc(inputs, sizeof *network->low);
     network->high = calloc(inputs, sizeof *network->high);
     network->rows = at;
     network->biases = at + outputs * hidden;
-    return network->low != NULL && network->high != NULL;
+    return packed_rows_make(&network->first.packed, (int)inputs, (int)hidden) &&
+           packed_rows_make(&network->second.packed, (int)hidden, (int)hidden) &&
+           packed_rows_make(&network->packed, (int)outputs, (int)hidden) && network->low != NULL &&
+           network->high != NULL;
 }
 
 /* Where the slots of each pair begin. */
@@ -117,10 +126,22 @@ int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature
     return -1;
 }
 
+void slot_network_pack_layers(SlotNetwork *network) {
+    packed_rows_fill(&network->first.packed, network->first.rows);
+    packed_rows_fill(&network->second.packed, network->second.rows);
+    packed_rows_fill(&network->packed, network->rows);
+}
+
+void slot_network_pack(SlotNetwork *network) {
+    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
+    for (int i = 0; i < 4; i++) packed_rows_fill(&projections[i]->packed, projections[i]->rows);
+    slot_network_pack_layers(network);
+}
+
 static float *project(const RowKernels *kernels, const Projection *projection, const int32_t *index,
                       const float *numbers, int count, float *out) {
     for (int i = 0; i < projection->to; i++) out[i] = -projection->centre[i];
-    kernels->add(out, projection->to, projection->rows, index, numbers, count);
+    kernels->add(out, &projection->packed, index, numbers, count);
     return out + projection->to;
 }
 
@@ -133,7 +154,7 @@ void slot_network_look(const SlotNetwork *network, const SlotView *view, float *
 
 static void run_layer(const RowKernels *kernels, const SlotLayer *layer, const float *in, float *out) {
     memcpy(out, layer->biases, (size_t)layer->to * sizeof *out);
-    kernels->add(out, layer->to, layer->rows, NULL, in, layer->from);
+    kernels->add(out, &layer->packed, NULL, in, layer->from);
     kernels->bend(out, layer->to);
 }
 
@@ -141,7 +162,7 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
                           float *second, float *outputs) {
     run_layer(network->kernels, &network->first, inputs, first);
     run_layer(network->kernels, &network->second, first, second);
-    network->kernels->multiply(outputs, network->second.to, network->rows, view->slots, second, view->slot_count);
+    network->kernels->multiply(outputs, &network->packed, view->slots, second, view->slot_count);
     for (int i = 0; i < view->slot_count; i++)
         for (int k = 0; k < 2; k++) {
             const int slot = view->slots[i];

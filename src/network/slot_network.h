@@ -8,7 +8,8 @@
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
 
-   Only the rows of slots that there are get touched. Sums run in a fixed order (row_kernels.h): the same bits
+   Only the rows of slots that there are get touched. It looks and predicts by rows rounded to bytes (packed_rows.h);
+   those in float are what training changes and files keep. Sums run in a fixed order (row_kernels.h): the same bits
    everywhere. */
 #pragma once
 #include "common/error.h"
@@ -18,7 +19,7 @@
 #include <stddef.h>
 
 enum {
-    SLOT_NETWORK_VERSION = 1,
+    SLOT_NETWORK_VERSION = 2,
     SLOT_BODIES_MAX = 256,
     SLOTS_MAX = 20000,
     SLOT_WIDTH_MAX = 1024,
@@ -37,6 +38,7 @@ typedef struct Projection {
     int from, to;
     float *rows;   /* [from, to] */
     float *centre; /* [to] */
+    PackedRows packed;
 } Projection;
 
 /* Dense layer, input by input. */
@@ -44,6 +46,7 @@ typedef struct SlotLayer {
     int from, to;
     float *rows;   /* [from, to] */
     float *biases; /* [to] */
+    PackedRows packed;
 } SlotLayer;
 
 typedef struct SlotNetwork {
@@ -54,6 +57,7 @@ typedef struct SlotNetwork {
     Projection present, warm;     /* of slot_count, and of (normal, tangent) of each */
     SlotLayer first, second;      /* from the inputs to the hidden widths */
     float *rows, *biases;         /* [2 slot_count, second.to], [2 slot_count]: the last layer */
+    PackedRows packed;            /* its rows */
     float *scale;                 /* [slot_count] N s */
     float *cap;                   /* [slot_count] N s: a warm impulse is taken up to here */
     float gate;                   /* m/s: it is asked where the warm start misses the contacts' bias by so much (RMS) */
@@ -88,6 +92,10 @@ void slot_network_destroy(SlotNetwork *network);
 
 /* The slot of a contact, or -1. */
 int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature);
+
+/* Rounds the rows as they are now; a network that was read is rounded already. Of all, or only of the three layers. */
+void slot_network_pack(SlotNetwork *network);
+void slot_network_pack_layers(SlotNetwork *network);
 
 /* What there is to see. */
 typedef struct SlotView {

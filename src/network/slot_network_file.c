@@ -139,7 +139,9 @@ static bool read_contents(NpzFile *file, SlotNetwork *network, Error *error) {
                            SLOT_SWEEPS_MAX);
     FileFloats floats[FLOAT_ARRAYS];
     list_floats(network, floats);
-    return file_floats_read(file, floats, FLOAT_ARRAYS, error);
+    if (!file_floats_read(file, floats, FLOAT_ARRAYS, error)) return false;
+    slot_network_pack(network);
+    return true;
 }
 
 static SlotNetwork *read_network(NpzFile *file, Error *error) {

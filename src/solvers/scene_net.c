@@ -4,24 +4,32 @@
    it goes.
 
    Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
-   bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c), and so
-   is what is left of a step that the network did not bring near. Impulses act on both bodies alike, and the sweeps bring
+   bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c). The gap
+   that is left after the sweeps goes up and down with the error, on launches that the network never saw, too: so few
+   sweeps do at first, and a step that they did not bring near goes on. Impulses act on both bodies alike, and the sweeps bring
    them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network for the whole
    problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024),
    which trains through the iterations that follow, too. Fails on other scenes, which have no slots; it says so. */
 #include "solvers/scene_net.h"
 
-#include "common/array.h"
-#include "solvers/contact_velocity.h"
 #include "solvers/impact_gap.h"
 #include "solvers/momentum.h"
-#include "solvers/scene_view.h"
+#include "solvers/scene_answer.h"
 #include "solvers/solvers.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum { REST_SWEEPS = 20 };
+
+/* m/s, RMS over the contacts: the gaps from which on a step goes on, after the network and its sweeps, and where there
+   was little to do from the start: there all bodies are to be right. */
+static const float near_enough = 0.1f, calm_enough = 0.015f;
+
+/* What is done of a step: as the method momentum does, `rest` sweeps; where the bomb is there, of the training's mass, but
+   the gap is below the gate, half as many, and as many again where they do not do; the network, `after` sweeps, and `rest`
+   where they do not do. */
+typedef enum Way { BY_MOMENTUM, CALM, BY_NETWORK } Way;
 
 /* What is pushed beyond it cannot be taken back: rounding alone would leave more than 1e-3 m/s. */
 static const float speed_max = 1e4f; /* m/s and rad/s */
@@ -30,31 +38,27 @@ typedef struct SceneNet {
     SlotNetwork *own;           /* or NULL */
     const SlotNetwork *network; /* that one, or another's */
     Momentum momentum;
-    SceneView view;
-    float inputs[4 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX];
-    float *outputs;         /* [2 slots there are] */
-    ContactImpulse *change; /* [contact_count] from the warm start to the network's */
-    size_t output_capacity, change_capacity;
-    int after, rest;                      /* sweeps with the network, and without */
+    SceneAnswer answer;
+    int after, rest, half;                /* sweeps with the network, and without */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_plain;                     /* no factor of them does anything */
-    float *rest_factors;                  /* [rest] */
+    float *rest_factors, *half_factors;   /* [rest], [half] */
 } SceneNet;
 
-static const SettingSpec settings[] = {{"network", "file of the trained network (the scene's own)"},
-                                       {"after", "sweeps after the network (as it was trained for)"},
-                                       {"rest", "sweeps with momentum where it is not asked (20)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"network", "file of the trained network (the scene's own)"},
+    {"after", "sweeps after the network (as it was trained for)"},
+    {"rest", "sweeps with momentum where it is not asked, or does not get near (20; half where calm)"},
+    {NULL, NULL}};
 
 static void destroy(void *state) {
     SceneNet *solver = state;
     if (solver == NULL) return;
     slot_network_destroy(solver->own);
     momentum_free(&solver->momentum);
-    scene_view_free(&solver->view);
-    free(solver->outputs);
-    free(solver->change);
+    scene_answer_free(&solver->answer);
     free(solver->rest_factors);
+    free(solver->half_factors);
     free(solver);
 }
 
@@ -69,21 +73,26 @@ static void choose_factors(SceneNet *solver) {
                                    : learned                        ? momentum_factor_by_hand(s, solver->after)
                                                                     : 0;
     for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_by_hand(s, solver->rest);
+    for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_by_hand(s, solver->half);
 }
 
 static SceneNet *make(const SlotNetwork *network, int after, int rest, Error *error) {
     SceneNet *solver = calloc(1, sizeof *solver);
-    float *rest_factors = malloc((size_t)rest * sizeof *rest_factors);
-    if (solver == NULL || rest_factors == NULL) {
-        free(solver);
-        free(rest_factors);
+    if (solver == NULL) {
         error_memory(error, "scene-net");
         return NULL;
     }
     solver->network = network;
     solver->after = after;
     solver->rest = rest;
-    solver->rest_factors = rest_factors;
+    solver->half = (rest + 1) / 2;
+    solver->rest_factors = malloc((size_t)rest * sizeof *solver->rest_factors);
+    solver->half_factors = malloc((size_t)solver->half * sizeof *solver->half_factors);
+    if (solver->rest_factors == NULL || solver->half_factors == NULL) {
+        destroy(solver);
+        error_memory(error, "scene-net");
+        return NULL;
+    }
     choose_factors(solver);
     return solver;
 }
@@ -119,44 +128,6 @@ static bool fits(const SlotNetwork *network, const ContactProblem *problem, Erro
                        network->scene, network->bomb, problem->bomb);
 }
 
-/* Whether a step is like those of the training; where it is, the view and inputs are there. False with error set where
-   memory is short. */
-static bool is_known(SceneNet *solver, const ContactProblem *problem, bool *known, Error *error) {
-    const SlotNetwork *network = solver->network;
-    *known = false;
-    if (problem->bodies[network->bomb].inv_mass != network->bomb_inv_mass) return true;
-    if (!scene_view_take(&solver->view, network, problem) ||
-        !array_reserve((void **)&solver->outputs, &solver->output_capacity, 2 * (size_t)problem->contact_count,
-                       sizeof *solver->outputs) ||
-        !array_reserve((void **)&solver->change, &solver->change_capacity, (size_t)problem->contact_count,
-                       sizeof *solver->change))
-        return error_memory(error, "scene-net");
-    slot_network_look(network, &solver->view.slots, solver->inputs);
-    for (int i = 0; i < slot_network_inputs(network); i++)
-        if (!(solver->inputs[i] >= network->low[i] && solver->inputs[i] <= network->high[i])) return true;
-    *known = true;
-    return true;
-}
-
-/* From the warm start to what the network says, inside the cone. */
-static void find_change(SceneNet *solver, const ContactProblem *problem) {
-    const SceneView *view = &solver->view;
-    slot_network_predict(solver->network, solver->inputs, &view->slots, solver->first, solver->second, solver->outputs);
-    for (int i = 0; i < problem->contact_count; i++) solver->change[i] = view->base[i];
-    for (int k = 0; k < view->slots.slot_count; k++) {
-        ContactImpulse *to = &solver->change[view->contacts[k]];
-        const float limit = problem->contacts[view->contacts[k]].friction;
-        to->normal += solver->outputs[2 * k];
-        to->tangent += solver->outputs[2 * k + 1];
-        to->normal = to->normal > 0 ? to->normal : 0;
-        to->tangent = contact_clamp(to->tangent, -limit * to->normal, limit * to->normal);
-    }
-    for (int i = 0; i < problem->contact_count; i++) {
-        solver->change[i].normal -= problem->contacts[i].warm_normal;
-        solver->change[i].tangent -= problem->contacts[i].warm_tangent;
-    }
-}
-
 static bool is_bounded(const Sweeps *sweeps) {
     bool bounded = true;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -172,14 +143,33 @@ static bool run_after(SceneNet *solver) {
                                : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* Where the network did not help, the step is still as far off as when it was asked. */
-static bool run(SceneNet *solver, const ContactProblem *problem, bool asked) {
+/* What is left tells how near a step is; what is not near yet goes on. */
+static bool run(SceneNet *solver, const ContactProblem *problem, Way way) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    if (asked) {
+    if (way == CALM)
+        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) &&
+               (!impact_gap_reaches(sweeps, problem->contact_count, calm_enough) ||
+                sweeps_run_momentum(sweeps, solver->half_factors, solver->half));
+    if (way == BY_NETWORK) {
         if (!run_after(solver)) return false;
-        if (!impact_gap_reaches(sweeps, problem->contact_count, solver->network->gate)) return true;
+        if (!impact_gap_reaches(sweeps, problem->contact_count, near_enough)) return true;
     }
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
+}
+
+/* After the warm start. */
+static bool choose_way(SceneNet *solver, const ContactProblem *problem, Way *way, Error *error) {
+    const SlotNetwork *network = solver->network;
+    *way = BY_MOMENTUM;
+    if (problem->bomb < 0 || problem->bodies[network->bomb].inv_mass != network->bomb_inv_mass) return true;
+    if (!impact_gap_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
+        *way = CALM;
+        return true;
+    }
+    bool known;
+    if (!scene_answer_knows(&solver->answer, network, problem, &known)) return error_memory(error, "scene-net");
+    if (known) *way = BY_NETWORK;
+    return true;
 }
 
 static bool solve_without(SceneNet *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -192,14 +182,14 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     const SweepKernel kernel = sweeps_best_kernel();
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
-    bool asked = problem->bomb >= 0 && impact_gap_reaches(sweeps, problem->contact_count, solver->network->gate);
-    if (asked && !is_known(solver, problem, &asked, error)) return false;
-    if (asked) {
-        find_change(solver, problem);
-        sweeps_push(sweeps, solver->change);
+    Way way;
+    if (!choose_way(solver, problem, &way, error)) return false;
+    if (way == BY_NETWORK) {
+        scene_answer_find(&solver->answer, solver->network, problem);
+        sweeps_push(sweeps, solver->answer.change);
         if (!is_bounded(sweeps)) return solve_without(solver, problem, solution, error);
     }
-    if (!run(solver, problem, asked)) return error_memory(error, "scene-net");
+    if (!run(solver, problem, way)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
     return solve_without(solver, problem, solution, error);
 }

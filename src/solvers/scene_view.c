@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solvers/scene_view.h"
 
+#include "collision/manifold.h"
 #include "common/array.h"
 #include "solvers/contact_velocity.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+static const float quarter_turn = 1.57079632679489662f; /* rad */
 
 void scene_view_free(SceneView *view) {
     free(view->contacts);
@@ -41,10 +45,42 @@ static void put_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) 
     numbers[5] = body->angular_velocity;
 }
 
-static void put_contact(SceneView *view, const SlotNetwork *network, const ContactPoint *contact, int i) {
+/* Quarter turns of a box that leave it as it looks, so many that what is left of its angle is least. */
+static float turns_of(const ProblemBody *body) {
+    const float step = body->size.x == body->size.y ? 1 : 2;
+    return step * floorf(body->angle / (step * quarter_turn) + 0.5f);
+}
+
+/* Two bytes of a feature: the edges of a box before it is turned back, and after. */
+static uint32_t turn_edges(uint32_t edges, int turns) {
+    uint32_t turned = 0;
+    for (int shift = 0; shift < 16; shift += 8) {
+        const uint32_t edge = edges >> shift & 0xff;
+        const bool known = edge >= EDGE_TOP && edge <= EDGE_RIGHT;
+        turned |= (known ? (edge - EDGE_TOP + (uint32_t)turns) % 4 + EDGE_TOP : edge) << shift;
+    }
+    return turned;
+}
+
+static uint32_t turn_feature(uint32_t feature, bool of_a, int turns) {
+    const uint32_t a = feature & 0xffff, b = feature >> 16;
+    return of_a ? turn_edges(a, turns) | b << 16 : a | turn_edges(b, turns) << 16;
+}
+
+/* 0 .. 3 */
+static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns / 4)); }
+
+uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
+    if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
+    const int turns = turns_modulo_4(turns_of(&problem->bodies[problem->bomb]));
+    return turn_feature(contact->feature, contact->a == problem->bomb, turns);
+}
+
+static void put_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
     ContactImpulse *base = &view->base[i];
     *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
-    const int slot = slot_network_find(network, contact->a, contact->b, contact->feature);
+    const int slot = slot_network_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
     if (slot < 0) return;
     const int k = view->slots.slot_count++;
     view->contacts[k] = i;
@@ -60,10 +96,12 @@ static void put_contact(SceneView *view, const SlotNetwork *network, const Conta
 
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
     if (!reserve(view, problem)) return false;
-    put_body(view->bomb, &problem->bodies[network->bomb]);
+    const ProblemBody *bomb = &problem->bodies[network->bomb];
+    put_body(view->bomb, bomb);
+    view->bomb[2] -= quarter_turn * turns_of(bomb);
     for (int i = 0, k = 0; i < problem->body_count; i++)
         if (i != network->bomb) put_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
     view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
-    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, &problem->contacts[i], i);
+    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, i);
     return true;
 }

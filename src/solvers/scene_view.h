@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A contact problem as a slot network meets it (network/slot_network.h). */
+/* A contact problem as a slot network meets it (network/slot_network.h). A bomb that turned by a quarter is the same
+   box with its edges renamed: it is seen turned back to within an eighth of a turn (a half and a quarter where it is
+   oblong), and so are the features of its contacts. Without that, each quarter would have to be learned by itself. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "network/slot_network.h"
@@ -21,6 +23,9 @@ typedef struct SceneView {
 } SceneView;
 
 void scene_view_free(SceneView *view);
+
+/* The feature of one of the problem's contacts, as seen. */
+uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact);
 
 /* The problem has the network's bodies. False when memory is short. */
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);

@@ -16,8 +16,8 @@
 static const StudySize whole_size = {.launches = 40,
                                      .closed = {.after = 6, .rest = 30},
                                      .frozen = {.after = 6, .rest = 60},
-                                     .timed_launches = 4,
-                                     .repetitions = 7};
+                                     .timed_launches = 20,
+                                     .repetitions = 3};
 static const StudySize quick_size = {.launches = 5,
                                      .closed = {.after = 20, .rest = 120},
                                      .frozen = {.after = 20, .rest = 120},

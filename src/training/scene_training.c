@@ -19,7 +19,7 @@ enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_
 static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
 /* RMS over the contacts: at rest they miss their bias by less, where a shock runs through them by more. */
 static const float gate = 0.3f; /* m/s */
-static const double near_weight = 0.1, first_rate = 4e-3;
+static const double near_weight = 0.02, first_rate = 8e-3;
 
 typedef struct Trainer {
     const Scene *scene;
@@ -144,7 +144,7 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     const SceneTraining *training = trainer->training;
     const int epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
     const SlotFit fit = {.near = near_weight,
-                         .near_epochs = round == 0 ? epochs / 3 : 0,
+                         .near_epochs = round == 0 ? epochs / 12 : 0,
                          .epochs = epochs,
                          .rate = round == 0 ? first_rate : first_rate / 2,
                          .learn_factors = training->momentum,

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* A batch is cut into parts, whatever the number of threads, so that sums have one order. */
-enum { BATCH = 128, PARTS = 4, PART = BATCH / PARTS };
+enum { BATCH = 32, PARTS = 4, PART = BATCH / PARTS };
 
 static const double pi = 3.14159265358979323846;
 static const double decay = 0.9, square_decay = 0.999; /* of Adam (Kingma, Ba 2015) */
@@ -84,6 +84,7 @@ static void step_parameters(Fitter *fitter, int count, const Step *step) {
         fitter->mean[p] = (float)mean;
         fitter->square[p] = (float)square;
     }
+    slot_network_pack_layers(fitter->network);
 }
 
 /* Between 0 and 2: further ahead than two sweeps carried an impulse there is nothing to gain. */

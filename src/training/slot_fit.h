@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits a slot network to samples: Adam on batches drawn in random order, its rate falling to 0 by half a cosine. */
+/* Fits a slot network to samples: Adam on batches drawn in random order, its rate falling to 0 by half a cosine. Loss and
+   gradient are those of the packed network (network/packed_rows.h), the steps those of its float rows, which are packed
+   anew after each. Source: straight-through estimation, Bengio, Leonard, Courville, "Estimating or Propagating Gradients
+   Through Stochastic Neurons for Conditional Computation" (2013), 4. */
 #pragma once
 #include "training/slot_loss.h"
 

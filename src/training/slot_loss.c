@@ -99,7 +99,7 @@ static void back_through_layer(const SlotNetwork *network, const SlotLayer *laye
     for (int j = 0; j < layer->to; j++) by_out[j] *= 1 - out[j] * out[j];
     for (int j = 0; j < layer->to; j++) biases[j] += by_out[j];
     kernels->spread(place(network, gradient, layer->rows), layer->to, NULL, in, by_out, layer->from);
-    if (by_in != NULL) kernels->multiply(by_in, layer->to, layer->rows, NULL, by_out, layer->from / 2);
+    if (by_in != NULL) kernels->multiply(by_in, &layer->packed, NULL, by_out, layer->from / 2);
 }
 
 static void back(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sample, float *gradient) {
@@ -112,7 +112,7 @@ static void back(SlotLoss *loss, const SlotNetwork *network, const SlotSample *s
         biases[slots->impulses[i]] += by[i];
     }
     memset(loss->by_second, 0, sizeof loss->by_second);
-    kernels->add(loss->by_second, hidden, network->rows, slots->impulses, by, outputs);
+    kernels->add(loss->by_second, &network->packed, slots->impulses, by, outputs);
     kernels->spread(place(network, gradient, network->rows), hidden, slots->impulses, by, loss->second, outputs);
     back_through_layer(network, &network->second, loss->first, loss->second, loss->by_second, loss->by_first, gradient);
     back_through_layer(network, &network->first, sample->inputs, loss->first, loss->by_first, NULL, gradient);

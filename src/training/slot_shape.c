@@ -32,11 +32,13 @@ static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
         return NULL;
     }
     size_t filled = 0, kept = 0;
-    for (int i = 0; i < samples->count; i++)
-        for (int k = 0; k < samples->items[i].problem.contact_count; k++) {
-            const ContactPoint *contact = &samples->items[i].problem.contacts[k];
-            slots[filled++] = (Slot){contact->a, contact->b, contact->feature};
+    for (int i = 0; i < samples->count; i++) {
+        const ContactProblem *problem = &samples->items[i].problem;
+        for (int k = 0; k < problem->contact_count; k++) {
+            const ContactPoint *contact = &problem->contacts[k];
+            slots[filled++] = (Slot){contact->a, contact->b, scene_view_feature(problem, contact)};
         }
+    }
     qsort(slots, contacts, sizeof *slots, compare_slots);
     for (size_t i = 0, end; i < contacts; i = end) {
         for (end = i; end < contacts && compare_slots(&slots[i], &slots[end]) == 0;) end++;
@@ -53,7 +55,7 @@ static void find_caps(SlotNetwork *network, const SlotSamples *samples) {
         const ContactProblem *problem = &samples->items[i].problem;
         for (int k = 0; samples->items[i].since == 0 && k < problem->contact_count; k++) {
             const ContactPoint *contact = &problem->contacts[k];
-            const int slot = slot_network_find(network, contact->a, contact->b, contact->feature);
+            const int slot = slot_network_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
             if (slot >= 0 && network->cap[slot] < contact->warm_normal) network->cap[slot] = contact->warm_normal;
         }
     }
@@ -224,9 +226,10 @@ SlotNetwork *slot_network_for(SlotSamples *samples, const SlotWidths *widths, ui
     find_caps(network, samples);
     bool ok = slot_samples_look(samples, 0, network, error) &&
               (find_scales(network, samples) || error_memory(error, "scene-net")) &&
-              find_projections(network, samples, seed, error) && slot_samples_look(samples, 0, network, error) &&
+              find_projections(network, samples, seed, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
-    if (ok) return network;
+    if (ok) slot_network_pack(network);
+    if (ok && slot_samples_look(samples, 0, network, error)) return network;
     slot_network_destroy(network);
     return NULL;
 }

@@ -29,6 +29,7 @@ static inline SlotNetwork *make_slot_network(const SlotShape *shape, const Slot 
     fill(network->cap, (size_t)shape->slot_count, 0, 2, seed);
     fill(network->low, (size_t)slot_network_inputs(network), -2, -1, seed);
     fill(network->high, (size_t)slot_network_inputs(network), 1, 2, seed);
+    slot_network_pack(network);
     return network;
 }
 

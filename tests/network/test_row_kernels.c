@@ -39,6 +39,20 @@ static float *copy_of(const float *numbers, int count) {
 
 static void drop(float *numbers) { free(numbers - 1); }
 
+/* Bytes and units of all sizes; the bytes begin behind what malloc() gives, too. */
+static PackedRows rows_of(int count, int width, uint32_t *seed) {
+    const size_t size = (size_t)count * (size_t)width;
+    int8_t *bytes = malloc(size + 1);
+    assert_non_null(bytes);
+    for (size_t i = 0; i <= size; i++) bytes[i] = (int8_t)uniform(seed, -127.9f, 127.9f);
+    return (PackedRows){count, width, bytes + 1, numbers_of(count, seed)};
+}
+
+static void drop_rows(PackedRows *rows) {
+    free(rows->numbers - 1);
+    drop(rows->units);
+}
+
 static void assert_bits(const float *found, const float *expected, int count, const RowKernels *kernels,
                         const char *what, int width) {
     for (int i = 0; i < count; i++)
@@ -49,27 +63,31 @@ static void assert_bits(const float *found, const float *expected, int count, co
 
 static int row_at(const int32_t *index, int i) { return index != NULL ? index[i] : i; }
 
-static void add(float *sums, int width, const float *rows, const int32_t *index, const float *numbers, int count) {
-    for (int c = 0; c < width; c++) {
+static float byte_at(const PackedRows *rows, int row, int column) { return rows->numbers[row * rows->width + column]; }
+
+static void add(float *sums, const PackedRows *rows, const int32_t *index, const float *numbers, int count) {
+    for (int c = 0; c < rows->width; c++) {
         float four[4] = {sums[c]};
-        for (int i = 0; i < count; i++) four[i % 4] += numbers[i] * rows[row_at(index, i) * width + c];
+        for (int i = 0; i < count; i++) {
+            const int row = row_at(index, i);
+            const float number = numbers[i] * rows->units[row];
+            four[i % 4] += number * byte_at(rows, row, c);
+        }
         sums[c] = (four[0] + four[1]) + (four[2] + four[3]);
     }
 }
 
-static float product(const float *row, const float *vector, int width) {
+static float product(const PackedRows *rows, int row, const float *vector) {
     float sums[ROW_LANES] = {0};
-    for (int c = 0; c < width; c++) sums[c % ROW_LANES] += row[c] * vector[c];
+    for (int c = 0; c < rows->width; c++) sums[c % ROW_LANES] += byte_at(rows, row, c) * vector[c];
     for (int half = ROW_LANES / 2; half > 0; half /= 2)
         for (int l = 0; l < half; l++) sums[l] += sums[l + half];
-    return sums[0];
+    return rows->units[row] * sums[0];
 }
 
-static void multiply(float *products, int width, const float *rows, const int32_t *index, const float *vector,
-                     int count) {
+static void multiply(float *products, const PackedRows *rows, const int32_t *index, const float *vector, int count) {
     for (int i = 0; i < count; i++)
-        for (int k = 0; k < 2; k++)
-            products[2 * i + k] = product(rows + (2 * row_at(index, i) + k) * width, vector, width);
+        for (int k = 0; k < 2; k++) products[2 * i + k] = product(rows, 2 * row_at(index, i) + k, vector);
 }
 
 static void spread(float *rows, int width, const int32_t *index, const float *numbers, const float *vector, int count) {
@@ -78,22 +96,23 @@ static void spread(float *rows, int width, const int32_t *index, const float *nu
 }
 
 static void check_add(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
-    float *rows = numbers_of(ROWS * width, seed), *numbers = numbers_of(count, seed), *found = numbers_of(width, seed),
-          *expected = copy_of(found, width);
-    kernels->add(found, width, rows, index, numbers, count);
-    add(expected, width, rows, index, numbers, count);
+    PackedRows rows = rows_of(ROWS, width, seed);
+    float *numbers = numbers_of(count, seed), *found = numbers_of(width, seed), *expected = copy_of(found, width);
+    kernels->add(found, &rows, index, numbers, count);
+    add(expected, &rows, index, numbers, count);
     assert_bits(found, expected, width, kernels, "add", width);
-    drop(rows), drop(numbers), drop(found), drop(expected);
+    drop_rows(&rows), drop(numbers), drop(found), drop(expected);
 }
 
 static void check_multiply(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     if (index == NULL && count > PAIRS) count = PAIRS;
-    float *rows = numbers_of(ROWS * width, seed), *vector = numbers_of(width, seed),
-          *found = numbers_of(2 * count, seed), *expected = numbers_of(2 * count, seed);
-    kernels->multiply(found, width, rows, index, vector, count);
-    multiply(expected, width, rows, index, vector, count);
+    PackedRows rows = rows_of(ROWS, width, seed);
+    float *vector = numbers_of(width, seed), *found = numbers_of(2 * count, seed),
+          *expected = numbers_of(2 * count, seed);
+    kernels->multiply(found, &rows, index, vector, count);
+    multiply(expected, &rows, index, vector, count);
     assert_bits(found, expected, 2 * count, kernels, "multiply", width);
-    drop(rows), drop(vector), drop(found), drop(expected);
+    drop_rows(&rows), drop(vector), drop(found), drop(expected);
 }
 
 static void check_spread(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {

@@ -83,12 +83,17 @@ static void make_whole(float *numbers, size_t count) {
     for (size_t i = 0; i < count; i++) numbers[i] = roundf(8 * numbers[i]);
 }
 
+static double packed_number(const PackedRows *packed, int row, int column) {
+    return (double)packed->units[row] * (double)packed->numbers[row * packed->width + column];
+}
+
 static void centre(Projection *projection, const int32_t *index, const float *numbers, int count) {
-    make_whole(projection->rows, (size_t)projection->from * (size_t)projection->to);
+    for (int i = 0; i < projection->from; i++) projection->packed.units[i] = 1;
     for (int c = 0; c < projection->to; c++) {
         projection->centre[c] = 0;
         for (int i = 0; i < count; i++)
-            projection->centre[c] += numbers[i] * projection->rows[(index != NULL ? index[i] : i) * projection->to + c];
+            projection->centre[c] +=
+                numbers[i] * (float)packed_number(&projection->packed, index != NULL ? index[i] : i, c);
     }
 }
 
@@ -123,8 +128,7 @@ static double *project(const Projection *projection, const int32_t *index, const
     for (int c = 0; c < projection->to; c++) {
         out[c] = -(double)projection->centre[c];
         for (int i = 0; i < count; i++)
-            out[c] +=
-                (double)numbers[i] * (double)projection->rows[(index != NULL ? index[i] : i) * projection->to + c];
+            out[c] += (double)numbers[i] * packed_number(&projection->packed, index != NULL ? index[i] : i, c);
     }
     return out + projection->to;
 }
@@ -132,7 +136,7 @@ static double *project(const Projection *projection, const int32_t *index, const
 static void run_layer(const SlotLayer *layer, const double *in, double *out) {
     for (int o = 0; o < layer->to; o++) {
         double sum = (double)layer->biases[o];
-        for (int i = 0; i < layer->from; i++) sum += (double)layer->rows[i * layer->to + o] * in[i];
+        for (int i = 0; i < layer->from; i++) sum += packed_number(&layer->packed, i, o) * in[i];
         out[o] = tanh(sum);
     }
 }
@@ -149,7 +153,7 @@ static void predict(const SlotNetwork *network, const SlotView *view, double inp
     run_layer(&network->second, first, second);
     for (int i = 0; i < 2 * FIVE_SLOTS; i++) {
         double sum = (double)network->biases[i];
-        for (int h = 0; h < HIDDEN; h++) sum += (double)network->rows[i * HIDDEN + h] * second[h];
+        for (int h = 0; h < HIDDEN; h++) sum += packed_number(&network->packed, i, h) * second[h];
         outputs[i] = (double)network->scale[i / 2] * sum;
     }
 }

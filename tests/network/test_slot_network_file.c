@@ -18,7 +18,14 @@ static SlotNetwork *example(void) {
     return network;
 }
 
+static void assert_same_packed(const PackedRows *a, const PackedRows *b) {
+    assert_true(a->count == b->count && a->width == b->width);
+    assert_memory_equal(a->numbers, b->numbers, (size_t)a->count * (size_t)a->width);
+    assert_memory_equal(a->units, b->units, (size_t)a->count * sizeof(float));
+}
+
 static void assert_same_projection(const Projection *a, const Projection *b) {
+    assert_same_packed(&a->packed, &b->packed);
     assert_true(a->from == b->from && a->to == b->to);
     assert_memory_equal(a->rows, b->rows, (size_t)a->from * (size_t)a->to * sizeof(float));
     assert_memory_equal(a->centre, b->centre, (size_t)a->to * sizeof(float));
@@ -32,6 +39,9 @@ static void assert_same(const SlotNetwork *a, const SlotNetwork *b) {
     assert_same_projection(&a->state, &b->state);
     assert_same_projection(&a->present, &b->present);
     assert_same_projection(&a->warm, &b->warm);
+    assert_same_packed(&a->first.packed, &b->first.packed);
+    assert_same_packed(&a->second.packed, &b->second.packed);
+    assert_same_packed(&a->packed, &b->packed);
     assert_int_equal(a->parameter_count, b->parameter_count);
     assert_memory_equal(a->parameters, b->parameters, a->parameter_count * sizeof(float));
     assert_memory_equal(a->scale, b->scale, slots * sizeof(float));
@@ -107,7 +117,7 @@ static void numpy_sees_the_shapes(void **state) {
                "for name, shape in want.items():\n"
                "    assert f[name].shape == shape, (name, f[name].shape)\n"
                "    assert f[name].dtype.kind == kinds.get(name, 'f'), (name, f[name].dtype)\n"
-               "assert (f['version'], f['kind'], f['body_count'], f['bomb']) == (1, 'scene-net', 5, 3)\n"
+               "assert (f['version'], f['kind'], f['body_count'], f['bomb']) == (2, 'scene-net', 5, 3)\n"
                "assert (f['sweeps'], f['gate'], f['scene']) == (3, np.float32(0.1), 'pyramid \\u00e4')\n"
                "assert f['command'] == 'twinbox train pyramid.yaml -o net.npz'\n"
                "slots = [tuple(map(int, s)) for s in zip(f['slot_a'], f['slot_b'], f['slot_feature'])]\n"

@@ -91,8 +91,8 @@ static void every_array_is_needed(void **state) {
 
 static void another_kind_or_version_is_refused(void **state) {
     (void)state;
-    assert_slot_network_refused(write_int("version", 0), "scene-net of version 0; this program reads version 1");
-    assert_slot_network_refused(write_int("version", 2), "scene-net of version 2; this program reads version 1");
+    assert_slot_network_refused(write_int("version", 0), "scene-net of version 0; this program reads version 2");
+    assert_slot_network_refused(write_int("version", 1), "scene-net of version 1; this program reads version 2");
     assert_slot_network_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "holds no scene-net");
     char endless[600];
     memset(endless, 'x', sizeof endless - 1);

@@ -46,7 +46,10 @@ static void add_row(Table *table, const float *numbers, bool sparse) {
 }
 
 static Projection make_projection(int from, int to) {
-    Projection projection = {from, to, malloc((size_t)(from * to) * sizeof(float)), malloc((size_t)to * sizeof(float))};
+    Projection projection = {.from = from,
+                             .to = to,
+                             .rows = malloc((size_t)(from * to) * sizeof(float)),
+                             .centre = malloc((size_t)to * sizeof(float))};
     assert_true(projection.rows && projection.centre);
     for (int i = 0; i < from * to; i++) projection.rows[i] = NAN;
     for (int c = 0; c < to; c++) projection.centre[c] = NAN;

@@ -32,6 +32,7 @@ static void begin(Trial *trial) {
     for (int i = 0; i < hidden; i++) network->second.biases[i] = uniform(&seed, -0.5f, 0.5f);
     for (int i = 0; i < hidden * outputs; i++) network->rows[i] *= 5;
     for (int i = 0; i < outputs; i++) network->biases[i] = uniform(&seed, -0.5f, 0.5f);
+    slot_network_pack(network);
 }
 
 static void end(Trial *trial) {
@@ -80,7 +81,8 @@ static void compare(Trial *trial, double ahead, const uint8_t *taken, double beh
 }
 
 /* A step of every number of a block along its derivatives, or of one number of it. */
-static void check_block(Trial *trial, float *block, const float *gradient, int count, int only, Tally *tally) {
+static void check_block(Trial *trial, float *block, const float *gradient, int count, int only, double step,
+                        Tally *tally) {
     double length = 0, expected = 0;
     for (int i = 0; i < count; i++) length = hypot(length, (double)gradient[i]);
     float *kept = malloc((size_t)count * sizeof *kept);
@@ -88,7 +90,6 @@ static void check_block(Trial *trial, float *block, const float *gradient, int c
     memcpy(kept, block, (size_t)count * sizeof *kept);
     double loss[2];
     uint8_t *taken = NULL;
-    const double step = 4e-3;
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < count; i++) {
             const double share = only < 0 ? (double)gradient[i] / length : i == only;
@@ -104,20 +105,52 @@ static void check_block(Trial *trial, float *block, const float *gradient, int c
     free(kept);
 }
 
+/* Packed rows change by a step of a number, or all numbers of a row by its unit. */
+static void check_byte(Trial *trial, const PackedRows *packed, const float *gradient, int64_t place, Tally *tally) {
+    const int8_t kept = packed->numbers[place];
+    if (kept == INT8_MAX || kept == -INT8_MAX) return;
+    packed->numbers[place] = (int8_t)(kept + 1);
+    const double ahead = loss_of(trial);
+    uint8_t *taken = pieces_of(trial);
+    packed->numbers[place] = (int8_t)(kept - 1);
+    const double behind = loss_of(trial);
+    packed->numbers[place] = kept;
+    const double expected = 2 * (double)packed->units[place / packed->width] * (double)gradient[place];
+    compare(trial, ahead, taken, behind, expected, 1e-6 * (1 + ahead), tally);
+    free(taken);
+}
+
+static void check_rows(Trial *trial, const PackedRows *packed, const float *gradient, uint32_t *seed, Tally *tally) {
+    float *by_units = calloc((size_t)packed->count, sizeof *by_units);
+    assert_non_null(by_units);
+    for (int i = 0; i < packed->count; i++)
+        for (int64_t k = i * packed->width; k < (i + 1) * packed->width; k++)
+            by_units[i] += gradient[k] * (float)packed->numbers[k];
+    check_block(trial, packed->units, by_units, packed->count, -1, 2e-5, tally);
+    free(by_units);
+    for (int i = 0; i < OF_EACH_BLOCK; i++)
+        check_byte(trial, packed, gradient, (int64_t)uniform(seed, 0, (float)(packed->count * packed->width) - 1),
+                   tally);
+}
+
+static void check_biases(Trial *trial, float *biases, const float *gradient, int count, uint32_t *seed, Tally *tally) {
+    const float *part = gradient + (biases - trial->network->parameters);
+    check_block(trial, biases, part, count, -1, 4e-3, tally);
+    for (int i = 0; i < OF_EACH_BLOCK; i++)
+        check_block(trial, biases, part, count, (int)uniform(seed, 0, (float)count - 0.01f), 4e-3, tally);
+}
+
 static void check_parameters(Trial *trial, const float *gradient, uint32_t *seed, Tally tallies[6]) {
     SlotNetwork *network = trial->network;
-    const int hidden = slot_network_hidden(network), inputs = slot_network_inputs(network),
-              outputs = 2 * network->slot_count;
-    float *const blocks[] = {network->first.rows,    network->first.biases, network->second.rows,
-                             network->second.biases, network->rows,         network->biases};
-    const int counts[] = {inputs * hidden, hidden, hidden * hidden, hidden, outputs * hidden, outputs};
-    for (int b = 0; b < 6; b++) {
-        const float *part = gradient + (blocks[b] - network->parameters);
-        check_block(trial, blocks[b], part, counts[b], -1, &tallies[b]);
-        for (int i = 0; i < OF_EACH_BLOCK; i++)
-            check_block(trial, blocks[b], part, counts[b], (int)uniform(seed, 0, (float)counts[b] - 0.01f),
-                        &tallies[b]);
-    }
+    const int hidden = slot_network_hidden(network), outputs = 2 * network->slot_count;
+    check_rows(trial, &network->first.packed, gradient + (network->first.rows - network->parameters), seed,
+               &tallies[0]);
+    check_rows(trial, &network->second.packed, gradient + (network->second.rows - network->parameters), seed,
+               &tallies[1]);
+    check_rows(trial, &network->packed, gradient + (network->rows - network->parameters), seed, &tallies[2]);
+    check_biases(trial, network->first.biases, gradient, hidden, seed, &tallies[3]);
+    check_biases(trial, network->second.biases, gradient, hidden, seed, &tallies[4]);
+    check_biases(trial, network->biases, gradient, outputs, seed, &tallies[5]);
 }
 
 static void check_factors(Trial *trial, const double *by_factors, Tally *tally) {
@@ -212,6 +245,7 @@ static void nearness_is_a_mean_over_slots(void **state) {
     SlotNetwork *network = trial.network;
     memset(network->rows, 0,
            (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
+    slot_network_pack(network);
     for (int i = 0; i < trial.samples.count; i++) {
         choose(&trial, i, 2, 0, plain);
         const SceneView *view = &trial.sample->view;
