@@ -30,20 +30,27 @@ static bool add_run(Panels *panels, const Scene *scene, const char *method_name,
     return add(panels, run, input, error);
 }
 
-static bool add_scene(Panels *panels, const char *input, Error *error) {
-    Scene *scene = scene_read(input, error);
+static bool add_scene(Panels *panels, const char *input, const SetOptions *set, Error *error) {
+    Scene *scene = options_read_scene(input, set, error);
     bool ok = scene != NULL && add_run(panels, scene, "engine", input, error);
     if (ok && scene_network(scene, "pair-net") != NULL) ok = add_run(panels, scene, "pair-net", input, error);
     scene_destroy(scene);
     return ok;
 }
 
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, Error *error) {
+static bool is_stored(const char *input) {
+    const char *ending = strrchr(input, '.');
+    return ending != NULL && strcmp(ending, ".npz") == 0;
+}
+
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error) {
+    int scenes = 0;
+    for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
+    if (set->count > 0 && scenes != 1)
+        return error_input(error, "--set", "is for one scene (here there are %d)", scenes);
     for (int i = 0; i < input_count; i++) {
-        const char *ending = strrchr(inputs[i], '.');
-        bool stored = ending != NULL && strcmp(ending, ".npz") == 0;
-        bool ok = stored ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
-                         : add_scene(panels, inputs[i], error);
+        bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
+                                       : add_scene(panels, inputs[i], set, error);
         if (!ok) return false;
     }
     return true;

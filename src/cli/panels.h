@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The runs that a picture shows: read from .npz, or made from a scene by the engine and the scene's networks. */
 #pragma once
+#include "cli/options.h"
 #include "common/error.h"
 #include "render/render.h"
 #include "trajectory/trajectory.h"
@@ -10,8 +11,9 @@ typedef struct Panels {
     Trajectory *runs[RENDER_PANELS_MAX];
 } Panels;
 
-/* What has been loaded before an error is freed by panels_free, too. */
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, Error *error);
+/* Settings are for one scene: refused where there is none, or a second. What has been loaded before an error is freed by
+   panels_free, too. */
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error);
 void panels_free(Panels *panels);
 
 /* Writes each run as directory/SCENE-METHOD.npz; a second one of that name gets -2 and so on. */

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT };
+enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT, SET };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
@@ -21,12 +21,14 @@ static const struct argp_option option_table[] = {
     {"png", PNG, "fast|small", 0, "How hard to compress (default: fast); the pictures are the same", 0},
     {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
     {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
+    OPTION_SET(SET, 0),
     {0}};
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count;
     const char *output, *size, *frames, *video, *png, *jobs, *context;
+    SetOptions set;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -39,6 +41,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case PNG: options->png = value; break;
     case JOBS: options->jobs = value; break;
     case CONTEXT: options->context = value; break;
+    case SET: options_add_set(&options->set, value); break;
     case ARGP_KEY_ARG:
         if (options->input_count == RENDER_PANELS_MAX) argp_error(state, "at most %d panels", RENDER_PANELS_MAX);
         options->inputs[options->input_count++] = value;
@@ -161,7 +164,7 @@ int command_render(int argc, char **argv, Error *error) {
     RenderOptions render;
     if (!read_options(&options, &render, error)) return STATUS_DIFFERENT;
     Panels panels = {0};
-    bool ok = panels_load(&panels, options.inputs, options.input_count, error) &&
+    bool ok = panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
               render_panels(&options, &panels, &render, error);
     panels_free(&panels);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;

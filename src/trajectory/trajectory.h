@@ -32,7 +32,7 @@ typedef struct Trajectory {
     Vec2 camera_size;                  /* m, width and height; 0, 0 where the scene leaves it to the renderer */
     Vec2 *size;                        /* [N] full width and height, m */
     uint8_t *fixed;                    /* [N] 1: static */
-    Vec2 *position;                    /* [T, N]; NaN while a body is not there yet, as are the next three */
+    Vec2 *position;                    /* [T, N]; NaN while a body is not there, as are the next three */
     float *angle;                      /* [T, N] */
     Vec2 *velocity;                    /* [T, N] m/s */
     float *angular_velocity;           /* [T, N] rad/s */
@@ -66,8 +66,8 @@ uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Refuses (ERROR_INPUT, naming the file) what is damaged, of another version, or inconsistent: shapes that do
-   not fit each other, contacts out of range, a body that is there with an infinite pose or vanishes again, dt or
-   a size not positive. */
+   not fit each other, contacts out of range or of bodies that were not there before the step, a body that is there
+   with an infinite pose or comes back after it has gone, a static one that goes, dt or a size not positive. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
 /* `frame,body,x,y,angle,vx,vy,omega`, numbers as %.9g (float32 round-trips), dynamic bodies that are there only. */
