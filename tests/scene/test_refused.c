@@ -101,6 +101,18 @@ static const Refused bodies[] = {
      "6:68: error: body 3 of the pattern would lie at (0, 1.5e+06), beyond 1e+06 m"},
 };
 
+static const Refused untils[] = {
+    {BODY(BOX ", until: 300"), NULL},
+    {BODY(BOX ", until: 0"), "6:54: error: until must be a whole number from 1 to 1000000 (got 0)"},
+    {BODY(BOX ", until: 301"), "6:54: error: the body would go after step 301, after the last (frames: 300)"},
+    {BODY(BOX ", until: 3}\n  - {" BOX), "6:54: error: only the last body may have an until"},
+    {BODY(BOX ", until: 3") "bomb: {x: 1, y: 15, size: [1, 1], mass: 50}\n",
+     "6:54: error: until does not go with a bomb"},
+    {BODY(BOX ", until: 3, pattern: row, count: 1, spacing: [1, 1]"),
+     "6:54: error: until is for a single body and not for a pattern"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], until: 1"), "6:57: error: a static body has no until"},
+};
+
 #define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
 
 static const Refused bombs[] = {
@@ -176,6 +188,7 @@ static void check_table(const Refused *table, size_t count) {
 static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
 static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers); }
 static void bodies_are_checked(void **state) { (void)state, CHECK_TABLE(bodies); }
+static void untils_are_checked(void **state) { (void)state, CHECK_TABLE(untils); }
 static void bombs_are_checked(void **state) { (void)state, CHECK_TABLE(bombs); }
 static void networks_are_checked(void **state) { (void)state, CHECK_TABLE(networks); }
 static void yaml_is_checked(void **state) { (void)state, CHECK_TABLE(yaml); }
@@ -213,12 +226,13 @@ static void excerpt_points_at_the_value(void **state) {
 
 static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     (void)state;
-    expect_refused("{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
-                   "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
-                   "iterations, "
-                   "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks, parameters\n"
-                   "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
-                   "      |   ^");
+    expect_refused(
+        "{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+        "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
+        "iterations, "
+        "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks, parameters\n"
+        "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+        "      |   ^");
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
@@ -293,6 +307,7 @@ int main(void) {
         cmocka_unit_test(keys_are_checked),
         cmocka_unit_test(numbers_are_checked),
         cmocka_unit_test(bodies_are_checked),
+        cmocka_unit_test(untils_are_checked),
         cmocka_unit_test(bombs_are_checked),
         cmocka_unit_test(networks_are_checked),
         cmocka_unit_test(yaml_is_checked),
