@@ -96,11 +96,11 @@ static bool take_number(const Chain *chain, const char *text, double *value, con
 }
 
 /* Multiplies or divides the value by a number. */
-static bool apply(const Chain *chain, char operator, double number, double *value, Error *error) {
-    if (operator== '/' && number == 0)
+static bool apply(const Chain *chain, char operation, double number, double *value, Error *error) {
+    if (operation == '/' && number == 0)
         return yaml_error(chain->tree, chain->node, error, "%s is divided by 0 (got %s)", chain->what,
                           show_text(chain->tree, chain->node).text);
-    *value = operator== '/' ? *value / number : * value * number;
+    *value = operation == '/' ? *value / number : *value * number;
     return isfinite(*value) ||
            yaml_error(chain->tree, chain->node, error, "%s leaves the finite numbers on the way (got %s)", chain->what,
                       show_text(chain->tree, chain->node).text);
@@ -110,15 +110,15 @@ bool chain_read(const YamlTree *tree, int node, const char *what, double *value,
     const Chain chain = {tree, node, what};
     if (tree->nodes[node].kind != YAML_SCALAR) return malformed(&chain, error);
     const char *rest = yaml_text(tree, node);
-    char operator= '*';
+    char operation = '*';
     *value = 1;
     for (int count = 1;; count++) {
         double number;
-        if (!take_number(&chain, rest, &number, &rest, error) || !apply(&chain, operator, number, value, error))
+        if (!take_number(&chain, rest, &number, &rest, error) || !apply(&chain, operation, number, value, error))
             return false;
         if (*rest == '\0') return true;
-        operator= * rest++;
-        if (operator!= '*' && operator!= '/') return malformed(&chain, error);
+        operation = *rest++;
+        if (operation != '*' && operation != '/') return malformed(&chain, error);
         if (count == CHAIN_MAX_NUMBERS)
             return yaml_error(tree, node, error, "%s: a chain may have at most %d numbers (got %s)", what,
                               CHAIN_MAX_NUMBERS, yaml_show(tree, node).text);

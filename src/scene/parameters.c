@@ -19,8 +19,8 @@ enum { UNIT_LENGTH = SCENE_PARAMETER_SIZE - 8 };
 static bool field_unit(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     if (text[0] == '\0' || strlen(text) > UNIT_LENGTH)
-        return yaml_error(tree, node, error, "%s must be a text of at most %d bytes (got %s)", field->key,
-                          UNIT_LENGTH, yaml_show(tree, node).text);
+        return yaml_error(tree, node, error, "%s must be a text of at most %d bytes (got %s)", field->key, UNIT_LENGTH,
+                          yaml_show(tree, node).text);
     source_printable(member, SCENE_PARAMETER_SIZE, text);
     return true;
 }
