@@ -42,7 +42,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         return error_input(error, "verdict", "the converged run has %d frames of %d", run->converged->frames,
                            run->frames);
     *watch = (VerdictWatch){.run = *run, .bodies = watch->bodies, .capacity = watch->capacity};
-    watch->least = bodies_energy(bodies, count, run->gravity);
+    watch->kept = bodies_energy(bodies, count, run->gravity);
     return meet(watch, bodies, count, error);
 }
 

@@ -43,8 +43,10 @@ enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_SINK_TIME 1.0
 
 /* Explodes: energy too high by more than this share of what the converged run had to lose, which counts as no less than so
-   many J: else a scene at rest would explode by rounding. */
+   many J: else a scene at rest would explode by rounding. Too high is what is more than the run kept to for so many
+   seconds: an overlap takes energy in a blow, and has given it back well within a second. */
 #define VERDICT_ENERGY_SHARE 0.01
+#define VERDICT_ENERGY_TIME 1.0
 #define VERDICT_LEAST_TO_LOSE 1.0
 
 /* "settles", ... "non-finite". */
@@ -102,11 +104,12 @@ typedef struct VerdictWatch {
     int body_count;
     WatchedBody *bodies;
     size_t capacity;
-    double least;   /* J: energy, the lowest so far and what has joined since */
+    double kept;    /* J: least over whole seconds of the greatest energy in one, and what has joined since */
+    double peak;    /* J: the greatest energy of the second that is not over yet */
     double kinetic; /* J: mean of the bodies that move */
     double loud;    /* J: the same in the last frame that was not calm */
     double speed;   /* m/s: of the fastest body */
-    int calm, deep; /* frames on end */
+    int calm, deep, peak_steps; /* frames on end */
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);
@@ -119,10 +122,14 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
 
    Non-finite: a number of a body is none.
 
-   Explodes: the energy is above the least that the run itself has had (counting what joined since; begun anew where a body
-   leaves) and above the converged run's at the same frame, above each by more than VERDICT_ENERGY_SHARE of what there was
-   to lose. The converged run alone is no bound: a box that still stands where the converged one has fallen has more energy,
-   yet has made none. Nor is the least alone: pushing overlapping boxes apart adds energy, in the converged run too.
+   Explodes: the energy is above both of these bounds, by more than VERDICT_ENERGY_SHARE of what there was to lose.
+   (a) What the run itself has kept to: the least, over whole seconds, of the greatest energy in one; at first that of the
+   start. What a body brings that joins is added; where one leaves, it begins anew with what is left.
+   (b) The converged run's energy at the same frame.
+   (b) alone is no bound: a box that still stands where the converged one has fallen has more energy, yet has made none. Nor
+   is (a): pushing apart what overlaps at the start adds energy, in the converged run too. Nor would the least energy of a
+   single frame do for (a): in a blow boxes go into each other and are pushed out again, in every method that has not
+   converged, and that is no more than a bounce.
 
    Tunnels: the centre of a body that moves lies inside a static box, or went through one on the straight way from its last
    place. That finds what falls out of the world too: there is a way through the ground or past its edge, and past is no

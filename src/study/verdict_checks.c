@@ -44,16 +44,26 @@ static int most_kinetic(const VerdictStep *step) {
     return most;
 }
 
+/* Begins anew to look for the greatest energy of a second. */
+static void end_second(VerdictWatch *watch, double kept) {
+    watch->kept = kept;
+    watch->peak_steps = 0;
+}
+
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     const VerdictRun *run = &watch->run;
     double energy = bodies_energy(step->bodies, step->body_count, run->gravity);
     int joined = step->body_count - watch->body_count;
-    if (joined > 0) watch->least += bodies_energy(step->bodies + watch->body_count, joined, run->gravity);
-    if (joined < 0) watch->least = energy;
-    double bound = fmax(watch->least, run->converged->energy[step->frame]);
+    double brought = joined > 0 ? bodies_energy(step->bodies + watch->body_count, joined, run->gravity) : 0;
+    watch->kept += brought;
+    watch->peak += brought;
+    if (joined < 0) end_second(watch, energy);
+    double bound = fmax(watch->kept, run->converged->energy[step->frame]);
     double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->to_lose, VERDICT_LEAST_TO_LOSE);
     if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
-    watch->least = fmin(watch->least, energy);
+    watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
+    if (watch->peak_steps >= verdict_steps(VERDICT_ENERGY_TIME, run->dt))
+        end_second(watch, fmin(watch->kept, watch->peak));
 }
 
 /* Cuts from the part [from, to] of a way what lies outside -half < start + t step < half. */
