@@ -73,7 +73,6 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
 }
 
 void verdict_watch_failed(VerdictWatch *watch, int frame) {
-    if (watch->worst.verdict == VERDICT_NON_FINITE) return;
     watch->frame = frame;
     verdict_note(watch, VERDICT_NON_FINITE, -1, watch->speed, "m/s");
 }

@@ -22,7 +22,7 @@ static const Body trial_box = {.position = {0, 0.5f}, .size = {1, 1}, .inv_mass 
 
 /* 60 s of a box of 1 kg that is meant to stand, with 100 J to lose; the converged run has so much energy that nothing
    explodes. */
-static void trial_begin(Trial *trial) {
+static inline void trial_begin(Trial *trial) {
     memset(trial, 0, sizeof *trial);
     trial->bomb = -1;
     trial->count = 2;
@@ -36,7 +36,7 @@ static void trial_begin(Trial *trial) {
 }
 
 /* Steps on to a frame, all that moves by its own hand. The watch begins with the first one. */
-static void trial_go(Trial *trial, int frame) {
+static inline void trial_go(Trial *trial, int frame) {
     Error error = {0};
     if (trial->watch.capacity == 0)
         assert_ok(verdict_watch_begin(&trial->watch, &trial->run, trial->bodies, trial->count, &error), error);
@@ -51,7 +51,7 @@ static void trial_go(Trial *trial, int frame) {
     }
 }
 
-static VerdictReading trial_end(Trial *trial) {
+static inline VerdictReading trial_end(Trial *trial) {
     VerdictReading reading = verdict_watch_end(&trial->watch);
     verdict_watch_free(&trial->watch);
     return reading;
