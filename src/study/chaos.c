@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/chaos.h"
+
+#include "simulate/simulate.h"
+#include "trajectory/trajectory_states.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void chaos_free(Chaos *chaos) {
+    free(chaos->distance);
+    *chaos = (Chaos){.frames = 0};
+}
+
+static double shift_x(BodyDef *body) {
+    float before = body->position.x;
+    body->position.x = before + CHAOS_SHIFT;
+    if (body->position.x == before) body->position.x = nextafterf(before, INFINITY);
+    return (double)body->position.x - before;
+}
+
+static int last_movable(const Scene *scene) {
+    int body = scene->body_count - 1;
+    while (body >= 0 && scene->bodies[body].fixed) body--;
+    return body;
+}
+
+/* A copy with bodies of its own, to be freed. The place alone changes: a bomb that aims keeps its velocity. */
+static bool shifted_scene(const Scene *scene, Scene *shifted, Chaos *chaos, Error *error) {
+    bool bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
+    *shifted = *scene;
+    chaos->body = bomb ? scene->body_count : last_movable(scene);
+    if (chaos->body < 0) return error_input(error, scene->name, "there is nothing that moves, and so nothing to shift");
+    size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
+    shifted->bodies = malloc(size + 1);
+    if (shifted->bodies == NULL) return error_memory(error, scene->name);
+    if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
+    shifted->bomb.body = scene_bomb_body(scene);
+    shifted->bomb.velocity_from_position = false;
+    chaos->shift = shift_x(bomb ? &shifted->bomb.body : &shifted->bodies[chaos->body]);
+    return true;
+}
+
+/* The shifted run beside the other, which is recorded. */
+typedef struct Watch {
+    Chaos *chaos;
+    const Trajectory *still;
+    ProgressStage stage;
+} Watch;
+
+static bool measure(void *context, int frame, const World *world, Error *error) {
+    Watch *watch = context;
+    const Trajectory *still = watch->still;
+    const Body *bodies = world_bodies(world);
+    double largest = 0;
+    for (int i = 0; i < world_body_count(world); i++)
+        largest = fmax(largest, point_distance(bodies[i].position,
+                                               still->position[(size_t)frame * (size_t)still->bodies + (size_t)i]));
+    watch->chaos->distance[frame] = largest;
+    return progress_stage(&watch->stage, frame, still->frames) ||
+           error_input(error, still->scene, "stopped after step %d of %d", frame, still->frames - 1);
+}
+
+static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
+    const StepObserver observer = {measure, watch};
+    Chaos *chaos = watch->chaos;
+    for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
+    chaos->distance[0] = trajectory_has(watch->still, 0, chaos->body) ? chaos->shift : 0;
+    Error failure = {0};
+    /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+    if (simulate_observed(scene, method, &observer, &failure) || (failure.kind == ERROR_INPUT && !watch->stage.stopped))
+        return true;
+    *error = failure;
+    return false;
+}
+
+static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, const Progress *progress, Error *error) {
+    Method method;
+    Scene shifted;
+    if (!method_parse(&method, run->method, error) || !shifted_scene(scene, &shifted, chaos, error)) return false;
+    ProgressStage first = {progress, 0, 0.5, false};
+    Trajectory *still = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
+    bool ok = still != NULL;
+    if (ok) {
+        TrajectoryDifference difference;
+        trajectory_compare(still, run, &difference);
+        chaos->other = difference.frame;
+        Watch watch = {chaos, still, {progress, 0.5, 0.5, false}};
+        ok = run_shifted(&shifted, &method, &watch, error);
+    }
+    trajectory_destroy(still);
+    free(shifted.bodies);
+    return ok;
+}
+
+static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int frames,
+                      const Progress *progress, Error *error) {
+    uint64_t hash = scene_hash(scene);
+    if (hash != run->scene_hash)
+        return error_input(error, path,
+                           "is not the scene of the run by %s: its hash is %016" PRIx64 ", the run has %016" PRIx64,
+                           run->method, hash, run->scene_hash);
+    if (frames - 1 > SCENE_MAX_FRAMES)
+        return error_input(error, path, "%d steps are too many to run; at most %d", frames - 1, SCENE_MAX_FRAMES);
+    scene->frames = frames - 1;
+    *chaos = (Chaos){.frames = frames, .distance = malloc((size_t)frames * sizeof *chaos->distance)};
+    if (chaos->distance == NULL) return error_memory(error, path);
+    if (run_both(chaos, scene, run, progress, error)) return true;
+    chaos_free(chaos);
+    return false;
+}
+
+bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int frames, const Progress *progress,
+               Error *error) {
+    Scene *scene = scene_read(path, error);
+    bool ok = scene != NULL && run_scene(chaos, scene, path, run, frames, progress, error);
+    scene_destroy(scene);
+    return ok;
+}
