@@ -15,8 +15,8 @@ static const struct argp_option option_table[] = {
      "velocity)",
      0},
     {"scene", SCENE, "FILE", 0,
-     "The scene of the first run: to run it once more by that run's method, with the bomb (without one: the last body) "
-     "shifted by 1e-6 m, and set the growth against this",
+     "The scene of the first run: to run it once more by that run's method, with one body shifted by 1e-6 m (the bomb; "
+     "where it has not hit yet, the first that parts; without a bomb the last), and set the growth against this",
      0},
     {"csv", CSV, "FILE", 0, "Write frame,time,distance,shifted_distance: the largest of all bodies, s and m", 0},
     {0}};
@@ -87,8 +87,10 @@ static bool measure(Divergence *d, Error *error) {
 /* The window is that of the two runs. */
 static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
     ProgressBar bar;
+    int body = chaos_body(d->runs[0], d->parting.first.body, d->growth.end);
+    if (body < 0) return error_input(error, scene, "nothing in it can move, and so nothing be shifted");
     progress_bar_begin(&bar, d->runs[0]->scene);
-    bool ok = chaos_run(&d->chaos, scene, d->runs[0], d->parting.frames, &bar.progress, error);
+    bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, &bar.progress, error);
     progress_bar_end(&bar);
     return ok && growth_measure(d->chaos.distance, d->growth.first, d->growth.end, (double)d->runs[0]->dt, &d->shifted,
                                 error);

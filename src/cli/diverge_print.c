@@ -29,47 +29,52 @@ static void print_body(const Trajectory *a, const PartedBody *parted) {
     printf("\n");
 }
 
+/* The first that one run only has, or the one whose impulses differ most. */
 static void print_contact(const ContactDifference *contacts) {
     bool only = contacts->only_a + contacts->only_b > 0;
     if (!only && contacts->changed == 0) return;
     const TrajectoryContact *a = only ? &contacts->only : &contacts->largest_a, *b = &contacts->largest_b;
-    printf("  contact: bodies %d and %d, feature %08" PRIx32 ", at (%.4g, %.4g) m: ", a->a, a->b, a->feature,
-           (double)a->point.x, (double)a->point.y);
+    printf("  contact of bodies %d and %d, feature %08" PRIx32 ", at (%.4g, %.4g) m: ", (int)a->a, (int)a->b,
+           a->feature, (double)a->point.x, (double)a->point.y);
     if (only)
-        printf("one run only has it, normal %.4g N s, tangent %.4g N s\n", (double)a->normal_impulse,
-               (double)a->tangent_impulse);
+        printf("only in run %d\n  normal %.9g N s, tangent %.9g N s\n", contacts->only_first_a ? 1 : 2,
+               (double)a->normal_impulse, (double)a->tangent_impulse);
     else
-        printf("normal %.9g and %.9g N s, tangent %.9g and %.9g N s\n", (double)a->normal_impulse,
+        printf("other impulses\n  normal %.9g and %.9g N s, tangent %.9g and %.9g N s\n", (double)a->normal_impulse,
                (double)b->normal_impulse, (double)a->tangent_impulse, (double)b->tangent_impulse);
 }
 
+/* Steps and states before the first frame that differs. */
 static void print_cause(const TrajectoryParting *parting) {
     const ContactDifference *contacts = &parting->contacts;
-    int frame = parting->first.frame, before = frame - 1;
+    int frame = parting->first.frame;
     switch (parting->cause) {
     case PART_NONE: return;
     case PART_START: printf("cause: the start, before any step\n"); return;
-    case PART_LAUNCH: printf("cause: the launch; all that was there before is equal\n"); return;
+    case PART_LAUNCH: printf("cause: the launch\n  all states of frame %d are equal\n", frame - 1); return;
     case PART_HIDDEN:
-        printf("cause: what no state shows. All states up to frame %d are equal, but contacts of step %d differ: %d "
-               "impulses do, which the next step starts from\n",
-               before, parting->step, contacts->changed);
+        printf(
+            "cause: what no state shows, the warm start\n  all states of frame %d are equal, but contacts of step %d "
+            "differ (%d impulses), and the next began with them\n",
+            frame - 1, parting->step, contacts->changed);
         break;
     case PART_CONTACTS:
-        printf("cause: collision detection. All states of frame %d are equal, but of the contacts of step %d run 1 has "
-               "%d for itself, run 2 has %d, and %d of both lie elsewhere\n",
-               before, frame, contacts->only_a, contacts->only_b, contacts->moved);
+        printf(
+            "cause: collision detection\n  all states of frame %d are equal, but of the contacts of step %d %d are in "
+            "run 1 only, %d in run 2, and %d in another place\n",
+            frame - 1, frame, contacts->only_a, contacts->only_b, contacts->moved);
         break;
     case PART_SOLVER:
         printf(
-            "cause: the solver. All states of frame %d are equal, and so are the %d contacts of step %d; %d of their "
-            "impulses differ, most in\n",
-            before, contacts->count_a, frame, contacts->changed);
+            "cause: the solver\n  all states of frame %d are equal, and so are the %d contacts of step %d; %d of their "
+            "impulses differ\n",
+            frame - 1, contacts->count_a, frame, contacts->changed);
         break;
     case PART_ELSEWHERE:
-        printf("cause: not the contacts. All states of frame %d and the %d contacts of step %d with their impulses are "
-               "equal: velocities that no impulse gave, or another scene\n",
-               before, contacts->count_a, frame);
+        printf(
+            "cause: not the contacts\n  all states of frame %d are equal, and so are the %d contacts of step %d with "
+            "their impulses: the bodies\n  were moved in another way (a step of another kind, or another scene)\n",
+            frame - 1, contacts->count_a, frame);
         return;
     }
     print_contact(contacts);
@@ -108,26 +113,26 @@ void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting
 
 static void print_rate(const Growth *growth, double dt) {
     if (growth->count == 0) {
-        printf("%s\n", growth->saturated ? "past 0.1 m at once" : "no distance at all");
+        printf("%s\n", growth->saturated ? "past 0.1 m at once" : "there are no frames with a distance");
         return;
     }
     printf("from %.2g m in frame %d to %.2g m in frame %d%s", growth->from, growth->first, growth->to, growth->last,
-           growth->saturated ? ", then past 0.1 m" : ", where the frames end");
+           growth->saturated ? ", then past 0.1 m" : "");
     if (growth->count < GROWTH_MIN_FRAMES) {
-        printf(": %d frames are too few for a rate (%d are needed)\n", growth->count, GROWTH_MIN_FRAMES);
+        printf("\n  too few frames for a rate: %d, not %d\n", growth->count, GROWTH_MIN_FRAMES);
         return;
     }
     double doubling = growth_doubling(growth, dt);
-    printf(": %.3g / s, ", growth->rate);
+    printf("\n  %.3g / s, ", growth->rate);
     if (isfinite(doubling))
         printf("%s every %.3g frames", doubling > 0 ? "doubles" : "halves", fabs(doubling));
     else
         printf("constant");
-    printf(" (within a factor of %.2g)\n", exp(growth->scatter));
+    printf("; scatter: a factor of %.2g\n", exp(growth->scatter));
 }
 
 void diverge_print_growth(const Growth *growth, double dt) {
-    printf("growth: ");
+    printf("growth of the largest distance: ");
     print_rate(growth, dt);
 }
 
@@ -142,7 +147,7 @@ void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth 
     if (chaos->other >= 0)
         printf("note: the scene run again is not run 1 from frame %d on: another network, or another program\n",
                chaos->other);
-    printf("by itself: body %d shifted by %.2g m, in the same frames: ", chaos->body, chaos->shift);
+    printf("by itself (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
 }

@@ -21,25 +21,32 @@ static double shift_x(BodyDef *body) {
     return (double)body->position.x - before;
 }
 
-static int last_movable(const Scene *scene) {
-    int body = scene->body_count - 1;
-    while (body >= 0 && scene->bodies[body].fixed) body--;
+static bool touches(const Trajectory *run, int body, int end) {
+    for (int64_t i = 0; i < run->contact_start[end]; i++)
+        if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
+    return false;
+}
+
+int chaos_body(const Trajectory *run, int parted, int end) {
+    bool parted_moves = parted >= 0 && !run->fixed[parted];
+    if (run->bomb >= 0 && (!parted_moves || touches(run, run->bomb, end))) return run->bomb;
+    if (run->bomb >= 0) return parted;
+    int body = run->bodies - 1;
+    while (body >= 0 && run->fixed[body]) body--;
     return body;
 }
 
 /* A copy with bodies of its own, to be freed. The place alone changes: a bomb that aims keeps its velocity. */
-static bool shifted_scene(const Scene *scene, Scene *shifted, Chaos *chaos, Error *error) {
-    bool bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
+static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *chaos, Error *error) {
     *shifted = *scene;
-    chaos->body = bomb ? scene->body_count : last_movable(scene);
-    if (chaos->body < 0) return error_input(error, scene->name, "there is nothing that moves, and so nothing to shift");
     size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
     shifted->bodies = malloc(size + 1);
     if (shifted->bodies == NULL) return error_memory(error, scene->name);
     if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
     shifted->bomb.body = scene_bomb_body(scene);
     shifted->bomb.velocity_from_position = false;
-    chaos->shift = shift_x(bomb ? &shifted->bomb.body : &shifted->bodies[chaos->body]);
+    chaos->body = body;
+    chaos->shift = shift_x(body == scene->body_count ? &shifted->bomb.body : &shifted->bodies[body]);
     return true;
 }
 
@@ -76,26 +83,34 @@ static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, 
     return false;
 }
 
-static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, const Progress *progress, Error *error) {
-    Method method;
+/* still: the scene as it is. */
+static bool run_beside(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *still,
+                       const Trajectory *run, int body, const Progress *progress, Error *error) {
+    TrajectoryDifference difference;
+    trajectory_compare(still, run, &difference);
+    if (difference.frame < 0 && still->bodies != run->bodies)
+        return error_input(error, scene->name, "is not the scene of the run: %s", difference.what);
+    chaos->other = difference.frame;
     Scene shifted;
-    if (!method_parse(&method, run->method, error) || !shifted_scene(scene, &shifted, chaos, error)) return false;
-    ProgressStage first = {progress, 0, 0.5, false};
-    Trajectory *still = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
-    bool ok = still != NULL;
-    if (ok) {
-        TrajectoryDifference difference;
-        trajectory_compare(still, run, &difference);
-        chaos->other = difference.frame;
-        Watch watch = {chaos, still, {progress, 0.5, 0.5, false}};
-        ok = run_shifted(&shifted, &method, &watch, error);
-    }
-    trajectory_destroy(still);
+    if (!shifted_scene(scene, body, &shifted, chaos, error)) return false;
+    Watch watch = {chaos, still, {progress, 0.5, 0.5, false}};
+    bool ok = run_shifted(&shifted, method, &watch, error);
     free(shifted.bodies);
     return ok;
 }
 
-static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int frames,
+static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, int body, const Progress *progress,
+                     Error *error) {
+    Method method;
+    if (!method_parse(&method, run->method, error)) return false;
+    ProgressStage first = {progress, 0, 0.5, false};
+    Trajectory *still = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
+    bool ok = still != NULL && run_beside(chaos, scene, &method, still, run, body, progress, error);
+    trajectory_destroy(still);
+    return ok;
+}
+
+static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int body, int frames,
                       const Progress *progress, Error *error) {
     uint64_t hash = scene_hash(scene);
     if (hash != run->scene_hash)
@@ -107,15 +122,15 @@ static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajec
     scene->frames = frames - 1;
     *chaos = (Chaos){.frames = frames, .distance = malloc((size_t)frames * sizeof *chaos->distance)};
     if (chaos->distance == NULL) return error_memory(error, path);
-    if (run_both(chaos, scene, run, progress, error)) return true;
+    if (run_both(chaos, scene, run, body, progress, error)) return true;
     chaos_free(chaos);
     return false;
 }
 
-bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int frames, const Progress *progress,
+bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, int frames, const Progress *progress,
                Error *error) {
     Scene *scene = scene_read(path, error);
-    bool ok = scene != NULL && run_scene(chaos, scene, path, run, frames, progress, error);
+    bool ok = scene != NULL && run_scene(chaos, scene, path, run, body, frames, progress, error);
     scene_destroy(scene);
     return ok;
 }

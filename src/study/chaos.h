@@ -16,8 +16,14 @@ typedef struct Chaos {
         *distance; /* [frames] m, the largest of all bodies; NAN from where the shifted run left the finite numbers */
 } Chaos;
 
+/* Which body to shift, to see how it grows before frame `end`: the bomb; without one the last that can move. A shift of what
+   touches nothing cannot grow: where the bomb has not hit by then it is `parted`, the body that parts first. -1: nothing
+   can move. */
+int chaos_body(const Trajectory *run, int parted, int end);
+
 /* Reads the scene at `path`, which must be that of the run (its hash is checked), and runs it for the first `frames` frames
-   by the run's method. ERROR_INPUT where it is another scene, nothing in it moves, or its method cannot be had. */
-bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int frames, const Progress *progress,
+   by the run's method; `body` is one that can move. ERROR_INPUT
+   where it is another scene or its method cannot be had. */
+bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, int frames, const Progress *progress,
                Error *error);
 void chaos_free(Chaos *chaos);

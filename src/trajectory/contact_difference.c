@@ -57,7 +57,10 @@ static void add_both(ContactDifference *d, const TrajectoryContact *a, const Tra
 }
 
 static void add_only(ContactDifference *d, const TrajectoryContact *only, int *count) {
-    if (d->only_a + d->only_b == 0) d->only = *only;
+    if (d->only_a + d->only_b == 0) {
+        d->only = *only;
+        d->only_first_a = count == &d->only_a;
+    }
     (*count)++;
 }
 

@@ -13,7 +13,8 @@ typedef struct ContactDifference {
     int only_a, only_b;                     /* which the other does not have */
     int moved;                              /* the same, but with another point or normal */
     int changed;                            /* the same, but with another impulse */
-    TrajectoryContact only;                 /* the first that one run only has, where there is one */
+    TrajectoryContact only;                 /* the first that one run only has, where there is one: */
+    bool only_first_a;                      /* a, or b */
     TrajectoryContact largest_a, largest_b; /* whose impulses differ most, where any do; of equals the first */
 } ContactDifference;
 
