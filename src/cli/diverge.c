@@ -87,7 +87,7 @@ static bool measure(Divergence *d, Error *error) {
 /* The window is that of the two runs. */
 static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
     ProgressBar bar;
-    int body = chaos_body(d->runs[0], d->parting.first.body, d->growth.end);
+    int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
     if (body < 0) return error_input(error, scene, "nothing in it can move, and so nothing be shifted");
     progress_bar_begin(&bar, d->runs[0]->scene);
     bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, &bar.progress, error);

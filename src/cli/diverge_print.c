@@ -44,6 +44,12 @@ static void print_contact(const ContactDifference *contacts) {
                (double)b->normal_impulse, (double)a->tangent_impulse, (double)b->tangent_impulse);
 }
 
+static void print_hidden(const TrajectoryParting *parting) {
+    const ContactDifference *contacts = &parting->contacts;
+    printf("contacts of step %d differ: %d in impulse, %d in place, %d in one run only\n", parting->step,
+           contacts->changed, contacts->moved, contacts->only_a + contacts->only_b);
+}
+
 /* Steps and states before the first frame that differs. */
 static void print_cause(const TrajectoryParting *parting) {
     const ContactDifference *contacts = &parting->contacts;
@@ -53,10 +59,8 @@ static void print_cause(const TrajectoryParting *parting) {
     case PART_START: printf("cause: the start, before any step\n"); return;
     case PART_LAUNCH: printf("cause: the launch\n  all states of frame %d are equal\n", frame - 1); return;
     case PART_HIDDEN:
-        printf(
-            "cause: what no state shows, the warm start\n  all states of frame %d are equal, but contacts of step %d "
-            "differ (%d impulses), and the next began with them\n",
-            frame - 1, parting->step, contacts->changed);
+        printf("cause: what no state shows, the warm start\n  all states of frame %d are equal, but ", frame - 1);
+        print_hidden(parting);
         break;
     case PART_CONTACTS:
         printf(
@@ -66,8 +70,8 @@ static void print_cause(const TrajectoryParting *parting) {
         break;
     case PART_SOLVER:
         printf(
-            "cause: the solver\n  all states of frame %d are equal, and so are the %d contacts of step %d; %d of their "
-            "impulses differ\n",
+            "cause: the solver\n  all states of frame %d are equal, and so are the %d contacts of step %d, but not the "
+            "impulses of %d\n",
             frame - 1, contacts->count_a, frame, contacts->changed);
         break;
     case PART_ELSEWHERE:
@@ -82,10 +86,10 @@ static void print_cause(const TrajectoryParting *parting) {
 
 static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
     if (parting->beyond.frame < 0) {
-        printf("equal within %g m: %d frames of %d bodies\n", tolerance, parting->frames, a->bodies);
+        printf("centres within %g m: %d frames of %d bodies\n", tolerance, parting->frames, a->bodies);
         return;
     }
-    printf("beyond %g m: ", tolerance);
+    printf("centres beyond %g m: ", tolerance);
     print_body(a, &parting->beyond);
     if (parting->beyond.frame == 0) return;
     if (parting->beyond.frame == parting->first.frame)
@@ -99,8 +103,8 @@ void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting
     if (parting->first.frame < 0) {
         printf("equal: %d frames of %d bodies, every bit of pose and velocity\n", parting->frames, a->bodies);
         if (parting->step >= 0) {
-            printf("but contacts of step %d differ, which no state shows: %d impulses do\n", parting->step,
-                   parting->contacts.changed);
+            printf("no state shows it, but ");
+            print_hidden(parting);
             print_contact(&parting->contacts);
         }
         return;

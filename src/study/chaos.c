@@ -21,15 +21,16 @@ static double shift_x(BodyDef *body) {
     return (double)body->position.x - before;
 }
 
-static bool touches(const Trajectory *run, int body, int end) {
-    for (int64_t i = 0; i < run->contact_start[end]; i++)
+/* In any step up to the one that leads to the frame. */
+static bool touches(const Trajectory *run, int body, int frame) {
+    for (int64_t i = 0; i < run->contact_start[frame + 1]; i++)
         if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
     return false;
 }
 
-int chaos_body(const Trajectory *run, int parted, int end) {
+int chaos_body(const Trajectory *run, int parted, int frame) {
     bool parted_moves = parted >= 0 && !run->fixed[parted];
-    if (run->bomb >= 0 && (!parted_moves || touches(run, run->bomb, end))) return run->bomb;
+    if (run->bomb >= 0 && (!parted_moves || touches(run, run->bomb, frame))) return run->bomb;
     if (run->bomb >= 0) return parted;
     int body = run->bodies - 1;
     while (body >= 0 && run->fixed[body]) body--;

@@ -16,10 +16,10 @@ typedef struct Chaos {
         *distance; /* [frames] m, the largest of all bodies; NAN from where the shifted run left the finite numbers */
 } Chaos;
 
-/* Which body to shift, to see how it grows before frame `end`: the bomb; without one the last that can move. A shift of what
-   touches nothing cannot grow: where the bomb has not hit by then it is `parted`, the body that parts first. -1: nothing
-   can move. */
-int chaos_body(const Trajectory *run, int parted, int end);
+/* Which body to shift, for runs that part in this frame with body `parted` (-1, -1: nowhere): the bomb; without one the
+   last that can move. What touches nothing cannot grow: where the bomb has not hit by then it is the body that parts. -1:
+   nothing can move. */
+int chaos_body(const Trajectory *run, int parted, int frame);
 
 /* Reads the scene at `path`, which must be that of the run (its hash is checked), and runs it for the first `frames` frames
    by the run's method; `body` is one that can move. ERROR_INPUT
