@@ -29,11 +29,11 @@ static Trajectory *run_scene(const char *path, const char *text) {
 
 static const char falling[] = "  - {size: [1, 1], position: [3, 50], mass: 1, friction: 0}\n"
                               "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n";
-static const char bomb[] = "bomb: {x: 5, y: 100, frame: 20, size: [1, 1], mass: 50, friction: 0.2, velocity: "
-                           "{times_position: -1.5}}\n";
+static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], mass: 50, friction: 0.2, velocity: "
+                           "{times_position: 15}}\n";
 
 /* Place alone is shifted, and nothing is touched: the distance is the shift, from when the body is there. That of an
-   aiming bomb would grow if its velocity were shifted as well. */
+   aiming bomb would grow, by 15e-6 m/s, if its velocity were shifted as well. */
 static void a_shift_in_free_flight_stays(void **state) {
     (void)state;
     char text[1024];
@@ -49,7 +49,7 @@ static void a_shift_in_free_flight_stays(void **state) {
         assert_true(chaos.body == body && chaos.other == -1 && chaos.frames == 50);
         assert_near(chaos.shift, 1e-6, 0.2e-6);
         for (int frame = 0; frame < 50; frame++)
-            assert_true(chaos.distance[frame] == (with_bomb && frame < 20 ? 0 : chaos.shift));
+            assert_near(chaos.distance[frame], with_bomb && frame < 20 ? 0 : chaos.shift, 1e-7);
         chaos_free(&chaos);
         trajectory_destroy(run);
     }
@@ -139,6 +139,23 @@ static void what_is_not_the_run_is_refused_or_told(void **state) {
     trajectory_destroy(run);
 }
 
+static bool stop_late(void *context, double done, double total) {
+    (void)context;
+    return done < 0.75 * total;
+}
+
+/* A stop is no state that left the finite numbers. */
+static void a_stop_is_an_error(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = SOURCE_DIR "/scenes/stack.yaml";
+    Trajectory *run = run_scene(path, "engine");
+    Chaos chaos;
+    assert_false(chaos_run(&chaos, path, run, 1, 101, &(Progress){stop_late, NULL}, &error));
+    assert_error(error, ERROR_INPUT, "stopped after step 51 of 100");
+    trajectory_destroy(run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_shift_in_free_flight_stays),
@@ -146,6 +163,7 @@ int main(void) {
         cmocka_unit_test(a_bomb_that_has_not_hit_is_not_shifted),
         cmocka_unit_test(distances_are_those_of_the_trajectories),
         cmocka_unit_test(what_is_not_the_run_is_refused_or_told),
+        cmocka_unit_test(a_stop_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
