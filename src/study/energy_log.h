@@ -10,12 +10,16 @@ typedef struct EnergyLog {
     Vec2 gravity;
     int frames;     /* of the run */
     double *energy; /* [frames + 1] J: kinetic and potential, of all that moves */
-    /* J: the most by which the energy has been below where it stood before. What a body that joins brings along counts as
-       there to be lost; what leaves with a body has not been lost. Where bodies overlap at the start, the energy that
-       pushing them apart adds can be lost too. */
+    /* J: the larger of two. What has been lost: the most by which the energy was below where it stood before. What a body
+       that joins brings along counts as there to be lost; what leaves with a body has not been lost. Where bodies overlap
+       at the start, the energy that pushing them apart adds can be lost too. And what could fall: of all that moves at the
+       start, and of what joins, m |g| times its height above the lowest that moves at the start. So a stack that stands
+       has all its height to lose. */
     double to_lose;
-    double level;   /* J: energy there would be had none been lost */
-    int body_count; /* in the last frame logged */
+    double standing; /* J: what could fall */
+    double lowest;   /* m, against gravity: of what moves at the start; INFINITY: nothing has moved so far */
+    double level;    /* J: energy there would be had none been lost */
+    int body_count;  /* in the last frame logged */
     size_t capacity;
 } EnergyLog;
 

@@ -125,7 +125,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    Explodes: the energy is above both of these bounds, by more than VERDICT_ENERGY_SHARE of what there was to lose.
    (a) What the run itself has kept to: the least, over whole seconds, of the greatest energy in one; at first that of the
    start. What a body brings that joins is added; where one leaves, it begins anew with what is left.
-   (b) The converged run's energy at the same frame.
+   (b) The converged run's greatest energy within VERDICT_ENERGY_TIME of the same frame, before or after: a hop that comes
+   a little later is none. Near a body's joining or leaving that is with the body.
    (b) alone is no bound: a box that still stands where the converged one has fallen has more energy, yet has made none. Nor
    is (a): pushing apart what overlaps at the start adds energy, in the converged run too. Nor would the least energy of a
    single frame do for (a): in a blow boxes go into each other and are pushed out again, in every method that has not

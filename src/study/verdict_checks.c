@@ -50,6 +50,16 @@ static void end_second(VerdictWatch *watch, double kept) {
     watch->peak_steps = 0;
 }
 
+/* J: of the converged run, about a frame. */
+static double converged_energy(const VerdictRun *run, int frame) {
+    const int second = verdict_steps(VERDICT_ENERGY_TIME, run->dt);
+    const int from = frame > second ? frame - second : 0;
+    const int to = run->converged->frames - frame > second ? frame + second : run->converged->frames;
+    double most = -INFINITY;
+    for (int i = from; i <= to; i++) most = fmax(most, run->converged->energy[i]);
+    return most;
+}
+
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     const VerdictRun *run = &watch->run;
     double energy = bodies_energy(step->bodies, step->body_count, run->gravity);
@@ -58,7 +68,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     watch->kept += brought;
     watch->peak += brought;
     if (joined < 0) end_second(watch, energy);
-    double bound = fmax(watch->kept, run->converged->energy[step->frame]);
+    double bound = fmax(watch->kept, converged_energy(run, step->frame));
     double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->to_lose, VERDICT_LEAST_TO_LOSE);
     if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;

@@ -87,6 +87,28 @@ static void exploding_is_above_what_the_run_kept_to_and_the_converged_one(void *
     assert_verdict(run_with_energy(0.0101, 0, 1e-6), VERDICT_EXPLODES);
 }
 
+/* 3 J for a frame, by speed, so many frames after or before the converged run has them. */
+static VerdictReading run_with_hop(int later) {
+    Trial trial;
+    trial_begin(&trial);
+    for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 5;
+    trial.energy[500] += 3;
+    trial_go(&trial, 499 + later);
+    trial.bodies[1].velocity.x = sqrtf(6);
+    trial_go(&trial, 500 + later);
+    trial.bodies[1].velocity.x = 0;
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void a_hop_may_come_a_second_later_or_before(void **state) {
+    (void)state;
+    assert_verdict(run_with_hop(60), VERDICT_SETTLES);
+    assert_verdict(run_with_hop(-60), VERDICT_SETTLES);
+    assert_reading(run_with_hop(61), VERDICT_EXPLODES, 1, 561, 3, 1e-5, "J");
+    assert_reading(run_with_hop(-61), VERDICT_EXPLODES, 1, 439, 3, 1e-5, "J");
+}
+
 /* The converged run falls down and has nothing left; this one still stands. */
 static void what_still_stands_has_made_no_energy(void **state) {
     (void)state;
@@ -250,6 +272,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tunnelling_goes_through_a_static_box),
                                        cmocka_unit_test(tunnelling_says_how_fast),
                                        cmocka_unit_test(exploding_is_above_what_the_run_kept_to_and_the_converged_one),
+                                       cmocka_unit_test(a_hop_may_come_a_second_later_or_before),
                                        cmocka_unit_test(what_still_stands_has_made_no_energy),
                                        cmocka_unit_test(what_comes_back_within_a_second_was_not_lost),
                                        cmocka_unit_test(what_a_bomb_brings_counts),
