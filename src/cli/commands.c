@@ -9,6 +9,7 @@ const Command commands[] = {{"simulate", "run a scene by one method and store th
                             {"train", "train the paper's network on a dataset", command_train},
                             {"chart", "chart speed against accuracy for every method", command_chart},
                             {"paper", "reproduce the paper, from seed to report", command_paper},
+                            {"stability", "find where each method fails", command_stability},
                             {"problem", "write the contact problem of one step", command_problem},
                             {"solve", "solve one contact problem by many methods, with their errors", command_solve},
                             {"methods", "list the methods and their settings", command_methods},

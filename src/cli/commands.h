@@ -10,6 +10,7 @@ int command_dataset(int argc, char **argv, Error *error);
 int command_train(int argc, char **argv, Error *error);
 int command_chart(int argc, char **argv, Error *error);
 int command_paper(int argc, char **argv, Error *error);
+int command_stability(int argc, char **argv, Error *error);
 int command_problem(int argc, char **argv, Error *error);
 int command_solve(int argc, char **argv, Error *error);
 int command_methods(int argc, char **argv, Error *error);

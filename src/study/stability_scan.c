@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/stability_scan.h"
+
+#include "common/csv.h"
+#include "common/parallel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Runs of a method beside those of the coarse scan: a bisection and its seeds, roughly. */
+enum { RUNS_OF_A_BORDER = 8 };
+
+typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
+
+/* What came of a method. */
+typedef struct Result {
+    Part part;
+    BorderList borders;
+    Error reason; /* refused */
+} Result;
+
+typedef struct Run {
+    const StabilityScan *scan;
+    Scene *typical; /* with the file's own numbers */
+    ConvergedRuns converged;
+    RunCounter counter;
+    Result *results; /* [methods] */
+} Run;
+
+static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
+    const StabilityPlace place = {scan->scenes, scan->study->scene, scan->study->stands};
+    SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
+    return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
+}
+
+bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
+                        ConvergedRuns *converged, VerdictReading *reading, Error *error) {
+    Scene *scene = scene_at(scan, value, error);
+    const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
+    if (scene != NULL) stability_shift(scene, seed);
+    bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+/* One method of a run. */
+typedef struct Asked {
+    Run *run;
+    const Method *method;
+} Asked;
+
+static bool ask(void *context, double value, int seed, Verdict *verdict, Error *error) {
+    const Asked *asked = context;
+    Run *run = asked->run;
+    VerdictReading reading;
+    if (!stability_scan_run(run->scan, asked->method, value, seed, &run->converged, &reading, error)) return false;
+    *verdict = reading.verdict;
+    return run_counter_add(&run->counter, run->scan->study->name, error);
+}
+
+static bool study_method(void *context, int i, Error *error) {
+    Run *run = context;
+    Result *result = &run->results[i];
+    const StabilityStudy *study = run->scan->study;
+    Asked asked = {run, &run->scan->methods->items[i].method};
+    if (study->iterations && !stability_takes_iterations(asked.method)) {
+        result->part = PART_LEFT_OUT;
+        return true;
+    }
+    if (!stability_applies(asked.method, run->typical, &result->reason)) {
+        result->part = PART_REFUSED;
+        return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
+    }
+    const BorderProbe probe = {ask, &asked, study->unshifted ? 1 : BORDER_SEEDS};
+    return border_search(&result->borders, &study->scan, &probe, error);
+}
+
+static const char *unit_of(const Scene *scene, const char *parameter) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, parameter) == 0) return scene->parameters[i].unit;
+    return "";
+}
+
+static void put_method(const Run *run, const char *table, int i, FILE *lines) {
+    const Contender *contender = &run->scan->methods->items[i];
+    fprintf(lines, "%s:%s,%s,", table, run->scan->study->name, contender->name);
+    csv_put(lines, contender->setting);
+}
+
+static void put_border(const Run *run, int i, const Border *border, FILE *lines) {
+    const StabilityStudy *study = run->scan->study;
+    put_method(run, "stability", i, lines);
+    fprintf(lines, ",%s,%s,", study->parameter, unit_of(run->typical, study->parameter));
+    if (border != NULL && !isnan(border->holds_at)) fprintf(lines, "%.9g", border->holds_at);
+    fprintf(lines, ",");
+    if (border != NULL && !isnan(border->fails_at)) fprintf(lines, "%.9g", border->fails_at);
+    fprintf(lines, ",%s\n", border != NULL ? verdict_name(border->verdict) : STABILITY_NOT_APPLICABLE);
+}
+
+static void put_result(const Run *run, int i, FILE *lines) {
+    Result *result = &run->results[i];
+    if (result->part == PART_LEFT_OUT) return;
+    for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
+        put_border(run, i, &result->borders.items[k], lines);
+    if (result->part != PART_REFUSED) return;
+    put_border(run, i, NULL, lines);
+    put_method(run, "refusals", i, lines);
+    fprintf(lines, ",");
+    result->reason.message[strcspn(result->reason.message, "\n")] = '\0';
+    csv_put(lines, result->reason.message);
+    fprintf(lines, "\n");
+}
+
+bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error) {
+    const int methods = ((const StabilityScan *)scan)->methods->count;
+    Run run = {.scan = scan, .counter = {.progress = progress}};
+    const StabilityStudy *study = run.scan->study;
+    const ParallelWork work = {study_method, &run};
+    run.counter.expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER);
+    run.typical = stability_scene(&(StabilityPlace){run.scan->scenes, study->scene, study->stands}, NULL, 0, error);
+    run.results = calloc((size_t)methods, sizeof *run.results);
+    bool ok = run.typical != NULL;
+    if (ok && run.results == NULL) ok = error_memory(error, study->name);
+    ok = ok && parallel_for(&work, methods, study->name, NULL, error);
+    for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
+    free(run.results);
+    converged_runs_free(&run.converged);
+    scene_destroy(run.typical);
+    return ok;
+}
