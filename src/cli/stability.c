@@ -11,7 +11,7 @@
 enum { METHODS = 256, STUDY, SCENES, QUICK };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv and refusals.csv go", 0},
+    {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv, refusals.csv and fallbacks.csv go", 0},
     {"methods", METHODS, "LIST", 0,
      "Methods, separated by commas; a name alone has as many iterations as the scene says (default: the engine, "
      "momentum, substepping, nncg, the reference, pair-net, contact-net and scene-net)",

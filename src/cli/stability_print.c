@@ -73,7 +73,8 @@ bool stability_print(const char *folder, Error *error) {
         print_borders(&csv);
         csv_free(&csv);
     }
-    printf("borders -> %s/stability.csv\nmaps -> %s/maps.csv\nwhy methods do not apply -> %s/refusals.csv\n", folder,
-           folder, folder);
+    printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
+    printf("why methods do not apply -> %s/refusals.csv\n", folder);
+    printf("what networks said and was not done -> %s/fallbacks.csv\n", folder);
     return true;
 }

@@ -201,7 +201,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                                 .bodies = world->problem_bodies,
                                 .contacts = world->next.contacts};
     world->problem = *problem;
-    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0};
+    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0, {0}};
     *solution = &world->solution;
     return true;
 }

@@ -139,7 +139,7 @@ static bool is_known(SceneNet *solver, const ContactProblem *problem, bool *know
 }
 
 /* From the warm start to what the network says, inside the cone. */
-static void find_change(SceneNet *solver, const ContactProblem *problem) {
+static void find_change(SceneNet *solver, const ContactProblem *problem, NetworkFallbacks *fallbacks) {
     const SceneView *view = &solver->view;
     slot_network_predict(solver->network, solver->inputs, &view->slots, solver->first, solver->second, solver->outputs);
     for (int i = 0; i < problem->contact_count; i++) solver->change[i] = view->base[i];
@@ -148,8 +148,10 @@ static void find_change(SceneNet *solver, const ContactProblem *problem) {
         const float limit = problem->contacts[view->contacts[k]].friction;
         to->normal += solver->outputs[2 * k];
         to->tangent += solver->outputs[2 * k + 1];
+        const ContactImpulse said = *to;
         to->normal = to->normal > 0 ? to->normal : 0;
         to->tangent = contact_clamp(to->tangent, -limit * to->normal, limit * to->normal);
+        fallbacks->outside_cone += said.normal != to->normal || said.tangent != to->tangent;
     }
     for (int i = 0; i < problem->contact_count; i++) {
         solver->change[i].normal -= problem->contacts[i].warm_normal;
@@ -193,14 +195,22 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
     bool asked = problem->bomb >= 0 && impact_gap_reaches(sweeps, problem->contact_count, solver->network->gate);
-    if (asked && !is_known(solver, problem, &asked, error)) return false;
+    solution->fallbacks = (NetworkFallbacks){0};
     if (asked) {
-        find_change(solver, problem);
+        if (!is_known(solver, problem, &asked, error)) return false;
+        solution->fallbacks.beyond_training += !asked;
+    }
+    if (asked) {
+        find_change(solver, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->change);
-        if (!is_bounded(sweeps)) return solve_without(solver, problem, solution, error);
+        if (!is_bounded(sweeps)) {
+            solution->fallbacks.not_finite++;
+            return solve_without(solver, problem, solution, error);
+        }
     }
     if (!run(solver, problem, asked)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
+    solution->fallbacks.not_finite += asked;
     return solve_without(solver, problem, solution, error);
 }
 

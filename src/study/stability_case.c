@@ -37,11 +37,15 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error) {
     return applies;
 }
 
-bool stability_takes_iterations(const Method *method) {
-    if (method->solver == NULL || settings_get(&method->settings, "k") != NULL) return false;
+bool stability_has_setting(const Method *method, const char *key) {
+    if (method->solver == NULL) return false;
     for (const SettingSpec *spec = method->solver->settings; spec->key != NULL; spec++)
-        if (strcmp(spec->key, "k") == 0) return true;
+        if (strcmp(spec->key, key) == 0) return true;
     return false;
+}
+
+bool stability_takes_iterations(const Method *method) {
+    return stability_has_setting(method, "k") && settings_get(&method->settings, "k") == NULL;
 }
 
 bool run_counter_add(RunCounter *counter, const char *what, Error *error) {

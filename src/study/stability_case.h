@@ -27,6 +27,9 @@ void stability_shift(Scene *scene, int seed);
    step. */
 bool stability_applies(const Method *method, const Scene *scene, Error *error);
 
+/* True for a contact solver that has a setting of this name. */
+bool stability_has_setting(const Method *method, const char *key);
+
 /* True for a method that makes as many iterations as the scene says. */
 bool stability_takes_iterations(const Method *method);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/stability_scan.h"
 
+#include "common/array.h"
 #include "common/csv.h"
 #include "common/parallel.h"
 
@@ -14,11 +15,21 @@ enum { RUNS_OF_A_BORDER = 8 };
 
 typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
 
+/* What a network said in a run and was not done. */
+typedef struct NetworkRun {
+    double value;
+    int steps;
+    NetworkFallbacks fallbacks;
+} NetworkRun;
+
 /* What came of a method. */
 typedef struct Result {
     Part part;
     BorderList borders;
-    Error reason; /* refused */
+    Error reason;             /* refused */
+    NetworkRun *network_runs; /* [network_run_count] */
+    size_t network_run_capacity;
+    int network_run_count;
 } Result;
 
 typedef struct Run {
@@ -50,7 +61,16 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
 typedef struct Asked {
     Run *run;
     const Method *method;
+    Result *result;
 } Asked;
+
+static bool keep_fallbacks(Result *result, double value, const VerdictReading *reading, Error *error) {
+    if (!array_reserve((void **)&result->network_runs, &result->network_run_capacity,
+                       (size_t)result->network_run_count + 1, sizeof *result->network_runs))
+        return error_memory(error, "fallbacks");
+    result->network_runs[result->network_run_count++] = (NetworkRun){value, reading->steps, reading->fallbacks};
+    return true;
+}
 
 static bool ask(void *context, double value, int seed, Verdict *verdict, Error *error) {
     const Asked *asked = context;
@@ -58,6 +78,9 @@ static bool ask(void *context, double value, int seed, Verdict *verdict, Error *
     VerdictReading reading;
     if (!stability_scan_run(run->scan, asked->method, value, seed, &run->converged, &reading, error)) return false;
     *verdict = reading.verdict;
+    if (seed == 0 && stability_has_setting(asked->method, "network") &&
+        !keep_fallbacks(asked->result, value, &reading, error))
+        return false;
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
 
@@ -65,7 +88,7 @@ static bool study_method(void *context, int i, Error *error) {
     Run *run = context;
     Result *result = &run->results[i];
     const StabilityStudy *study = run->scan->study;
-    Asked asked = {run, &run->scan->methods->items[i].method};
+    Asked asked = {run, &run->scan->methods->items[i].method, result};
     if (study->iterations && !stability_takes_iterations(asked.method)) {
         result->part = PART_LEFT_OUT;
         return true;
@@ -100,11 +123,32 @@ static void put_border(const Run *run, int i, const Border *border, FILE *lines)
     fprintf(lines, ",%s\n", border != NULL ? verdict_name(border->verdict) : STABILITY_NOT_APPLICABLE);
 }
 
+static int by_value(const void *left, const void *right) {
+    const NetworkRun *a = left, *b = right;
+    return (a->value > b->value) - (a->value < b->value);
+}
+
+static void put_fallbacks(const Run *run, int i, FILE *lines) {
+    const StabilityStudy *study = run->scan->study;
+    const Result *result = &run->results[i];
+    if (result->network_run_count == 0) return;
+    qsort(result->network_runs, (size_t)result->network_run_count, sizeof *result->network_runs, by_value);
+    for (int k = 0; k < result->network_run_count; k++) {
+        const NetworkRun *network_run = &result->network_runs[k];
+        const NetworkFallbacks *fallbacks = &network_run->fallbacks;
+        put_method(run, "fallbacks", i, lines);
+        fprintf(lines, ",%s,%s,%.9g,%d,%d,%d,%d\n", study->parameter, unit_of(run->typical, study->parameter),
+                network_run->value, network_run->steps, fallbacks->not_finite, fallbacks->outside_cone,
+                fallbacks->beyond_training);
+    }
+}
+
 static void put_result(const Run *run, int i, FILE *lines) {
     Result *result = &run->results[i];
     if (result->part == PART_LEFT_OUT) return;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
         put_border(run, i, &result->borders.items[k], lines);
+    put_fallbacks(run, i, lines);
     if (result->part != PART_REFUSED) return;
     put_border(run, i, NULL, lines);
     put_method(run, "refusals", i, lines);
@@ -126,6 +170,7 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     if (ok && run.results == NULL) ok = error_memory(error, study->name);
     ok = ok && parallel_for(&work, methods, study->name, NULL, error);
     for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
+    for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].network_runs);
     free(run.results);
     converged_runs_free(&run.converged);
     scene_destroy(run.typical);

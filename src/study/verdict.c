@@ -81,9 +81,12 @@ bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.ver
 
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     if (watch->worst.verdict > VERDICT_SWAYS) return watch->worst;
-    if (watch->calm >= VERDICT_CALM_FRAMES)
-        return (VerdictReading){VERDICT_SETTLES, watch->frame - watch->calm + 1, -1, watch->kinetic, "J"};
-    return (VerdictReading){VERDICT_SWAYS, watch->frame - watch->calm, -1, watch->loud, "J"};
+    const bool calm = watch->calm >= VERDICT_CALM_FRAMES;
+    return (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_SWAYS,
+                            .frame = watch->frame - watch->calm + (calm ? 1 : 0),
+                            .body = -1,
+                            .value = calm ? watch->kinetic : watch->loud,
+                            .unit = "J"};
 }
 
 /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
@@ -97,6 +100,12 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
     return failure.kind == ERROR_INPUT;
 }
 
+static void add_fallbacks(NetworkFallbacks *sum, const NetworkFallbacks *step) {
+    sum->not_finite += step->not_finite;
+    sum->outside_cone += step->outside_cone;
+    sum->beyond_training += step->beyond_training;
+}
+
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
                  const EnergyLog *converged, Error *error) {
     const VerdictRun run = {scene->gravity, scene->dt, scene->frames, stands, converged};
@@ -104,9 +113,16 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
     bool ok = stepper != NULL && verdict_watch_begin(&watch, &run, world_bodies(world), world_body_count(world), error);
-    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++)
+    NetworkFallbacks fallbacks = {0};
+    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);
-    if (ok) *reading = verdict_watch_end(&watch);
+        add_fallbacks(&fallbacks, &world_solution(world)->fallbacks);
+    }
+    if (ok) {
+        *reading = verdict_watch_end(&watch);
+        reading->steps = watch.frame;
+        reading->fallbacks = fallbacks;
+    }
     verdict_watch_free(&watch);
     stepper_destroy(stepper);
     world_destroy(world);

@@ -64,6 +64,8 @@ typedef struct VerdictReading {
        energy. Non-finite: m/s, the greatest speed before. */
     double value;
     const char *unit; /* "J", "m", "deg", "m/s" */
+    int steps;        /* taken, and what was not done of what a network said in them; both of verdict_run alone */
+    NetworkFallbacks fallbacks;
 } VerdictReading;
 
 /* What is to be judged. */

@@ -6,7 +6,9 @@
 static const double degrees = 57.29577951308232; /* in a radian */
 
 void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit) {
-    if (verdict > watch->worst.verdict) watch->worst = (VerdictReading){verdict, watch->frame, body, value, unit};
+    if (verdict > watch->worst.verdict)
+        watch->worst =
+            (VerdictReading){.verdict = verdict, .frame = watch->frame, .body = body, .value = value, .unit = unit};
 }
 
 int verdict_steps(double seconds, float dt) {

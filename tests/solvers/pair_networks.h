@@ -59,7 +59,7 @@ static inline float solve_by(const ContactSolverKind *kind, const char *path, in
                              BodyVelocity *velocities, ContactImpulse *impulses) {
     Error error = {0};
     ContactSolver solver = make_network_solver(kind, path, sweeps);
-    ContactSolution solution = {velocities, impulses, -1};
+    ContactSolution solution = {velocities, impulses, -1, {0}};
     assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
     free_solver(&solver);
     return solution.momentum_error;

@@ -97,7 +97,7 @@ static void impulses_stay_in_their_cones(void **state) {
             contact->warm_normal = impulses[i].normal;
             contact->warm_tangent = impulses[i].tangent;
         }
-        ContactSolution warm = {expected, impulses, 0};
+        ContactSolution warm = {expected, impulses, 0, {0}};
         sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
         for (int i = 0; i < random.problem.body_count; i++) {
             assert_near(v[i].linear.x, expected[i].linear.x, 0);
@@ -123,7 +123,7 @@ static void a_network_of_zeros_is_the_warm_start(void **state) {
         ContactImpulse impulses[CONTACTS_MAX], started[CONTACTS_MAX];
         solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, zeros), 1, &random.problem, v,
                  impulses);
-        ContactSolution warm = {expected, started, 0};
+        ContactSolution warm = {expected, started, 0, {0}};
         sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
         for (int i = 0; i < random.problem.contact_count; i++) {
             assert_near(impulses[i].normal, started[i].normal, 0);
