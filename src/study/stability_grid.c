@@ -70,10 +70,21 @@ static void put_cells(const Run *run, int method, FILE *lines) {
     }
 }
 
-static bool is_drawn(const StabilityGrid *grid, const Method *method, const Scene *typical) {
+/* In the first and the last cell. */
+static bool applies(const Run *run, const Method *method) {
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        Error reason = {0};
+        Scene *scene = scene_at(run->grid, run->x[i * (run->x_count - 1)], run->y[i * (run->y_count - 1)], &reason);
+        ok = scene != NULL && stability_applies(method, scene, &reason);
+        scene_destroy(scene);
+    }
+    return ok;
+}
+
+static bool is_drawn(const Run *run, const Method *method) {
     if (method->solver != NULL && strcmp(method->solver->name, "reference") == 0) return false;
-    return (!grid->map->iterations || stability_takes_iterations(method)) &&
-           stability_applies(method, typical, &(Error){0});
+    return (!run->grid->map->iterations || stability_takes_iterations(method)) && applies(run, method);
 }
 
 static bool begin(Run *run, Error *error) {
@@ -90,7 +101,7 @@ static bool begin(Run *run, Error *error) {
     run->readings = malloc(methods * cells * sizeof *run->readings);
     if (run->methods == NULL || run->readings == NULL) return error_memory(error, grid->map->name);
     for (int i = 0; i < grid->methods->count; i++)
-        if (is_drawn(grid, &grid->methods->items[i].method, run->typical))
+        if (is_drawn(run, &grid->methods->items[i].method))
             run->methods[run->method_count++] = &grid->methods->items[i];
     run->counter.expected = (double)cells * run->method_count;
     return true;

@@ -84,6 +84,18 @@ static bool ask(void *context, double value, int seed, Verdict *verdict, Error *
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
 
+/* At both ends of the scan: a network may be for the bodies that there are at one value only. */
+static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
+    const double ends[] = {scan->study->scan.from, scan->study->scan.to};
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        Scene *scene = scene_at(scan, ends[i], reason);
+        ok = scene != NULL && stability_applies(method, scene, reason);
+        scene_destroy(scene);
+    }
+    return ok;
+}
+
 static bool study_method(void *context, int i, Error *error) {
     Run *run = context;
     Result *result = &run->results[i];
@@ -93,7 +105,7 @@ static bool study_method(void *context, int i, Error *error) {
         result->part = PART_LEFT_OUT;
         return true;
     }
-    if (!stability_applies(asked.method, run->typical, &result->reason)) {
+    if (!applies(run->scan, asked.method, &result->reason)) {
         result->part = PART_REFUSED;
         return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
     }

@@ -24,7 +24,14 @@ static bool method_of(const Golden *golden, int row, Method *method, Error *erro
     return method_parse(method, text, error);
 }
 
-/* What a row says is expected of one of its sides; an empty side says nothing. */
+static Verdict verdict_of(const char *name) {
+    for (int i = 0; i < VERDICTS; i++)
+        if (strcmp(verdict_name((Verdict)i), name) == 0) return (Verdict)i;
+    return VERDICT_SETTLES;
+}
+
+/* What a row says is expected of one of its sides; an empty side says nothing. The verdict is the worst there was: of the
+   seeds that failed, or, without a border, of all values. */
 static bool check_side(Golden *golden, int row, const StabilityScan *scan, int side, Error *error) {
     const Csv *csv = &golden->csv;
     VerdictReading reading;
@@ -35,7 +42,9 @@ static bool check_side(Golden *golden, int row, const StabilityScan *scan, int s
         !stability_scan_run(scan, &method, atof(value), 0, &golden->converged[scan->study - stability_studies],
                             &reading, error))
         return false;
-    if (verdict_holds(reading.verdict) == (side == HOLDS_AT)) return true;
+    if (verdict_holds(reading.verdict) == (side == HOLDS_AT) &&
+        reading.verdict <= verdict_of(csv_text(csv, row, VERDICT)))
+        return true;
     return csv_error(csv, row, side, error, "%s, %s: %s at %s %s (frame %d, body %d, %g %s)", scan->study->name,
                      method.text, verdict_name(reading.verdict), csv_text(csv, row, PARAMETER), value, reading.frame,
                      reading.body, reading.value, reading.unit);
