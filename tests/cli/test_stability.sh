@@ -10,8 +10,8 @@ says "heavy_on_one: ratio, holds | fails"
 says "  scene-net                not applicable"
 says "borders -> one/stability.csv; maps -> one/maps.csv"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "the table is wider than 80 columns"
-equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
-equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
+equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
+equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
 equal "files" "$(ls one | tr '\n' ' ')" "fallbacks.csv maps.csv refusals.csv stability.csv "
 equal "maps" "$(wc -l <one/maps.csv)" 1
 OMP_NUM_THREADS=3 run 0 stability $few -o three
