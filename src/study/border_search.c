@@ -49,6 +49,13 @@ static bool resolved(const BorderScan *scan, double low, double high) {
     return scan->logarithmic ? high <= 1.05 * low : high - low <= (scan->to - scan->from) / 100;
 }
 
+/* The next value outward by the resolution. */
+static double beside(const BorderScan *scan, double value, int direction) {
+    double step = scan->logarithmic ? 0.05 * value : (scan->to - scan->from) / 100;
+    if (scan->whole && step < 1) step = 1;
+    return rounded(scan, value + direction * step);
+}
+
 static double middle(const BorderScan *scan, double low, double high) {
     return rounded(scan, scan->logarithmic ? sqrt(low * high) : 0.5 * (low + high));
 }
@@ -91,7 +98,19 @@ static bool scan_coarsely(Search *search, Error *error) {
     return true;
 }
 
-/* Until neighbours that differ are as near as they may be, and have been asked with all seeds. */
+/* Asks what lies next to a side of a border, away from it, unless that has been asked. */
+static bool look_beside(Search *search, int i, int direction, bool *found, Error *error) {
+    const int next = i + direction;
+    if (search->samples[i].side == SIDE_LUCK || next < 0 || next >= search->count) return true;
+    const double value = search->samples[i].value, limit = search->samples[next].value;
+    const double asked = beside(search->scan, value, direction);
+    if (direction * (limit - asked) <= 0) return true;
+    *found = true;
+    return insert(search, direction > 0 ? next : i, asked, true, error);
+}
+
+/* Until neighbours that differ are as near as they may be, and have been asked with all seeds, and so has what is beside
+   them. */
 static bool refine(Search *search, Error *error) {
     for (int i = 0; i + 1 < search->count;) {
         Sample *low = &search->samples[i], *high = low + 1;
@@ -105,7 +124,13 @@ static bool refine(Search *search, Error *error) {
             /* It may differ from the one before now. */
             if (i > 0) i--;
         } else {
-            i++;
+            bool found = false;
+            if (!look_beside(search, i + 1, 1, &found, error) || !look_beside(search, i, -1, &found, error))
+                return false;
+            if (!found)
+                i++;
+            else if (i > 0)
+                i--;
         }
     }
     return true;

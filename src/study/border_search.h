@@ -2,9 +2,10 @@
 /* Where along a number a method holds, and where it fails: every border between the two.
 
    The range is scanned coarsely; every change between neighbours is bisected down to the resolution. Both sides of what is
-   found are asked again with other seeds, starts that differ by next to nothing. Where they do not agree luck decides: such
+   found, and the next value outward of each, are asked with other seeds, starts that differ by next to nothing. Where they do not agree luck decides: such
    a value is no side of a border, and the next one outward is looked for that all seeds agree upon. So an interval wider
-   than the resolution is one in which luck decides. What changes and changes back within a step of the scan is not seen. */
+   than the resolution is one in which luck decides. What changes and changes back within a step of the scan is seen next to a
+   border only. */
 #pragma once
 #include "study/verdict.h"
 

@@ -44,6 +44,10 @@ bool stability_has_setting(const Method *method, const char *key) {
     return false;
 }
 
+bool stability_is_reference(const Method *method) {
+    return method->solver != NULL && strcmp(method->solver->name, "reference") == 0;
+}
+
 bool stability_takes_iterations(const Method *method) {
     return stability_has_setting(method, "k") && settings_get(&method->settings, "k") == NULL;
 }
@@ -62,7 +66,9 @@ bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
 
 bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {
     Method reference;
-    return method_parse(&reference, "reference", error) && energy_log_run(log, scene, &reference, error);
+    Scene warm = *scene;
+    warm.warm_starting = true;
+    return method_parse(&reference, "reference", error) && energy_log_run(log, &warm, &reference, error);
 }
 
 static const EnergyLog *find(const ConvergedRuns *runs, double value) {

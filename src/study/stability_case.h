@@ -30,6 +30,9 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error);
 /* True for a contact solver that has a setting of this name. */
 bool stability_has_setting(const Method *method, const char *key);
 
+/* True for the method by which the others are judged. */
+bool stability_is_reference(const Method *method);
+
 /* True for a method that makes as many iterations as the scene says. */
 bool stability_takes_iterations(const Method *method);
 
@@ -49,7 +52,10 @@ typedef struct RunCounter {
 /* Counts one, from any thread. False with error set where progress asked to stop. */
 bool run_counter_add(RunCounter *counter, const char *what, Error *error);
 
-/* Zero-initialise. Threads may ask at once; one that asks for what another is about to make makes it, too, which changes
+/* Converged runs begin each step with the impulses of the one before, whatever the scene says: where they end does not
+   depend on that, but a stack of 40 that begins with nothing takes them minutes.
+
+   Zero-initialise. Threads may ask at once; one that asks for what another is about to make makes it, too, which changes
    nothing. Those of shifted scenes are the unshifted one's. */
 typedef struct ConvergedRuns {
     int count;

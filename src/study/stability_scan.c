@@ -52,6 +52,7 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     Scene *scene = scene_at(scan, value, error);
     const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
     if (scene != NULL) stability_shift(scene, seed);
+    if (scene != NULL && stability_is_reference(method)) scene->warm_starting = true;
     bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
     scene_destroy(scene);
     return ok;

@@ -53,7 +53,7 @@ static void one_border_is_found_to_the_unit(void **state) {
         BorderList list = search(&heights, &made);
         assert_int_equal(list.count, 1);
         assert_border(&list, 0, first - 1, first, VERDICT_FALLS);
-        assert_true(made.asked <= 10 + 3 + 4); /* scan, bisection of a step of 5, seeds */
+        assert_true(made.asked <= 10 + 3 + 4 + 6); /* scan, bisection of a step of 5, seeds, two values beside */
     }
 }
 
@@ -100,6 +100,17 @@ static void all_borders_are_listed(void **state) {
     assert_int_equal(list.count, 3);
     assert_border(&list, 0, 30, 31, VERDICT_FALLS);
     assert_border(&list, 2, 9, 10, VERDICT_FALLS);
+}
+
+/* Holds to 21, but for 20: too little for a scan of ..., 19, 23, ... and a bisection at 21 to see. */
+static void a_hole_beside_a_border_is_found(void **state) {
+    (void)state;
+    Made made = {.from = {20, 22}, .to = {20, 99}, .intervals = 2, .luck_seed = -1, .how = VERDICT_FALLS};
+    BorderList list = search(&heights, &made);
+    assert_int_equal(list.count, 3);
+    assert_border(&list, 0, 19, 20, VERDICT_FALLS);
+    assert_border(&list, 1, 21, 20, VERDICT_FALLS);
+    assert_border(&list, 2, 21, 22, VERDICT_FALLS);
 }
 
 static void without_a_border_there_is_one_side(void **state) {
@@ -179,6 +190,7 @@ int main(void) {
                                        cmocka_unit_test(linear_is_found_to_a_hundredth_of_the_range),
                                        cmocka_unit_test(logarithmic_is_found_to_a_factor),
                                        cmocka_unit_test(all_borders_are_listed),
+                                       cmocka_unit_test(a_hole_beside_a_border_is_found),
                                        cmocka_unit_test(without_a_border_there_is_one_side),
                                        cmocka_unit_test(luck_is_no_side_of_a_border),
                                        cmocka_unit_test(luck_at_an_end_is_told),
