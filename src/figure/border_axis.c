@@ -5,10 +5,10 @@
 #include <string.h>
 
 /* From which ratio of its ends on an axis is logarithmic. */
-static const double long_axis = 12;
+static const double long_axis = 8;
 
 /* mm: of a tic's number */
-static const double tic_digit = 1.4, tic_gap = 1;
+static const double tic_digit = 1.65, tic_gap = 1;
 
 enum { TICS_SIZE = 2048, MOST_STEPS = 4 };
 
@@ -63,7 +63,7 @@ static void add_decades(Tics *tics, const char *digits, int step) {
     for (int decade = first; decade <= last; decade++)
         for (const char *digit = digits; decade % step == 0 && *digit != '\0'; digit++) {
             double value = (*digit - '0') * pow(10, decade);
-            bool plain = value >= plain_least && value < plain_most;
+            bool plain = tics->axis->least >= plain_least && tics->axis->most < plain_most;
             char name[32];
             int length = plain ? snprintf(name, sizeof name, "%g", value)
                                : snprintf(name, sizeof name, "%.*s10^{%s%d}", *digit == '1' ? 0 : 3,
@@ -89,6 +89,17 @@ static double round_step(double step) {
     return (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10) * decade;
 }
 
+/* Counted from a whole number of steps, so that 0 is 0. */
+static void add_steps(Tics *tics, double step) {
+    double first = ceil(tics->axis->least / step - 1);
+    for (int i = 0; i < 2 * MOST_STEPS + 4; i++) {
+        double value = (first + i) * step;
+        char name[32];
+        if (value < tics->axis->least - step / 2 || value > tics->axis->most + step / 2) continue;
+        add_tic(tics, value, snprintf(name, sizeof name, "%.6g", value), name);
+    }
+}
+
 static void linear_tics(Tics *tics) {
     const BorderAxis *axis = tics->axis;
     char name[32];
@@ -96,19 +107,17 @@ static void linear_tics(Tics *tics) {
         add_tic(tics, axis->least, snprintf(name, sizeof name, "%.4g", axis->least), name);
         return;
     }
-    double range = axis->most - axis->least, step = round_step(range / MOST_STEPS);
-    int first = (int)ceil(axis->least / step - 1), last = first + 2 * MOST_STEPS + 4;
-    for (int i = first; i < last; i++) {
-        double value = i * step;
-        if (value < axis->least - step / 2 || value > axis->most + step / 2) continue;
-        add_tic(tics, value, snprintf(name, sizeof name, "%.4g", value), name);
+    for (int steps = MOST_STEPS; steps > 0; steps--) {
+        *tics = (Tics){.axis = axis};
+        add_steps(tics, round_step((axis->most - axis->least) / steps));
+        if (!tics->crowded) return;
     }
 }
 
 void border_axis_put(const BorderAxis *axis, FigurePage *page) {
     Tics tics = {.axis = axis};
-    char text[TICS_SIZE + 16];
+    char text[TICS_SIZE + 32];
     (axis->logarithmic ? log_tics : linear_tics)(&tics);
-    snprintf(text, sizeof text, "out (%s)", tics.text);
+    snprintf(text, sizeof text, "out offset 0,0.3 (%s)", tics.text);
     figure_linear(page, 'x', 0, axis->width, text, axis->label);
 }

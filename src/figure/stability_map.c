@@ -8,7 +8,7 @@
 /* mm */
 static const double left = 13.5, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
-                    tic_digit = 1.55, letter = 1.6;
+                    tic_digit = 1.65, letter = 1.6;
 
 enum { LEGEND_COLUMNS = 6, TICS_SIZE = MAP_MAX_VALUES * 40 };
 
@@ -49,7 +49,7 @@ static Layout lay_out(const StabilityMap *map, FigurePage *page) {
     layout.cell.unit_x = layout.width / map->x_count;
     layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least_height), most_height);
     layout.cell.unit_y = layout.height / map->y_count;
-    layout.bottom = FIGURE_LEGEND_ROW * layout.legend_rows + axis_room + 0.5;
+    layout.bottom = FIGURE_LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     page->width = page_width;
     page->height = layout.bottom + layout.rows * (layout.height + title_room) + (layout.rows - 1) * row_gap;
     return layout;
@@ -94,7 +94,7 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
     for (int i = 0; axis == 'x' && i < count; i++)
         needed = fmax(needed, tic_digit * (1 + snprintf(text, sizeof text, "%.4g", values[i])));
     int every = (int)ceil(needed / room);
-    size_t used = (size_t)snprintf(tics, sizeof tics, "out (");
+    size_t used = (size_t)snprintf(tics, sizeof tics, "out%s (", axis == 'x' ? " offset 0,0.3" : "");
     for (int i = 0; i < count; i++) {
         snprintf(text, sizeof text, "%.4g", values[i]);
         used += (size_t)snprintf(tics + used, sizeof tics - used, "%s'%s' %d", i > 0 ? ", " : "",

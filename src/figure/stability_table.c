@@ -140,7 +140,12 @@ void border_table_free(BorderTable *table) {
 }
 
 void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting) {
-    snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", method, setting[0] != '\0' ? ", " : "", setting);
+    size_t used = (size_t)snprintf(text, STABILITY_TEXT_SIZE, "%s%s", method, setting[0] != '\0' ? ", " : "");
+    for (const char *c = setting; *c != '\0' && used + 3 < STABILITY_TEXT_SIZE; c++) {
+        text[used++] = *c;
+        if (*c == ',') text[used++] = ' ';
+    }
+    text[used] = '\0';
 }
 
 /* An underline would be a subscript to gnuplot. */

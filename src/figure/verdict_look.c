@@ -11,7 +11,7 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_FALLS] = {"falls", "#EE9A2E", "#3D2000", 11, 1},
     [VERDICT_SINKS] = {"sinks", "#CF6414", "#FFFFFF", 4, 0.9},
     [VERDICT_TUNNELS] = {"tunnels", "#A83232", "#FFFFFF", 12, 1.15},
-    [VERDICT_EXPLODES] = {"explodes", "#6E1650", "#FFFFFF", 3, 1},
+    [VERDICT_EXPLODES] = {"explodes", "#6E1650", "#FFFFFF", 3, 1.1},
     [VERDICT_NON_FINITE] = {"non-finite", "#140A1C", "#FFFFFF", 2, 0.9},
     [LOOK_NOT_APPLICABLE] = {"not applicable", NULL, "#909090", 0, 1},
     [LOOK_MISSING] = {"not run", NULL, "#909090", -1, 1},
@@ -21,7 +21,7 @@ const char *const verdict_words[LOOK_MISSING + 1] = {"settles", "sways",    "cre
                                                      "tunnels", "explodes", "non-finite", "not applicable", NULL};
 
 /* mm */
-static const double most_symbol = 1.9, seam = 0.07, legend_tile = 2.9, name_gap = 1.3;
+static const double most_symbol = 2.0, seam = 0.07, legend_tile = 2.9, name_gap = 1.3;
 
 /* Of a tile's smaller side: the symbol, and what a point of size 1 has across in mm. */
 static const double symbol_share = 0.56, point_size_1 = 2.1;
