@@ -7,6 +7,9 @@
 /* From which ratio of its ends on an axis is logarithmic. */
 static const double long_axis = 8;
 
+/* Ends closer than that would make a gulf of a few percent: they are moved apart by the factor on either side. */
+static const double least_ratio = 3, apart = 2;
+
 /* mm: of a tic's number */
 static const double tic_digit = 1.65, tic_gap = 1;
 
@@ -23,6 +26,10 @@ BorderAxis border_axis(const BorderTable *table, int first, double width) {
         falling += (row->fails_at < row->holds_at) - (row->fails_at > row->holds_at);
     }
     if (!(axis.least <= axis.most)) axis.least = axis.most = 0;
+    if (axis.least > 0 && axis.most / axis.least < least_ratio) {
+        axis.least /= apart;
+        axis.most *= apart;
+    }
     axis.logarithmic = axis.least > 0 && axis.most / axis.least > long_axis;
     axis.falling = falling > 0;
     stability_axis_text(axis.label, table->rows[first].parameter, table->rows[first].unit);

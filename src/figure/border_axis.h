@@ -7,7 +7,7 @@
 
 typedef struct BorderAxis {
     bool logarithmic;
-    double least, most; /* of the study's values: within the axis, with room at either end */
+    double least, most; /* of the study's values, or farther apart: within the axis, with room at either end */
     double width;       /* mm */
     bool falling;       /* smaller values are harder: most borders hold above and fail below */
     char label[STABILITY_TEXT_SIZE];

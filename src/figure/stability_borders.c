@@ -138,7 +138,7 @@ bool stability_borders_write(const BorderTable *table, FigurePage *page, Error *
     fprintf(page->caption,
             "How far each method holds, on each study's own axis. Bars go over what holds; tiles stand at the first "
             "value that fails and tell how. An arrow: holds over the whole range that was looked at; a cross: never "
-            "holds.");
+            "holds; a row without a mark: not in the study.");
     figure_end(page);
     return true;
 }

@@ -9,14 +9,14 @@
 
 /* Maps one after the other; all are gathered once before the first is drawn, so that none is drawn of a bad table. */
 static bool go_through_maps(const MapTable *table, const char *folder, bool draw, Error *error) {
-    StabilityMap *map = malloc(sizeof *map);
+    MapPanels *map = malloc(sizeof *map);
     bool ok = map != NULL || error_memory(error, folder);
     for (int row = 0; ok && row < table->count;) {
-        ok = stability_map_gather(map, table, &row, error);
+        ok = map_panels_gather(map, table, &row, error);
         if (!ok || !draw) continue;
         FigureSheet sheet = {0};
         ok = figure_sheet_open(&sheet, folder, error);
-        if (ok) stability_map_write(map, &sheet.page);
+        if (ok) map_panels_write(map, &sheet.page);
         ok = ok && figure_sheet_close(&sheet, folder, error) &&
              figure_sheet_draw(&sheet, folder, "map-", map->first->map, error);
         figure_sheet_free(&sheet);

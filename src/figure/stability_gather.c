@@ -22,14 +22,14 @@ static int find(const double *values, double value) {
     return i;
 }
 
-static bool gather_values(StabilityMap *map, const MapTable *table, int first, int end, Error *error) {
+static bool gather_values(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
     for (int i = first; i < end; i++)
         if (!insert(map->x, &map->x_count, table->cells[i].x) || !insert(map->y, &map->y_count, table->cells[i].y))
             return stability_row_error(table->path, i, error, "more than %d values of a parameter", MAP_MAX_VALUES);
     return true;
 }
 
-static bool gather_looks(StabilityMap *map, const MapTable *table, int first, int end, Error *error) {
+static bool gather_looks(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
     memset(map->looks, LOOK_MISSING, sizeof map->looks);
     for (int i = first; i < end; i++) {
         const MapCell *cell = &table->cells[i];
@@ -48,9 +48,9 @@ static bool gather_looks(StabilityMap *map, const MapTable *table, int first, in
     return true;
 }
 
-bool stability_map_gather(StabilityMap *map, const MapTable *table, int *row, Error *error) {
+bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error) {
     int first = *row;
-    *map = (StabilityMap){.first = &table->cells[first]};
+    *map = (MapPanels){.first = &table->cells[first]};
     while (*row < table->count && strcmp(table->cells[*row].map, map->first->map) == 0) ++*row;
     return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
 }

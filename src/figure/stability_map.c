@@ -6,23 +6,23 @@
 #include <string.h>
 
 /* mm */
-static const double left = 13.5, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
+static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
                     tic_digit = 1.65, letter = 1.6;
 
 enum { LEGEND_COLUMNS = 6, TICS_SIZE = MAP_MAX_VALUES * 40 };
 
 typedef struct Layout {
-    const StabilityMap *map;
+    const MapPanels *map;
     FigurePage *page;
     int columns, rows, legend_columns, legend_rows;
-    double width, height, bottom; /* mm: of a panel; where the lowest begins */
+    double left, width, height, bottom; /* mm: where the first panel begins; of a panel; where the lowest begins */
     TileScale cell;
     bool used[VERDICT_LOOKS];
 } Layout;
 
 static void find_used(Layout *layout) {
-    const StabilityMap *map = layout->map;
+    const MapPanels *map = layout->map;
     for (int p = 0; p < map->panel_count; p++)
         for (int x = 0; x < map->x_count; x++)
             for (int y = 0; y < map->y_count; y++) layout->used[map->looks[p][x][y]] = true;
@@ -34,8 +34,25 @@ static int count_used(const Layout *layout) {
     return count;
 }
 
+/* With three digits, but whole where it has more. */
+static int name_value(char *text, size_t size, double value) {
+    bool whole = fabs(value) > 999 && fabs(value) < 1e6;
+    return snprintf(text, size, whole ? "%.0f" : "%.3g", value);
+}
+
+/* mm, of the longest */
+static double number_width(const double *values, int count) {
+    char text[32];
+    int longest = 0;
+    for (int i = 0; i < count; i++) {
+        int length = name_value(text, sizeof text, values[i]);
+        longest = length > longest ? length : longest;
+    }
+    return longest * tic_digit;
+}
+
 /* A single method takes a column of the page. */
-static Layout lay_out(const StabilityMap *map, FigurePage *page) {
+static Layout lay_out(const MapPanels *map, FigurePage *page) {
     int panels = map->panel_count;
     Layout layout = {.map = map, .page = page};
     find_used(&layout);
@@ -45,7 +62,8 @@ static Layout lay_out(const StabilityMap *map, FigurePage *page) {
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS / 2 : LEGEND_COLUMNS;
     /* One more for the border. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
-    layout.width = (page_width - left - right - gap * (layout.columns - 1)) / layout.columns;
+    layout.left = label_room + number_width(map->y, map->y_count);
+    layout.width = (page_width - layout.left - right - gap * (layout.columns - 1)) / layout.columns;
     layout.cell.unit_x = layout.width / map->x_count;
     layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least_height), most_height);
     layout.cell.unit_y = layout.height / map->y_count;
@@ -56,7 +74,7 @@ static Layout lay_out(const StabilityMap *map, FigurePage *page) {
 }
 
 static void put_tiles(const Layout *layout, int panel) {
-    const StabilityMap *map = layout->map;
+    const MapPanels *map = layout->map;
     Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
     int count = 0;
     for (int x = 0; x < map->x_count; x++)
@@ -71,7 +89,7 @@ static bool parts(int look, int other) {
 
 /* Bars and not lines, whose ends would leave notches at the corners. */
 static void put_border(const Layout *layout, int panel) {
-    const StabilityMap *map = layout->map;
+    const MapPanels *map = layout->map;
     const FigureLook look = {"", {.colour = "black"}, 0, false, 1, false};
     double across = border_width / 2 / layout->cell.unit_x, up = border_width / 2 / layout->cell.unit_y;
     figure_series(layout->page);
@@ -90,13 +108,12 @@ static void put_border(const Layout *layout, int panel) {
 static void put_axis(const Layout *layout, char axis, const double *values, int count, bool numbers,
                      const char *label) {
     char tics[TICS_SIZE], text[32];
-    double room = axis == 'x' ? layout->cell.unit_x : layout->cell.unit_y, needed = tic_height;
-    for (int i = 0; axis == 'x' && i < count; i++)
-        needed = fmax(needed, tic_digit * (1 + snprintf(text, sizeof text, "%.4g", values[i])));
+    double room = axis == 'x' ? layout->cell.unit_x : layout->cell.unit_y;
+    double needed = axis == 'x' ? number_width(values, count) + tic_digit : tic_height;
     int every = (int)ceil(needed / room);
     size_t used = (size_t)snprintf(tics, sizeof tics, "out%s (", axis == 'x' ? " offset 0,0.3" : "");
     for (int i = 0; i < count; i++) {
-        snprintf(text, sizeof text, "%.4g", values[i]);
+        name_value(text, sizeof text, values[i]);
         used += (size_t)snprintf(tics + used, sizeof tics - used, "%s'%s' %d", i > 0 ? ", " : "",
                                  numbers && i % every == 0 ? text : "", i);
     }
@@ -105,10 +122,10 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
 }
 
 static void put_panel(const Layout *layout, int panel) {
-    const StabilityMap *map = layout->map;
+    const MapPanels *map = layout->map;
     int column = panel % layout->columns, row = panel / layout->columns;
     double step = layout->height + title_room + row_gap;
-    FigureBox box = {left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
+    FigureBox box = {layout->left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
                      layout->width, layout->height};
     char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     strcpy(title, map->titles[panel]);
@@ -126,8 +143,8 @@ static void put_panel(const Layout *layout, int panel) {
 static void put_legend(const Layout *layout) {
     FigurePage *page = layout->page;
     const FigureLook border = {"", {.colour = "black"}, 0, false, 1, false};
-    LegendPlace place = {left, FIGURE_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
-                         (page->width - left) / layout->legend_columns, layout->legend_columns};
+    LegendPlace place = {layout->left, FIGURE_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
+                         (page->width - layout->left) / layout->legend_columns, layout->legend_columns};
     figure_page_panel(page);
     int next = verdict_put_legend(page, layout->used, &place);
     double x = place.left + place.width * (next % place.columns),
@@ -140,7 +157,7 @@ static void put_legend(const Layout *layout) {
 }
 
 static void put_caption(const Layout *layout) {
-    const StabilityMap *map = layout->map;
+    const MapPanels *map = layout->map;
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
@@ -151,7 +168,7 @@ static void put_caption(const Layout *layout) {
             map->first->map, x, y);
 }
 
-void stability_map_write(const StabilityMap *map, FigurePage *page) {
+void map_panels_write(const MapPanels *map, FigurePage *page) {
     Layout layout = lay_out(map, page);
     figure_begin(page, page->width, page->height);
     for (int panel = 0; panel < map->panel_count; panel++) put_panel(&layout, panel);

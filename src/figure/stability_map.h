@@ -7,18 +7,18 @@
 enum { MAP_MAX_VALUES = 64, MAP_MAX_METHODS = 24 };
 
 /* A map's cells in place. */
-typedef struct StabilityMap {
+typedef struct MapPanels {
     const MapCell *first; /* of its rows; the table outlives the map */
     int x_count, y_count, panel_count;
     double x[MAP_MAX_VALUES], y[MAP_MAX_VALUES]; /* the values that any method has, rising */
     char titles[MAP_MAX_METHODS][STABILITY_TEXT_SIZE];
     unsigned char looks[MAP_MAX_METHODS][MAP_MAX_VALUES]
                        [MAP_MAX_VALUES]; /* [panel][x][y]; LOOK_MISSING without a row */
-} StabilityMap;
+} MapPanels;
 
 /* Gathers the map whose rows begin at *row, and moves *row behind them. Refused, with path:line:column: a cell that is
    there twice, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
-bool stability_map_gather(StabilityMap *map, const MapTable *table, int *row, Error *error);
+bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error);
 
 /* Writes the figure and its caption. Cells are equally large, whatever their values: these are the tics. */
-void stability_map_write(const StabilityMap *map, FigurePage *page);
+void map_panels_write(const MapPanels *map, FigurePage *page);
