@@ -10,10 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, NAME_SIZE = 320, NOTE_SIZE = 160 };
+enum { NAME_SIZE = 320, NOTE_SIZE = 160 };
 
 /* s that are shown after what decided. */
 static const double clip_after = 3;
+
+/* Hz: of the steps of a scene that makes more, only so many become frames. */
+static const double clip_rate = 60;
 
 /* What a clip shows: the holder first, if there is one. */
 typedef struct Clip {
@@ -76,6 +79,17 @@ static bool run_all(Clip *clip, Error *error) {
     return ok;
 }
 
+static bool thin_out(Clip *clip, Error *error) {
+    int every = (int)(1 / (clip_rate * clip->dt) + 0.01);
+    for (int i = 0; every > 1 && i < clip->panels.count; i++) {
+        Trajectory *thin = trajectory_every(clip->panels.runs[i], every, error);
+        if (thin == NULL) return false;
+        trajectory_destroy(clip->panels.runs[i]);
+        clip->panels.runs[i] = thin;
+    }
+    return true;
+}
+
 /* "falls at 4.2 s (0.53 m, body 7)" */
 static void describe(char note[NOTE_SIZE], const MapCell *row, double dt) {
     size_t used = (size_t)snprintf(note, NOTE_SIZE, "%s", verdict_words[row->verdict]);
@@ -102,8 +116,8 @@ static bool draw(Clip *clip, Error *error) {
     snprintf(title, sizeof title, "%s %.4g %s, %s %.4g %s", own->x_parameter, own->x, own->x_unit, own->y_parameter,
              own->y, own->y_unit);
     RenderOptions render = draw_panels_defaults(folder);
-    render.width = CLIP_WIDTH;
-    render.height = CLIP_HEIGHT;
+    render.width = clip->options->width;
+    render.height = clip->options->height;
     render.title = title;
     for (int i = 0; i < clip->count; i++) {
         describe(notes[i], clip->rows[i], clip->dt);
@@ -120,7 +134,8 @@ bool stability_clip(const ClipOptions *options, Error *error) {
     MapTable table;
     if (!map_table_read(&table, options->folder, error)) return false;
     Clip clip = {.options = options};
-    bool ok = choose_rows(&clip, &table, error) && run_all(&clip, error) && draw(&clip, error);
+    bool ok =
+        choose_rows(&clip, &table, error) && run_all(&clip, error) && thin_out(&clip, error) && draw(&clip, error);
     panels_free(&clip.panels);
     map_table_free(&table);
     return ok;
