@@ -40,6 +40,15 @@ static void no_more_than_sixty_frames_a_second_are_drawn(void **state) {
     assert_false(there_is("clips/m-momentum-480_2/frame_000181.png"));
 }
 
+/* The run that leaves the finite numbers in step 3 ends with frame 2; the one that holds goes on beside it. */
+static void what_is_no_more_finite_ends_before(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(make_clip("m:nncg:20,2", 20, &error), error);
+    assert_true(there_is("clips/m-nncg-20_2/frame_000063.png"));
+    assert_false(there_is("clips/m-nncg-20_2/frame_000064.png"));
+}
+
 static void what_cannot_be_shown_is_refused(void **state) {
     (void)state;
     static const struct {
@@ -61,6 +70,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clip_goes_on_for_three_seconds),
         cmocka_unit_test(no_more_than_sixty_frames_a_second_are_drawn),
+        cmocka_unit_test(what_is_no_more_finite_ends_before),
         cmocka_unit_test(what_cannot_be_shown_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
