@@ -5,7 +5,8 @@
 #include "cli/stability_clip.h"
 #include "common/file.h"
 
-#define ROW(method, verdict, frame) "m," method ",,rate,Hz,%d,height,,2," verdict "," frame ",1,0.5,m\n"
+#define ROW(method, height, verdict, frame) \
+    "m," method ",,rate,Hz,%d,height,," height "," verdict "," frame ",1,0.5,m\n"
 #define HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
 
 static const ClipMap maps[] = {{"m", SOURCE_DIR "/scenes/stability/time_step.yaml", "rate", "height"}};
@@ -13,9 +14,10 @@ static const ClipMap maps[] = {{"m", SOURCE_DIR "/scenes/stability/time_step.yam
 static bool make_clip(const char *cell, int rate, Error *error) {
     char text[1024];
     snprintf(text, sizeof text,
-             HEADER ROW("engine", "falls", "4") ROW("nncg", "non-finite", "3") ROW("momentum", "settles", "2")
-                 ROW("scene-net", "not applicable", ""),
-             rate, rate, rate, rate);
+             HEADER ROW("engine", "2", "falls", "4") ROW("nncg", "2", "non-finite", "3")
+                 ROW("nncg", "3", "non-finite", "3") ROW("momentum", "2", "settles", "2")
+                     ROW("scene-net", "2", "not applicable", ""),
+             rate, rate, rate, rate, rate);
     assert_ok(file_write_soon(temporary_path("maps.csv"), text, strlen(text), error), *error);
     return stability_clip(&(ClipOptions){temporary_folder, cell, maps, 1, 160, 90}, error);
 }
@@ -40,13 +42,16 @@ static void no_more_than_sixty_frames_a_second_are_drawn(void **state) {
     assert_false(there_is("clips/m-momentum-480_2/frame_000181.png"));
 }
 
-/* The run that leaves the finite numbers in step 3 ends with frame 2; the one that holds goes on beside it. */
+/* The run that leaves the finite numbers in step 3 ends with frame 2; one that holds goes on beside it. */
 static void what_is_no_more_finite_ends_before(void **state) {
     (void)state;
     Error error = {0};
     assert_ok(make_clip("m:nncg:20,2", 20, &error), error);
     assert_true(there_is("clips/m-nncg-20_2/frame_000063.png"));
     assert_false(there_is("clips/m-nncg-20_2/frame_000064.png"));
+    assert_ok(make_clip("m:nncg:20,3", 20, &error), error);
+    assert_true(there_is("clips/m-nncg-20_3/frame_000002.png"));
+    assert_false(there_is("clips/m-nncg-20_3/frame_000003.png"));
 }
 
 static void what_cannot_be_shown_is_refused(void **state) {
