@@ -8,7 +8,7 @@
 static const double long_axis = 8;
 
 /* Ends closer than that would make a gulf of a few percent: they are moved apart by the factor on either side. */
-static const double least_ratio = 3, apart = 2;
+static const double least_ratio = 1.5, apart = 1.5;
 
 /* mm: of a tic's number */
 static const double tic_digit = 1.65, tic_gap = 1;

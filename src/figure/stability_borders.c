@@ -5,7 +5,6 @@
 #include "figure/border_marks.h"
 
 #include <math.h>
-#include <string.h>
 
 /* mm */
 static const double left = 33, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8, legend_left = 20,
@@ -79,8 +78,7 @@ static void put_names(const Borders *borders, double bottom) {
     for (int method = 0; method < borders->method_count; method++) {
         const BorderRow *row = &borders->table->rows[borders->methods[method]];
         char text[STABILITY_TEXT_SIZE];
-        stability_method_text(text, row->method, row->setting);
-        figure_cut(text, (size_t)((left - 1.5) / letter));
+        stability_method_text(text, (size_t)((left - 1.5) / letter), row->method, row->setting);
         figure_text(borders->page, left - 1.5, bottom + (borders->method_count - method - 0.5) * borders->row_height,
                     "right", 7, text);
     }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/stability_map.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Puts a value into its place, if it is new. False where there is no room. */
@@ -37,7 +36,7 @@ static bool gather_looks(MapPanels *map, const MapTable *table, int first, int e
             if (map->panel_count == MAP_MAX_METHODS)
                 return stability_row_error(table->path, i, error, "more than %d methods: too many for a figure",
                                            MAP_MAX_METHODS);
-            stability_method_text(map->titles[map->panel_count++], cell->method, cell->setting);
+            map->methods[map->panel_count++] = cell;
         }
         unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
         if (*look != LOOK_MISSING)

@@ -8,7 +8,7 @@
 /* mm */
 static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
-                    tic_digit = 1.65, letter = 1.6;
+                    tic_digit = 1.65, letter = 1.55;
 
 enum { LEGEND_COLUMNS = 6, TICS_SIZE = MAP_MAX_VALUES * 40 };
 
@@ -65,7 +65,10 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     layout.left = label_room + number_width(map->y, map->y_count);
     layout.width = (page_width - layout.left - right - gap * (layout.columns - 1)) / layout.columns;
     layout.cell.unit_x = layout.width / map->x_count;
-    layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least_height), most_height);
+    char label[STABILITY_TEXT_SIZE];
+    stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
+    double least = fmax(least_height, letter * (double)strlen(label));
+    layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least), most_height);
     layout.cell.unit_y = layout.height / map->y_count;
     layout.bottom = FIGURE_LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     page->width = page_width;
@@ -128,8 +131,8 @@ static void put_panel(const Layout *layout, int panel) {
     FigureBox box = {layout->left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
                      layout->width, layout->height};
     char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
-    strcpy(title, map->titles[panel]);
-    figure_cut(title, (size_t)(layout->width / letter));
+    const MapCell *method = map->methods[panel];
+    stability_method_text(title, (size_t)(layout->width / letter), method->method, method->setting);
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     figure_panel(layout->page, box, title);

@@ -11,7 +11,7 @@ typedef struct MapPanels {
     const MapCell *first; /* of its rows; the table outlives the map */
     int x_count, y_count, panel_count;
     double x[MAP_MAX_VALUES], y[MAP_MAX_VALUES]; /* the values that any method has, rising */
-    char titles[MAP_MAX_METHODS][STABILITY_TEXT_SIZE];
+    const MapCell *methods[MAP_MAX_METHODS];     /* the first row of each */
     unsigned char looks[MAP_MAX_METHODS][MAP_MAX_VALUES]
                        [MAP_MAX_VALUES]; /* [panel][x][y]; LOOK_MISSING without a row */
 } MapPanels;

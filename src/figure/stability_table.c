@@ -9,6 +9,8 @@
 
 #define LARGEST 1e30
 
+enum { LEAST_NAME = 6 };
+
 static const CsvColumn map_columns[] = {
     {"map", CSV_NAME, offsetof(MapCell, map), NULL, 0, 0},
     {"method", CSV_NAME, offsetof(MapCell, method), NULL, 0, 0},
@@ -139,13 +141,19 @@ void border_table_free(BorderTable *table) {
     *table = (BorderTable){.count = 0};
 }
 
-void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting) {
-    size_t used = (size_t)snprintf(text, STABILITY_TEXT_SIZE, "%s%s", method, setting[0] != '\0' ? ", " : "");
-    for (const char *c = setting; *c != '\0' && used + 3 < STABILITY_TEXT_SIZE; c++) {
-        text[used++] = *c;
-        if (*c == ',') text[used++] = ' ';
+/* What is too long loses the end of its name, as long as that leaves some: settings tell panels apart. */
+void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
+    char name[CSV_NAME_SIZE], shown[2 * CSV_NAME_SIZE] = "";
+    size_t used = 0;
+    for (const char *c = setting; *c != '\0' && used + 3 < sizeof shown; c++) {
+        shown[used++] = *c;
+        if (*c == ',') shown[used++] = ' ';
     }
-    text[used] = '\0';
+    shown[used] = '\0';
+    snprintf(name, sizeof name, "%s", method);
+    if (used > 0 && used + 2 + LEAST_NAME <= most) figure_cut(name, most - used - 2);
+    snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", name, used > 0 ? ", " : "", shown);
+    figure_cut(text, most);
 }
 
 /* An underline would be a subscript to gnuplot. */

@@ -54,7 +54,7 @@ bool stability_row_error(const char *path, int row, Error *error, const char *fo
 /* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine, k=10, warm=off"; and "Height (boxes)", for an axis. Twice a name and room for what joins them. */
-enum { STABILITY_TEXT_SIZE = 2 * CSV_NAME_SIZE + 8 };
-void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting);
+/* "engine, k=10, warm=off", of at most so many characters; and "Height (boxes)", for an axis. */
+enum { STABILITY_TEXT_SIZE = 3 * CSV_NAME_SIZE + 8 };
+void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);

@@ -72,6 +72,16 @@ void verdict_put_tiles(FigurePage *page, const Tile *tiles, int count, TileScale
     }
 }
 
+/* Around the sample of a cell that has no fill. */
+static void put_frame(FigurePage *page, double x, double y) {
+    const FigureLook line = {"", {.colour = "#909090", .dashes = "solid"}, 0.6, false, 0, false};
+    const double half = legend_tile / 2 - seam;
+    figure_series(page);
+    for (int i = 0; i <= 4; i++)
+        figure_point(page, x + (i % 4 == 0 || i == 3 ? -half : half), y + (i % 4 < 2 ? -half : half));
+    figure_draw(page, &line);
+}
+
 int verdict_put_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
     Tile tiles[VERDICT_LOOKS];
     int count = 0;
@@ -79,6 +89,7 @@ int verdict_put_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const L
         if (!used[look]) continue;
         double x = place->left + place->width * (count % place->columns),
                y = place->top - FIGURE_LEGEND_ROW * (count / place->columns);
+        if (verdict_looks[look].fill == NULL) put_frame(page, x + legend_tile / 2, y);
         tiles[count++] = (Tile){x + legend_tile / 2, y, look};
         figure_text(page, x + legend_tile + name_gap, y, "left", 7.5, verdict_looks[look].name);
     }

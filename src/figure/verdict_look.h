@@ -21,7 +21,7 @@ extern const VerdictLook verdict_looks[VERDICT_LOOKS];
 /* The names of all but the last, for a column of words: those of verdict_name(), then "not applicable". */
 extern const char *const verdict_words[LOOK_MISSING + 1];
 
-/* A tile of a panel whose axes go over `width` x `height` units of `unit_x` x `unit_y` mm. */
+/* How large tiles are, on a panel with linear axes. */
 typedef struct TileScale {
     double unit_x, unit_y; /* mm of the page that one unit of the axis takes */
     double half;           /* of a tile's side, mm; 0: it fills its unit */
@@ -36,10 +36,11 @@ typedef struct Tile {
 /* Draws tiles upon the open panel: all fills, then all symbols. */
 void verdict_put_tiles(FigurePage *page, const Tile *tiles, int count, TileScale scale);
 
-/* Tiles and names of the looks that are used, in rows of `columns`, as figure_legend() has them. Returns where the next
-   one would go. */
+/* Where a legend's items go: row by row, FIGURE_LEGEND_ROW apart. */
 typedef struct LegendPlace {
-    double left, top, width; /* mm: of the first; between columns */
+    double left, top, width; /* mm: left edge and middle of the first; from column to column */
     int columns;
 } LegendPlace;
+
+/* Puts tiles and names of the looks that are used upon a panel in mm. Returns how many. */
 int verdict_put_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place);

@@ -5,7 +5,7 @@
 #include "figure/stability_figures.h"
 
 #include "common/file.h"
-#include "figure/verdict_look.h"
+#include "figure/stability_table.h"
 
 #include <math.h>
 #include <sys/stat.h>
@@ -113,6 +113,23 @@ static void axes_name_their_values(void **state) {
                              "assert at == sorted(at), found\n"
                              "assert 'Rate (Hz)' in found and 'B c' in found, found\n",
                temporary_folder);
+}
+
+static void titles_are_cut_where_they_tell_the_least(void **state) {
+    (void)state;
+    static const struct {
+        const char *method, *setting, *text;
+        size_t most;
+    } cases[] = {{"engine", "", "engine", 20},
+                 {"engine", "k=10,warm=off", "engine, k=10, warm=off", 22},
+                 {"learned-momentum", "k=10,warm=off", "learned..., k=10, warm=off", 26},
+                 {"learned-momentum", "k=10,warm=off", "learned-momentum,...", 20},
+                 {"learned-momentum", "", "learned...", 10}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[STABILITY_TEXT_SIZE];
+        stability_method_text(text, cases[i].most, cases[i].method, cases[i].setting);
+        assert_string_equal(text, cases[i].text);
+    }
 }
 
 static void many_methods_and_large_grids_are_drawn(void **state) {
@@ -329,6 +346,7 @@ int main(void) {
         cmocka_unit_test(each_verdict_has_its_tile),
         cmocka_unit_test(the_border_parts_holding_from_failing),
         cmocka_unit_test(axes_name_their_values),
+        cmocka_unit_test(titles_are_cut_where_they_tell_the_least),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
         cmocka_unit_test(the_same_tables_give_the_same_files),
         cmocka_unit_test(the_worse_the_darker),
