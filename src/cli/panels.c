@@ -18,7 +18,7 @@ static bool add(Panels *panels, Trajectory *run, const char *input, Error *error
     return true;
 }
 
-static bool add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
+bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
     Method method;
     if (!method_parse(&method, method_name, error)) return false;
     char what[2 * SCENE_NAME_SIZE + 8];
@@ -32,8 +32,8 @@ static bool add_run(Panels *panels, const Scene *scene, const char *method_name,
 
 static bool add_scene(Panels *panels, const char *input, const SetOptions *set, Error *error) {
     Scene *scene = options_read_scene(input, set, error);
-    bool ok = scene != NULL && add_run(panels, scene, "engine", input, error);
-    if (ok && scene_network(scene, "pair-net") != NULL) ok = add_run(panels, scene, "pair-net", input, error);
+    bool ok = scene != NULL && panels_add_run(panels, scene, "engine", input, error);
+    if (ok && scene_network(scene, "pair-net") != NULL) ok = panels_add_run(panels, scene, "pair-net", input, error);
     scene_destroy(scene);
     return ok;
 }
@@ -63,12 +63,16 @@ void panels_free(Panels *panels) {
 
 enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
 
-/* SCENE-METHOD with what does not belong in a file name turned to '_'. */
+void panels_file_name(char *name) {
+    for (char *c = name; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
+    if (name[0] == '.') name[0] = '_';
+}
+
+/* SCENE-METHOD */
 static void file_stem(const Trajectory *run, char stem[STEM_SIZE]) {
     snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
-    for (char *c = stem; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
-    if (stem[0] == '.') stem[0] = '_';
+    panels_file_name(stem);
 }
 
 bool panels_store(const Panels *panels, const char *directory, Error *error) {

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "common/error.h"
 #include "render/render.h"
+#include "scene/scene.h"
 #include "trajectory/trajectory.h"
 
 typedef struct Panels {
@@ -15,6 +16,12 @@ typedef struct Panels {
    panels_free, too. */
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error);
 void panels_free(Panels *panels);
+
+/* Adds the run of a scene by a method, with a bar of progress; `input` is what it came from, for errors. */
+bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
+
+/* Turns what does not belong in a file name to '_'. */
+void panels_file_name(char *name);
 
 /* Writes each run as directory/SCENE-METHOD.npz; a second one of that name gets -2 and so on. */
 bool panels_store(const Panels *panels, const char *directory, Error *error);

@@ -79,6 +79,12 @@ void figure_axis_label(FigurePage *page, char letter, const char *label);
 /* A text on the page at (x, y) mm: align is "left", "center" or "right". */
 void figure_text(FigurePage *page, double x, double y, const char *align, double points, const char *text);
 
+/* Cuts a text to so many characters, the last three of them dots; most >= 3. */
+void figure_cut(char *text, size_t most);
+
+/* Opens a panel over the whole page, without a frame, its axes in mm. Of all panels the last, as the legend is. */
+void figure_page_panel(FigurePage *page);
+
 /* A legend in columns over [left, width - right], its first row's middle at `top` mm; of all panels the last. */
 #define FIGURE_LEGEND_ROW 3.7 /* mm */
 void figure_legend(FigurePage *page, const FigureLook *looks, int count, int columns, double left, double top);

@@ -60,6 +60,10 @@ void trajectory_end_contacts(Trajectory *trajectory);
    rising index: the definition of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
+/* Every step'th frame from frame 0 on, dt as much longer, with the contacts of the steps that led to these frames. The caller
+   destroys it. step >= 1. */
+Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
+
 /* .npz: version, scene, method, scene_hash, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
    contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. */
