@@ -13,12 +13,13 @@ void forest_free(Forest *forest) {
     *forest = (Forest){0};
 }
 
-static bool is_static(const ContactProblem *problem, int body) { return problem->bodies[body].inv_mass == 0.0f; }
+static bool is_static(const ContactProblem *problem, int body) {
+    return problem->bodies[body].inv_mass == 0.0f && problem->bodies[body].inv_inertia == 0.0f;
+}
 
 static int point_count(const ContactProblem *problem, int first) {
     const ContactPoint *contact = &problem->contacts[first];
-    bool two = first + 1 < problem->contact_count && contact[1].a == contact->a && contact[1].b == contact->b;
-    return two ? 2 : 1;
+    return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
 }
 
 static void link_bodies(Forest *forest, const ContactProblem *problem) {
