@@ -60,13 +60,13 @@ static float side_of(const ForestPair *pair, const ContactPoint *contact) {
 static Vec2 arm_above(float side, const ContactPoint *contact) { return side > 0 ? contact->arm_b : contact->arm_a; }
 static Vec2 arm_below(float side, const ContactPoint *contact) { return side > 0 ? contact->arm_a : contact->arm_b; }
 
-/* The velocity of the body above, if it neither slides nor opens. */
-static void carry(Forest *forest, const ContactProblem *problem, const ForestPair *pair) {
+/* The velocity of the body above, if it neither slides nor opens. False where nothing says how fast the one below is. */
+static bool carry(Forest *forest, const ContactProblem *problem, const ForestPair *pair) {
     const ContactPoint *contact = &problem->contacts[pair->first];
     const ForestBody *below = &forest->bodies[pair->below];
     ForestBody *above = &forest->bodies[pair->above];
-    above->grounded = above->holds = pair->points == 2 && (below->grounded || is_static(problem, pair->below));
-    if (!above->grounded) return;
+    above->grounded = pair->points == 2 && (below->grounded || is_static(problem, pair->below));
+    if (!above->grounded) return false;
     const float side = side_of(pair, contact);
     const Vec2 arm = arm_above(side, contact);
     const float width = vec2_cross(vec2_sub(arm_above(side, &contact[1]), arm), contact->normal);
@@ -74,10 +74,11 @@ static void carry(Forest *forest, const ContactProblem *problem, const ForestPai
     Vec2 point = vec2_add(below->after.linear, scalar_cross_vec2(below->after.angular, arm_below(side, contact)));
     point = vec2_add(point, vec2_scale(side * contact->bias, contact->normal));
     above->after = (BodyVelocity){vec2_sub(point, scalar_cross_vec2(spin, arm)), spin};
+    return true;
 }
 
-/* Shares what the body above needs among two points. False where they would have to pull or to drag too much, or are
-   none the numbers of which are finite; then with impulses within their cones. */
+/* Shares what the body above needs among two points. False where one would have to pull or to drag too much, or a
+   number is not finite: then as much of it as the points can do. */
 static bool share_out(const ContactPoint *contact, float side, Vec2 push, float turn, ContactImpulse out[2]) {
     const Vec2 normal = contact->normal, tangent = vec2_cross_scalar(normal, 1.0f);
     const Vec2 arm = arm_above(side, contact), other = arm_above(side, &contact[1]);
@@ -91,11 +92,11 @@ static bool share_out(const ContactPoint *contact, float side, Vec2 push, float 
         const float limit = contact->friction * out[k].normal;
         out[k].tangent = pushed > 0 ? contact_clamp(dragged * (out[k].normal / pushed), -limit, limit) : 0.0f;
     }
-    return needed >= 0 && second >= 0 && second <= needed && fabsf(dragged) <= contact->friction * pushed;
+    return second >= 0 && second <= needed && fabsf(dragged) <= contact->friction * pushed;
 }
 
-/* Impulses for a body and all that it carries, and what they do to the one below. */
-static void pass_on(Forest *forest, const ContactProblem *problem, const ForestPair *pair, ContactImpulse *impulses) {
+/* Impulses for a body and all that it carries, and what they do to the one below. True where they are the solution's. */
+static bool pass_on(Forest *forest, const ContactProblem *problem, const ForestPair *pair, ContactImpulse *impulses) {
     const ContactPoint *contact = &problem->contacts[pair->first];
     const ProblemBody *body = &problem->bodies[pair->above];
     const ForestBody *above = &forest->bodies[pair->above];
@@ -106,9 +107,8 @@ static void pass_on(Forest *forest, const ContactProblem *problem, const ForestP
         Vec2 change = vec2_sub(above->after.linear, body->velocity);
         Vec2 push = vec2_sub(vec2_scale(1.0f / body->inv_mass, change), above->push);
         float turn = (above->after.angular - body->angular_velocity) / body->inv_inertia - above->turn;
-        holds = share_out(contact, side, push, turn, impulses) && above->holds;
+        holds = share_out(contact, side, push, turn, impulses);
     }
-    below->holds &= holds;
     const Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
     for (int k = 0; k < pair->points; k++) {
         Vec2 along =
@@ -117,21 +117,7 @@ static void pass_on(Forest *forest, const ContactProblem *problem, const ForestP
         below->push = vec2_add(below->push, impulse);
         below->turn += vec2_cross(arm_below(side, &contact[k]), impulse);
     }
-    forest->bodies[pair->above].holds = holds;
-}
-
-static ForestAnswer find_answer(Forest *forest, const ContactProblem *problem) {
-    int solved = 0;
-    bool any = false;
-    for (int i = forest->pair_count - 1; i >= 0; i--) {
-        const ForestPair *pair = &forest->pairs[i];
-        ForestBody *above = &forest->bodies[pair->above];
-        above->holds &= is_static(problem, pair->below) || forest->bodies[pair->below].holds;
-        if (above->holds) solved += pair->points;
-        any |= above->grounded;
-    }
-    if (solved == problem->contact_count) return FOREST_WHOLE;
-    return any ? FOREST_PART : FOREST_NONE;
+    return holds;
 }
 
 bool forest_solve(Forest *forest, const ContactProblem *problem, ContactImpulse *impulses, ForestAnswer *answer) {
@@ -143,9 +129,12 @@ bool forest_solve(Forest *forest, const ContactProblem *problem, ContactImpulse 
         impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
     link_bodies(forest, problem);
     take_off(forest, problem);
-    for (int i = forest->pair_count - 1; i >= 0; i--) carry(forest, problem, &forest->pairs[i]);
-    for (int i = 0; i < forest->pair_count; i++)
-        pass_on(forest, problem, &forest->pairs[i], &impulses[forest->pairs[i].first]);
-    *answer = find_answer(forest, problem);
+    int grounded = 0, solved = 0;
+    for (int i = forest->pair_count - 1; i >= 0; i--) grounded += carry(forest, problem, &forest->pairs[i]);
+    for (int i = 0; i < forest->pair_count; i++) {
+        const ForestPair *pair = &forest->pairs[i];
+        if (pass_on(forest, problem, pair, &impulses[pair->first])) solved += pair->points;
+    }
+    *answer = solved == problem->contact_count ? FOREST_WHOLE : grounded > 0 ? FOREST_PART : FOREST_NONE;
     return true;
 }

@@ -24,8 +24,7 @@ typedef struct ForestBody {
     Vec2 push;          /* N s: what those that it carries give to it, and their turn in N m s */
     float turn;
     int pairs, links; /* pairs not taken off yet, and the exclusive or of their first contacts */
-    bool grounded;    /* by pairs of two points, in a tree */
-    bool holds;       /* and nothing in that tree slides, tips or opens */
+    bool grounded;    /* in a tree, by pairs of two points all the way down */
 } ForestBody;
 
 /* A pair of a tree, or of a branch that grows from a loop. */
@@ -44,7 +43,7 @@ typedef struct Forest {
 
 typedef enum ForestAnswer {
     FOREST_NONE, /* nothing is grounded */
-    FOREST_PART, /* some bodies slide, tip, open, or are in no tree */
+    FOREST_PART, /* some contacts slide or open, or are in no tree */
     FOREST_WHOLE /* impulses and velocities solve the problem */
 } ForestAnswer;
 
