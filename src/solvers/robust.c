@@ -43,33 +43,40 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-/* E of the impulses and velocities that the sweeps are at. */
-static double objective(const ContactProblem *problem, const Sweeps *sweeps) {
+/* By how much E rises where impulses change the velocities `before` into those that the sweeps are at. */
+static double rise(const ContactProblem *problem, const ContactImpulse *change, const BodyVelocity *before,
+                   const Sweeps *sweeps) {
     double sum = 0;
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
         const SweepBody *now = &sweeps->bodies[i];
         if (body->inv_mass == 0.0f) continue;
-        const double x = (double)now->x, y = (double)now->y, spin = (double)now->spin;
-        sum += 0.5 * ((x * x + y * y) / (double)body->inv_mass + spin * spin / (double)body->inv_inertia);
+        const double x = (double)before[i].linear.x, y = (double)before[i].linear.y, spin = (double)before[i].angular;
+        const double by_x = (double)now->x - x, by_y = (double)now->y - y, by_spin = (double)now->spin - spin;
+        sum += (by_x * (x + 0.5 * by_x) + by_y * (y + 0.5 * by_y)) / (double)body->inv_mass +
+               by_spin * (spin + 0.5 * by_spin) / (double)body->inv_inertia;
     }
-    for (int i = 0; i < sweeps->pair_count; i++)
-        for (int k = 0; k < 2; k++)
-            sum -= (double)sweeps->pairs[i].points[k].bias * (double)sweeps->pairs[i].sums[k].normal;
+    for (int i = 0; i < problem->contact_count; i++)
+        sum -= (double)problem->contacts[i].bias * (double)change[i].normal;
     return sum;
 }
 
-/* Begins from the impulses [contact_count] of the passes, which are overwritten, if they are the better start. */
-static bool begin_nearer(Sweeps *sweeps, const ContactProblem *problem, ContactImpulse *impulses) {
+/* Begins from the impulses of the passes, which are in the solution, if they are the better start. That is overwritten. */
+static bool begin_nearer(Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {
     if (!sweeps_begin(sweeps, sweeps_best_kernel(), problem, true, 1.0f)) return false;
-    const double warm = objective(problem, sweeps);
-    for (int i = 0; i < problem->contact_count; i++) {
-        impulses[i].normal -= problem->contacts[i].warm_normal;
-        impulses[i].tangent -= problem->contacts[i].warm_tangent;
+    for (int i = 0; i < problem->body_count; i++) {
+        const SweepBody *body = &sweeps->bodies[i];
+        solution->velocities[i] = (BodyVelocity){vec2(body->x, body->y), body->spin};
     }
-    sweeps_push(sweeps, impulses);
-    /* Not where E is no number, either. */
-    return objective(problem, sweeps) < warm || sweeps_begin(sweeps, sweeps->kernel, problem, true, 1.0f);
+    ContactImpulse *change = solution->impulses;
+    for (int i = 0; i < problem->contact_count; i++) {
+        change[i].normal -= problem->contacts[i].warm_normal;
+        change[i].tangent -= problem->contacts[i].warm_tangent;
+    }
+    sweeps_push(sweeps, change);
+    /* Nor where it is no number. */
+    return rise(problem, change, solution->velocities, sweeps) < 0 ||
+           sweeps_begin(sweeps, sweeps->kernel, problem, true, 1.0f);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -81,7 +88,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
         for (int i = 0; i < problem->body_count; i++) solution->velocities[i] = solver->forest.bodies[i].after;
         return true;
     }
-    bool begun = answer == FOREST_PART ? begin_nearer(&solver->sweeps, problem, solution->impulses)
+    bool begun = answer == FOREST_PART ? begin_nearer(&solver->sweeps, problem, solution)
                                        : sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, true, 1.0f);
     if (!begun || !sweeps_run(&solver->sweeps, solver->sweep_count)) return error_memory(error, "robust");
     if (!sweeps_end(&solver->sweeps, solution))
