@@ -66,6 +66,7 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_momentum);
     steps_allocate_nothing_by(&solver_block);
     steps_allocate_nothing_by(&solver_nncg);
+    steps_allocate_nothing_by(&solver_robust);
     steps_allocate_nothing_by(&solver_relu_net);
 }
 
