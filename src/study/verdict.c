@@ -32,7 +32,8 @@ static bool meet(VerdictWatch *watch, const Body *bodies, int count, Error *erro
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
         return error_memory(error, "verdict");
     for (int i = watch->body_count; i < count; i++)
-        watch->bodies[i] = (WatchedBody){.last = bodies[i].position, .last_angle = bodies[i].angle};
+        watch->bodies[i] =
+            (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
     watch->body_count = count;
     return true;
 }

@@ -91,6 +91,7 @@ typedef struct VerdictStep {
 
 /* What is kept of a body. */
 typedef struct WatchedBody {
+    Vec2 outside;     /* m: the last place with the centre in no static box; at first that of the start */
     Vec2 last, stood; /* m: in the last frame; before the step that first found it touching */
     float last_angle, stood_angle;
     bool touched;
@@ -134,9 +135,10 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    single frame do for (a): in a blow boxes go into each other and are pushed out again, in every method that has not
    converged, and that is no more than a bounce.
 
-   Tunnels: the centre of a body that moves lies inside a static box, or went through one on the straight way from its last
-   place. That finds what falls out of the world too: there is a way through the ground or past its edge, and past is no
-   fault.
+   Tunnels: the centre of a body that moves went through a static box: the straight way from the last place where it was
+   outside them all has a part inside one. So a blow so fast that the centre dips into a box for a step and is pushed out
+   again is none; what stays inside sinks. That finds what falls out of the world too: there is a way through the ground or
+   past its edge, and past is no fault.
 
    Falls: where a body stood is where it was when it first touched something. So gaps that a scene is built with may
    close. */

@@ -101,14 +101,20 @@ static bool passes(const Body *box, Vec2 from, Vec2 to) {
     return part[0] < part[1];
 }
 
+static bool passes_any(const VerdictStep *step, Vec2 from, Vec2 to) {
+    for (int i = 0; i < step->body_count; i++)
+        if (step->bodies[i].inv_mass == 0 && passes(&step->bodies[i], from, to)) return true;
+    return false;
+}
+
 void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
-    for (int fixed = 0; fixed < step->body_count; fixed++) {
-        if (step->bodies[fixed].inv_mass != 0) continue;
-        for (int i = 0; i < step->body_count; i++) {
-            Vec2 from = watch->bodies[i].last, to = step->bodies[i].position;
-            if (step->bodies[i].inv_mass != 0 && passes(&step->bodies[fixed], from, to))
-                verdict_note(watch, VERDICT_TUNNELS, i, distance(from, to) / (double)watch->run.dt, "m/s");
-        }
+    for (int i = 0; i < step->body_count; i++) {
+        WatchedBody *watched = &watch->bodies[i];
+        const Vec2 now = step->bodies[i].position;
+        if (step->bodies[i].inv_mass == 0 || passes_any(step, now, now)) continue;
+        if (passes_any(step, watched->outside, now))
+            verdict_note(watch, VERDICT_TUNNELS, i, distance(watched->last, now) / (double)watch->run.dt, "m/s");
+        watched->outside = now;
     }
 }
 

@@ -28,9 +28,8 @@ static void tunnelling_goes_through_a_static_box(void **state) {
     assert_true(goes_through(0, vec2(11.99f, 9), vec2(11.99f, -5)));
     assert_false(goes_through(0, vec2(12.01f, 9), vec2(12.01f, -5)));
     assert_false(goes_through(0, vec2(10, 9), vec2(10, 6.01f)));
-    assert_true(goes_through(0, vec2(10, 9), vec2(10, 5.99f)));
-    assert_true(goes_through(0, vec2(10, 3), vec2(10, 4.01f)));
-    assert_true(goes_through(0, vec2(10, 5), vec2(10, 5)));        /* inside, at rest */
+    assert_false(goes_through(0, vec2(10, 9), vec2(10, 5.99f)));   /* into it, not through */
+    assert_false(goes_through(0, vec2(10, 5), vec2(10, 5)));       /* inside, at rest */
     assert_false(goes_through(0, vec2(7.99f, 5), vec2(7.99f, 5))); /* beside, at rest */
     assert_false(goes_through(0, vec2(9, 6), vec2(11, 6)));        /* along the rim */
     assert_false(goes_through(0, vec2(13, 9), vec2(13, 5)));       /* towards where there is nothing */
@@ -39,11 +38,32 @@ static void tunnelling_goes_through_a_static_box(void **state) {
     assert_false(goes_through(quarter, vec2(11.01f, 9), vec2(11.01f, -5)));
     /* An eighth: along x - y = 5 it reaches 2 from the centre, along x + y = 15 it reaches 1: a way of slope 1 passes at
        1 from the centre, which is sqrt(2) along x. */
-    assert_true(goes_through(eighth, vec2(10 + 1.41f, 5), vec2(10 + 1.41f + 0.001f, 5 + 0.001f)));
     assert_false(goes_through(eighth, vec2(5 + 1.42f, 0), vec2(15 + 1.42f, 10)));
     assert_true(goes_through(eighth, vec2(5 + 1.41f, 0), vec2(15 + 1.41f, 10)));
     assert_false(goes_through(eighth, vec2(5, 10 - 2.84f), vec2(15, -2.84f)));
     assert_true(goes_through(eighth, vec2(5, 10 - 2.82f), vec2(15, -2.82f)));
+}
+
+/* Into the slab 8..12 x 4..6 from above, and for some steps inside; then out to where the test says. */
+static bool comes_out(Vec2 at) {
+    Trial trial;
+    trial_begin(&trial);
+    trial.run.stands = false;
+    trial.contact_count = 0;
+    trial.bodies[0] = (Body){.position = {10, 5}, .size = {4, 2}};
+    const Vec2 way[] = {{10, 7}, {10, 5.5f}, {10.5f, 5}, {10, 4.5f}, at};
+    for (int i = 0; i < 5; i++) {
+        trial.bodies[1].position = way[i];
+        trial_go(&trial, i + 1);
+    }
+    return trial_end(&trial).verdict == VERDICT_TUNNELS;
+}
+
+static void what_is_pushed_out_again_did_not_tunnel(void **state) {
+    (void)state;
+    assert_false(comes_out(vec2(10, 6.01f)));
+    assert_true(comes_out(vec2(10, 3.99f)));
+    assert_true(comes_out(vec2(12.01f, 5)));
 }
 
 /* 2 m in 1/60 s. */
@@ -233,9 +253,9 @@ static void the_worst_counts_and_the_first_frame_of_it(void **state) {
     trial.contacts[0].separation = -0.2f;
     trial_go(&trial, 1261);
     assert_reading(trial.watch.worst, VERDICT_SINKS, 1, 1261, 0.2, 1e-6, "m");
-    trial.bodies[1].position.y = -0.1f;
+    trial.bodies[1].position.y = -20.1f;
     trial_go(&trial, 1270);
-    assert_reading(trial.watch.worst, VERDICT_TUNNELS, 1, 1262, 36, 1e-4, "m/s");
+    assert_reading(trial.watch.worst, VERDICT_TUNNELS, 1, 1262, 1236, 1e-2, "m/s");
     assert_false(verdict_watch_is_final(&trial.watch));
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 0;
     trial.bodies[1].position.y = 2;
@@ -270,6 +290,7 @@ static void a_converged_run_that_is_shorter_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tunnelling_goes_through_a_static_box),
+                                       cmocka_unit_test(what_is_pushed_out_again_did_not_tunnel),
                                        cmocka_unit_test(tunnelling_says_how_fast),
                                        cmocka_unit_test(exploding_is_above_what_the_run_kept_to_and_the_converged_one),
                                        cmocka_unit_test(a_hop_may_come_a_second_later_or_before),
