@@ -11,7 +11,7 @@
 #include <string.h>
 
 static const char default_methods[] =
-    "engine:k=4,engine,engine:k=50,momentum,momentum:k=20,substepping,nncg,reference,pair-net,contact-net,scene-net";
+    "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,reference,pair-net,contact-net,scene-net";
 
 /* The study in progress. */
 typedef struct Run {
