@@ -70,9 +70,12 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     watch->kept += brought;
     watch->peak += brought;
     if (joined < 0) end_second(watch, energy);
-    double bound = fmax(watch->kept, converged_energy(run, step->frame));
     double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->to_lose, VERDICT_LEAST_TO_LOSE);
-    if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
+    /* Two seconds of the converged run are looked through where the first bound is passed only: that is rare. */
+    if (energy > watch->kept + allowed) {
+        double bound = fmax(watch->kept, converged_energy(run, step->frame));
+        if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
+    }
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
     if (watch->peak_steps >= verdict_steps(VERDICT_ENERGY_TIME, run->dt))
         end_second(watch, fmin(watch->kept, watch->peak));
