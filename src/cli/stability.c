@@ -63,8 +63,7 @@ static const struct argp argp = {
     "",
     "Find where each method fails: along one number of a scene (height of a stack, mass ratio, time step, ...) every "
     "border between holding and failing, and how it fails there; and maps of two numbers. A run holds where it "
-    "settles, "
-    "sways or creeps. Takes up to twenty minutes on two cores; what is cut off goes on where it stopped.\v"
+    "settles, sways or creeps. Takes up to twenty minutes on two cores; what is cut off goes on where it stopped.\v"
     "Example: twinbox stability -o out/stability\n"
     "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
     "         twinbox stability -o out/stability --clip height_iterations:engine:10,20",

@@ -19,8 +19,8 @@ typedef struct ClipOptions {
 } ClipOptions;
 
 /* Runs the cell again and draws folder/clips/MAP-METHOD-X_Y/frame_000000.png ... and folder/clips/MAP-METHOD-X_Y.mp4, from
-   the start until three seconds after what decided the verdict, at most 60 frames a second: at the left the first method that holds there, whose
-   camera it is, at the right the cell's own; alone where it holds itself, or nothing does. The captions tell methods and
-   verdicts. ERROR_INPUT for a cell that there is not, or a method that does not go with its scene; ERROR_SYSTEM where
+   the start until three seconds after what decided the verdict, at most 60 frames a second: at the left the first method
+   that holds there, whose camera it is, at the right the cell's own; alone where it holds itself, or nothing does. The
+   captions tell methods and verdicts. ERROR_INPUT for a cell that there is not, or a method that does not go with its scene; ERROR_SYSTEM where
    ffmpeg is missing. */
 bool stability_clip(const ClipOptions *options, Error *error);

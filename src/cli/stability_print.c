@@ -54,26 +54,18 @@ static void print_borders(const Csv *csv) {
     }
 }
 
-/* No more than a header: csv_read takes no such table. */
-static bool is_empty(const char *path) {
-    FILE *file = fopen(path, "r");
-    int lines = 0;
-    for (int c; file != NULL && lines < 2 && (c = fgetc(file)) != EOF;) lines += c == '\n';
-    if (file != NULL) fclose(file);
-    return lines == 1;
-}
-
 bool stability_print(const char *folder, Error *error) {
     char path[PATH_SIZE];
     Csv csv;
     if (snprintf(path, sizeof path, "%s/stability.csv", folder) >= (int)sizeof path)
         return error_input(error, folder, "the name is too long");
-    if (!is_empty(path)) {
+    if (!csv_is_bare(path)) {
         if (!csv_read(&csv, path, MAX_SIZE, MAX_ROWS, error)) return false;
         print_borders(&csv);
         csv_free(&csv);
     }
     printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
+    printf("their figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
     printf("why methods do not apply -> %s/refusals.csv\n", folder);
     printf("what networks said and was not done -> %s/fallbacks.csv\n", folder);
     return true;

@@ -16,7 +16,9 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-static bool holds_throughout(const BorderRow *row) { return isnan(row->fails_at) && !isnan(row->holds_at); }
+static bool holds_throughout(const BorderRow *row) {
+    return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
+}
 
 static bool never_holds(const BorderRow *row) { return isnan(row->holds_at) && !isnan(row->fails_at); }
 
@@ -37,7 +39,8 @@ static void put_bar(const BorderRows *rows, const BorderRow *row, int y) {
     if (isnan(row->holds_at)) return;
     bool whole = holds_throughout(row);
     double half = bar_height / 2 / rows->height;
-    double from = whole ? 0 : far_end(rows, row, row->holds_at < row->fails_at);
+    bool low = isnan(row->fails_at) ? !rows->axis->falling : row->holds_at < row->fails_at;
+    double from = whole ? 0 : far_end(rows, row, low);
     double to = whole ? rows->axis->width : border_axis_place(rows->axis, row->holds_at);
     figure_bar(rows->page, fmin(from, to), y - half, fmax(from, to), y + half);
 }
@@ -59,6 +62,12 @@ static void put_cross(FigurePage *page, double x, double y, double up) {
 /* Beside the study's first value. */
 static double easy_end(const BorderAxis *axis) {
     return axis->falling ? axis->width - BORDER_AXIS_ROOM / 2 : BORDER_AXIS_ROOM / 2;
+}
+
+/* Where luck decides over all that is beyond, up to the study's last value. */
+static double tile_place(const BorderAxis *axis, const BorderRow *row) {
+    if (!isnan(row->fails_at)) return border_axis_place(axis, row->fails_at);
+    return isnan(row->holds_at) ? easy_end(axis) : axis->width - easy_end(axis);
 }
 
 static void put_sign(const BorderRows *rows, const BorderRow *row, int y) {
@@ -90,8 +99,7 @@ static void put_tiles(const BorderRows *rows) {
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *row = &rows->table->rows[i];
         if (!border_same_study(row, rows->study) || holds_throughout(row)) continue;
-        double x = isnan(row->fails_at) ? easy_end(rows->axis) : border_axis_place(rows->axis, row->fails_at);
-        tiles[count++] = (Tile){x, height_of(rows, row), row->verdict};
+        tiles[count++] = (Tile){tile_place(rows->axis, row), height_of(rows, row), row->verdict};
     }
     verdict_put_tiles(rows->page, tiles, count, (TileScale){1, rows->height, half_tile});
 }

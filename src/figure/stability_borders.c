@@ -135,7 +135,8 @@ bool stability_borders_write(const BorderTable *table, FigurePage *page, Error *
     put_legend(&borders);
     fprintf(page->caption,
             "How far each method holds, on each study's own axis. Bars go over what holds; tiles stand at the first "
-            "value that fails and tell how. An arrow: holds over the whole range that was looked at; a cross: never "
+            "value that fails, or at the far end where luck decides beyond the bar, and tell how. An arrow: holds over "
+            "the whole range that was looked at; a cross: never "
             "holds; a row without a mark: not in the study.");
     figure_end(page);
     return true;

@@ -26,6 +26,7 @@ static bool go_through_maps(const MapTable *table, const char *folder, bool draw
 }
 
 static bool draw_borders(const BorderTable *table, const char *folder, Error *error) {
+    if (table->count == 0) return true;
     FigureSheet sheet = {0};
     bool ok = figure_sheet_open(&sheet, folder, error) && stability_borders_write(table, &sheet.page, error) &&
               figure_sheet_close(&sheet, folder, error) && figure_sheet_draw(&sheet, folder, "", "borders", error);

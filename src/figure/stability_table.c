@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/stability_table.h"
 
+#include "common/csv.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -97,6 +99,7 @@ static bool check_cells(const MapTable *table, Error *error) {
 bool map_table_read(MapTable *table, const char *folder, Error *error) {
     *table = (MapTable){.count = 0};
     snprintf(table->path, sizeof table->path, "%s/maps.csv", folder);
+    if (csv_is_bare(table->path)) return true;
     table->cells = csv_columns_read(folder, "maps", map_columns, sizeof map_columns / sizeof *map_columns,
                                     sizeof *table->cells, STABILITY_MAX_CELLS, &table->count, error);
     if (table->cells == NULL) return false;
@@ -116,18 +119,18 @@ static bool check_border(const BorderTable *table, int i, Error *error) {
     while (strcmp(first->study, row->study) != 0) first++;
     if (strcmp(first->parameter, row->parameter) != 0 || strcmp(first->unit, row->unit) != 0)
         return stability_row_error(table->path, i, error, "another parameter than study %s had before", row->study);
-    bool values = !isnan(row->holds_at) || !isnan(row->fails_at);
-    if (values != (row->verdict < VERDICTS))
-        return stability_row_error(table->path, i, error, "'%s' %s a value", verdict_words[row->verdict],
-                                   values ? "cannot have" : "needs");
-    if (values && verdict_holds((Verdict)row->verdict) == !isnan(row->fails_at))
-        return stability_row_error(table->path, i, error, "'%s' does not fit the values", verdict_words[row->verdict]);
-    return true;
+    const char *verdict = verdict_words[row->verdict];
+    bool holds = !isnan(row->holds_at), fails = !isnan(row->fails_at);
+    if (row->verdict == LOOK_NOT_APPLICABLE)
+        return (!holds && !fails) || stability_row_error(table->path, i, error, "'%s' cannot have a value", verdict);
+    if (!verdict_holds((Verdict)row->verdict)) return true;
+    return (holds && !fails) || stability_row_error(table->path, i, error, "'%s' does not fit the values", verdict);
 }
 
 bool border_table_read(BorderTable *table, const char *folder, Error *error) {
     *table = (BorderTable){.count = 0};
     snprintf(table->path, sizeof table->path, "%s/stability.csv", folder);
+    if (csv_is_bare(table->path)) return true;
     table->rows = csv_columns_read(folder, "stability", border_columns, sizeof border_columns / sizeof *border_columns,
                                    sizeof *table->rows, STABILITY_MAX_BORDERS, &table->count, error);
     bool ok = table->rows != NULL;

@@ -22,8 +22,9 @@ typedef struct BorderRow {
     char study[CSV_NAME_SIZE], method[CSV_NAME_SIZE], setting[CSV_NAME_SIZE];
     char parameter[CSV_NAME_SIZE], unit[CSV_NAME_SIZE];
     double holds_at; /* NAN: nothing holds */
-    double fails_at; /* NAN: nothing fails. Both: not applicable */
-    int verdict;     /* how it fails; of what holds over the whole range, how it holds */
+    double
+        fails_at; /* NAN: nothing fails for sure: where the verdict is one of failing, luck decides beyond holds_at */
+    int verdict;  /* how it fails; of what holds over the whole range, how it holds; or LOOK_NOT_APPLICABLE */
 } BorderRow;
 
 typedef struct MapTable {
@@ -38,13 +39,13 @@ typedef struct BorderTable {
     BorderRow *rows; /* [count] */
 } BorderTable;
 
-/* Reads folder/maps.csv. Refused, as "path:line:column: error: what": what csv_columns_read() refuses, a map whose name is
+/* Reads folder/maps.csv; one without rows has no cells. Refused, as "path:line:column: error: what": what csv_columns_read() refuses, a map whose name is
    no file name, maps, or methods of a map, whose rows do not stand together, and more than STABILITY_MAX_PANELS of these. */
 bool map_table_read(MapTable *table, const char *folder, Error *error);
 void map_table_free(MapTable *table);
 
 /* Reads folder/stability.csv. Refused likewise: rows that give a study another parameter, and verdicts that do not fit
-   their values: what fails has a failing one, and what is not applicable has no values. */
+   their values: what fails somewhere cannot hold, and what is not applicable has no values. */
 bool border_table_read(BorderTable *table, const char *folder, Error *error);
 void border_table_free(BorderTable *table);
 

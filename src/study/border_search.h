@@ -2,10 +2,10 @@
 /* Where along a number a method holds, and where it fails: every border between the two.
 
    The range is scanned coarsely; every change between neighbours is bisected down to the resolution. Both sides of what is
-   found, and the next value outward of each, are asked with other seeds, starts that differ by next to nothing. Where they do not agree luck decides: such
-   a value is no side of a border, and the next one outward is looked for that all seeds agree upon. So an interval wider
-   than the resolution is one in which luck decides. What changes and changes back within a step of the scan is seen next to a
-   border only. */
+   found, and the next value outward of each, are asked with other seeds, starts that differ by next to nothing. Where
+   they do not agree luck decides: such a value is no side of a border, and the next one outward is looked for that all
+   seeds agree upon. So an interval wider than the resolution is one in which luck decides. What changes and changes back
+   within a step of the scan is seen next to a border only. */
 #pragma once
 #include "study/verdict.h"
 
@@ -32,7 +32,8 @@ typedef struct Border {
 } Border;
 
 /* Never empty. Without a border it has one entry. All holds: holds_at is the last value, the verdict the worst found. All
-   fails: fails_at is the first value, and its verdict. */
+   fails: fails_at is the first value, and its verdict. Where luck decides up to the end, a last entry has the last value that
+   holds, and how it fails beyond; NAN on both sides where luck decides over all. */
 typedef struct BorderList {
     int count;
     Border items[BORDERS_MAX]; /* from where it is expected to hold to where it is expected to fail */

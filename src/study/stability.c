@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char default_methods[] =
-    "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,reference,pair-net,contact-net,scene-net";
+static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
+                                      "reference,pair-net,contact-net,scene-net";
 
 /* The study in progress. */
 typedef struct Run {

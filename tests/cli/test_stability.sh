@@ -12,7 +12,8 @@ says "borders -> one/stability.csv; maps -> one/maps.csv"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "the table is wider than 80 columns"
 equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
 equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
-equal "files" "$(ls one | tr '\n' ' ')" "fallbacks.csv maps.csv refusals.csv stability.csv "
+tables="fallbacks.csv maps.csv refusals.csv stability.csv"
+equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
 equal "maps" "$(wc -l <one/maps.csv)" 1
 OMP_NUM_THREADS=3 run 0 stability $few -o three
 for table in stability maps refusals fallbacks; do
@@ -23,7 +24,19 @@ done
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
 equal "header of borders" "$(cat map/stability.csv)" "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
 equal "cells" "$(wc -l <map/maps.csv)" 21
-equal "lines printed" "$(wc -l <out)" 3
+equal "lines printed" "$(wc -l <out)" 4
+equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
+
+# The moving picture of one of its cells: 0.26 m in one step, and three seconds more.
+run 0 stability --scenes "$scenes" -o map --clip speed_thickness:engine:12.6,0.27
+says "speed_thickness:engine:12.6,0.27: settles -> map/clips/speed_thickness-engine-12.57_0.2714.mp4"
+clip=map/clips/speed_thickness-engine-12.57_0.2714
+frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 $clip.mp4)
+equal "frames of the clip" "$frames" "$(ls $clip | wc -l)"
+run 2 stability --scenes "$scenes" -o map --clip speed_thickness:momentum:200,0.1
+complains "map speed_thickness has no method momentum; it has engine"
+run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
+complains "there is no map speed_thickness in one/maps.csv; there are none"
 
 # What is cut off goes on: a border that was changed in between stays.
 "$twinbox" stability $few -o part >out 2>err </dev/null &
@@ -40,7 +53,7 @@ sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/heavy_o
 run 0 stability $few -o part
 equal "borders changed by hand that stay" "$(grep -c 'k=4,ratio,,1.5,' part/stability.csv)" 1
 equal "other borders" "$(diff one/stability.csv part/stability.csv | grep -c '^>')" 1
-equal "files" "$(ls part | tr '\n' ' ')" "fallbacks.csv maps.csv refusals.csv stability.csv "
+equal "files" "$(echo $(ls part))" "borders.png borders.svg borders.txt $tables"
 
 run 2 stability --scenes "$scenes" --study nothing -o none
 complains "nothing: error: no such study or map; there are stack_height"
