@@ -2,9 +2,9 @@
 #include "cli/panels.h"
 
 #include "cli/progress_bar.h"
+#include "common/file.h"
 #include "simulate/simulate.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -63,16 +63,10 @@ void panels_free(Panels *panels) {
 
 enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
 
-void panels_file_name(char *name) {
-    for (char *c = name; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
-    if (name[0] == '.') name[0] = '_';
-}
-
 /* SCENE-METHOD */
 static void file_stem(const Trajectory *run, char stem[STEM_SIZE]) {
     snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
-    panels_file_name(stem);
+    file_name_clean(stem);
 }
 
 bool panels_store(const Panels *panels, const char *directory, Error *error) {

@@ -20,8 +20,5 @@ void panels_free(Panels *panels);
 /* Adds the run of a scene by a method, with a bar of progress; `input` is what it came from, for errors. */
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
 
-/* Turns what does not belong in a file name to '_'. */
-void panels_file_name(char *name);
-
 /* Writes each run as directory/SCENE-METHOD.npz; a second one of that name gets -2 and so on. */
 bool panels_store(const Panels *panels, const char *directory, Error *error);

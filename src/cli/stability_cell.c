@@ -25,10 +25,6 @@ bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
     return true;
 }
 
-void stability_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *row) {
-    snprintf(method, METHOD_TEXT_SIZE, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting);
-}
-
 static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
 
 /* A list of names, each once, with ", " between; what has no room is left out. */
@@ -55,7 +51,7 @@ static const MapCell *fail(const MapTable *table, const StabilityCell *cell, boo
     char text[METHOD_TEXT_SIZE];
     for (int i = 0; i < table->count; i++) {
         const MapCell *row = &table->cells[i];
-        stability_cell_method(text, row);
+        map_cell_method(text, row);
         if (map_known && strcmp(row->map, cell->map) != 0) continue;
         if (map_known && method_known && strcmp(text, cell->method) == 0) {
             snprintf(text, sizeof text, "%.9g", row->y);
@@ -88,7 +84,7 @@ const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *c
         char method[METHOD_TEXT_SIZE];
         if (strcmp(row->map, cell->map) != 0) continue;
         map_known = true;
-        stability_cell_method(method, row);
+        map_cell_method(method, row);
         if (strcmp(method, cell->method) != 0) continue;
         method_known = true;
         if (!is_near(row->x, cell->x) || !is_near(row->y, cell->y)) continue;

@@ -12,9 +12,6 @@ typedef struct StabilityCell {
 
 bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error);
 
-/* A row's method as method_parse() takes it: "engine:k=10". */
-void stability_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *row);
-
 /* The row of the table that the cell names: numbers may be as short as the figure has them, within 1%; the nearest counts.
    NULL with error set, which names what there is, where there is none. */
 const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error);

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_SIZE = 320, NOTE_SIZE = 160 };
+enum { TITLE_SIZE = 320, NOTE_SIZE = 160 };
 
 /* s that are shown after what decided. */
 static const double clip_after = 3;
@@ -54,7 +54,7 @@ static Scene *read_scene(const Clip *clip, Error *error) {
 static bool run_row(Clip *clip, Scene *scene, const MapCell *row, int shown, Error *error) {
     char method[METHOD_TEXT_SIZE];
     Error failure = {0};
-    stability_cell_method(method, row);
+    map_cell_method(method, row);
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
     scene->frames = row->verdict == VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (panels_add_run(&clip->panels, scene, method, clip->options->cell, &failure)) return true;
@@ -104,15 +104,13 @@ static void describe(char note[NOTE_SIZE], const MapCell *row, double dt) {
 
 static bool draw(Clip *clip, Error *error) {
     const MapCell *own = clip->rows[clip->count - 1];
-    char method[METHOD_TEXT_SIZE], name[NAME_SIZE], folder[PATH_MAX], video[PATH_MAX], title[NAME_SIZE];
+    char name[MAP_CLIP_SIZE], folder[PATH_MAX], video[PATH_MAX], title[TITLE_SIZE];
     char notes[2][NOTE_SIZE];
-    stability_cell_method(method, own);
-    snprintf(name, sizeof name, "%s-%s-%.4g_%.4g", own->map, method, own->x, own->y);
-    panels_file_name(name);
-    int length = snprintf(folder, sizeof folder, "%s/clips/%s", clip->options->folder, name);
+    map_cell_clip(name, own);
+    int length = snprintf(folder, sizeof folder, "%s/%s", clip->options->folder, name);
     if (length < 0 || length + 4 >= (int)sizeof folder)
         return error_input(error, clip->options->folder, "the name is too long");
-    snprintf(video, sizeof video, "%s/clips/%s.mp4", clip->options->folder, name);
+    snprintf(video, sizeof video, "%s/%s.mp4", clip->options->folder, name);
     snprintf(title, sizeof title, "%s %.4g %s, %s %.4g %s", own->x_parameter, own->x, own->x_unit, own->y_parameter,
              own->y, own->y_unit);
     RenderOptions render = draw_panels_defaults(folder);

@@ -31,3 +31,6 @@ bool file_make_directory(const char *path, Error *error);
 
 /* Length of the folder part of a path with its slash: 7 for "scenes/single.yaml", 0 for "single.yaml". */
 size_t file_folder_length(const char *path);
+
+/* Turns what does not belong in a file name to '_'. */
+void file_name_clean(char *name);

@@ -133,6 +133,13 @@ void figure_text(FigurePage *page, double x, double y, const char *align, double
             points);
 }
 
+void figure_link(FigurePage *page, FigureBox box, const char *target, const char *title) {
+    if (page->links == NULL) return;
+    fprintf(page->links, "<a xlink:href=\"%s\"><title>%s</title>", target, title);
+    fprintf(page->links, "<rect x=\"%.3f\" y=\"%.3f\" width=\"%.3f\" height=\"%.3f\" fill-opacity=\"0\"/></a>\n",
+            box.left, page->height - box.bottom - box.height, box.width, box.height);
+}
+
 void figure_cut(char *text, size_t most) {
     if (strlen(text) > most) strcpy(text + most - 3, "...");
 }

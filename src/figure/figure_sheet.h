@@ -6,11 +6,11 @@
 /* Zero-initialise; freed by figure_sheet_free in any case. */
 typedef struct FigureSheet {
     FigurePage page; /* a width of 0: there is nothing to draw */
-    char *script, *caption;
-    size_t script_size, caption_size;
+    char *script, *caption, *links;
+    size_t script_size, caption_size, links_size;
 } FigureSheet;
 
-/* Opens the page's script and caption; closes them. False when memory was short; then the error names `what`. */
+/* Opens the page's script, caption and links; closes them. False when memory was short; then the error names `what`. */
 bool figure_sheet_open(FigureSheet *sheet, const char *what, Error *error);
 bool figure_sheet_close(FigureSheet *sheet, const char *what, Error *error);
 

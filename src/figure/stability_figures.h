@@ -5,7 +5,8 @@
 
 /* Reads folder/stability.csv and folder/maps.csv (figure/stability_table.h) and draws, as .png, .svg (figure/gnuplot.h)
    and a caption .txt of one line,
-     map-NAME   each map: a panel a method, a tile a cell (figure/stability_map.h)
+     map-NAME   each map: a panel a method, a tile a cell (figure/stability_map.h), which in the .svg is a link to the
+                cell's clip, be it there or not yet
      borders    each study: how far each method holds (figure/stability_borders.h)
    into the folder. Told apart by the colour-blind, in grey and in black and white. The same tables give the same files.
 

@@ -124,6 +124,28 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
     figure_linear(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
+/* From each cell to its clip; the title has the cell's name as --clip takes it. */
+static void put_links(const Layout *layout, int panel, FigureBox box) {
+    const MapPanels *map = layout->map;
+    const TileScale size = layout->cell;
+    MapCell cell = *map->methods[panel];
+    char method[METHOD_TEXT_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
+    map_cell_method(method, &cell);
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++) {
+            const int look = map->looks[panel][x][y];
+            if (look >= VERDICTS) continue;
+            cell.x = map->x[x];
+            cell.y = map->y[y];
+            map_cell_clip(clip, &cell);
+            snprintf(target, sizeof target, "%s.mp4", clip);
+            snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
+            figure_link(layout->page,
+                        (FigureBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
+                        target, title);
+        }
+}
+
 static void put_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     int column = panel % layout->columns, row = panel / layout->columns;
@@ -140,6 +162,7 @@ static void put_panel(const Layout *layout, int panel) {
     put_axis(layout, 'y', map->y, map->y_count, column == 0, y);
     put_tiles(layout, panel);
     put_border(layout, panel);
+    put_links(layout, panel, box);
     figure_panel_end(layout->page);
 }
 

@@ -2,6 +2,7 @@
 #include "figure/stability_table.h"
 
 #include "common/csv.h"
+#include "common/file.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -50,6 +51,18 @@ bool stability_row_error(const char *path, int row, Error *error, const char *fo
     va_end(arguments);
     snprintf(where, sizeof where, "%s:%d:1", path, row + 2);
     return error_input(error, where, "%s", what);
+}
+
+void map_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *cell) {
+    snprintf(method, METHOD_TEXT_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
+}
+
+void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
+    static const char folder[] = "clips/";
+    char method[METHOD_TEXT_SIZE];
+    map_cell_method(method, cell);
+    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g_%.4g", folder, cell->map, method, cell->x, cell->y);
+    file_name_clean(name + strlen(folder));
 }
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b) {

@@ -3,6 +3,7 @@
 #pragma once
 #include "figure/csv_columns.h"
 #include "figure/verdict_look.h"
+#include "simulate/method.h"
 
 enum { STABILITY_MAX_CELLS = 40000, STABILITY_MAX_BORDERS = 2000, STABILITY_MAX_PANELS = 512 };
 
@@ -51,6 +52,13 @@ void border_table_free(BorderTable *table);
 
 /* An error about row `row`, from 0, of such a table. Returns false. */
 bool stability_row_error(const char *path, int row, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
+
+/* A cell's method as method_parse() takes it: "engine:k=10". */
+void map_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *cell);
+
+/* Where the clip of a cell goes, from the tables' folder, without an ending: "clips/MAP-METHOD-X_Y". */
+enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + METHOD_TEXT_SIZE + 40 };
+void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 
 /* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);

@@ -101,6 +101,35 @@ static void the_border_parts_holding_from_failing(void **state) {
                temporary_folder);
 }
 
+/* Every cell that was run has a link over its tile and nowhere else. */
+static void cells_link_to_their_clips(void **state) {
+    (void)state;
+    start_afresh(
+        MAPS "m,engine,\"k=4,warm=off\",a,,1,b,,0.5,falls,,,,\nm,engine,\"k=4,warm=off\",a,,2e3,b,,0.5,settles,,,,\n"
+             "m,engine,\"k=4,warm=off\",a,,1,b,,7,not applicable,,,,\n",
+        BORDERS ONE_BORDER);
+    draw();
+    run_python(
+        SVG_FUNCTIONS
+        "svg = read('map-m')\n"
+        "root, space = tree.fromstring(svg), '{http://www.w3.org/2000/svg}'\n"
+        "scale = float(re.search(r'scale.([0-9.]+)', svg[svg.index('<a '  ) - 60:]).group(1))\n"
+        "def edges(fill):\n"
+        "    x, y = zip(*(map(float, p.split(',')) for p in re.search(\"rgb.%s.' points = '([^']*)'\" % fill, svg)\n"
+        "        .group(1).split()))\n"
+        "    return [min(x), min(y), max(x), max(y)]\n"
+        "for fill, x, verdict in (('238, 154,  46', '1', 'falls'), ('234, 243, 250', '2000', 'settles')):\n"
+        "    link = [a for a in root.iter(space + 'a') if a.find(space + 'title').text ==\n"
+        "            'm:engine:k=4,warm=off:%s,0.5 %s' % (x, verdict)][0]\n"
+        "    target = link.get('{http://www.w3.org/1999/xlink}href')\n"
+        "    expect(target, 'clips/m-engine_k=4_warm=off-%s_0.5.mp4' % x, 'target')\n"
+        "    at = [scale * float(link.find(space + 'rect').get(k)) for k in ('x', 'y', 'width', 'height')]\n"
+        "    place = [at[0], at[1], at[0] + at[2], at[1] + at[3]]\n"
+        "    assert all(abs(a - b) < 1 for a, b in zip(place, edges(fill))), (place, edges(fill))\n"
+        "expect(len(list(root.iter(space + 'a'))), 2, 'links')\n",
+        temporary_folder);
+}
+
 /* Whatever the order of the rows and the distance of the values: rising, and each a tic. */
 static void axes_name_their_values(void **state) {
     (void)state;
@@ -375,6 +404,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_verdict_has_its_tile),
         cmocka_unit_test(the_border_parts_holding_from_failing),
+        cmocka_unit_test(cells_link_to_their_clips),
         cmocka_unit_test(axes_name_their_values),
         cmocka_unit_test(titles_are_cut_where_they_tell_the_least),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
