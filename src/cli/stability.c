@@ -74,10 +74,10 @@ static const struct argp argp = {
 static bool make_clip(const Options *options, Error *error) {
     char(*paths)[STABILITY_PATH_SIZE] = malloc((size_t)stability_map_count * sizeof *paths);
     ClipMap *maps = malloc((size_t)stability_map_count * sizeof *maps);
-    bool ok = paths != NULL && maps != NULL;
+    bool ok = (paths != NULL && maps != NULL) || error_memory(error, options->clip);
     for (int i = 0; ok && i < stability_map_count; i++) {
         const StabilityMap *map = &stability_maps[i];
-        ok = stability_path(paths[i], &(StabilityPlace){.scenes = options->study.scenes, .scene = map->scene}, error);
+        ok = stability_path(paths[i], &(StabilityPlace){options->study.scenes, map->scene}, error);
         maps[i] = (ClipMap){map->name, paths[i], map->x.parameter, map->y.parameter};
     }
     const ClipOptions clip = {options->study.folder, options->clip, maps, stability_map_count, CLIP_WIDTH, CLIP_HEIGHT};

@@ -34,28 +34,33 @@ static bool does_map(const Run *run, int i) {
     return is_named(run->options, stability_maps[i].name, stability_maps[i].quick);
 }
 
-static bool know_names(const StabilityOptions *options, Error *error) {
-    for (int i = 0; i < options->name_count; i++) {
-        bool known = stability_study_find(options->names[i]) != NULL;
-        char names[2048] = "";
-        for (int k = 0; k < stability_study_count; k++) {
-            size_t used = strlen(names);
-            snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "", stability_studies[k].name);
-        }
-        for (int k = 0; k < stability_map_count; k++) {
-            size_t used = strlen(names);
-            known |= strcmp(stability_maps[k].name, options->names[i]) == 0;
-            snprintf(names + used, sizeof names - used, ", %s", stability_maps[k].name);
-        }
-        if (!known) return error_input(error, options->names[i], "no such study or map; there are %s", names);
+static bool is_known(const char *name) {
+    for (int i = 0; i < stability_map_count; i++)
+        if (strcmp(stability_maps[i].name, name) == 0) return true;
+    return stability_study_find(name) != NULL;
+}
+
+static bool refuse_name(const char *name, Error *error) {
+    char names[2048] = "";
+    size_t used = 0;
+    for (int i = 0; i < stability_study_count + stability_map_count && used < sizeof names; i++) {
+        const char *known =
+            i < stability_study_count ? stability_studies[i].name : stability_maps[i - stability_study_count].name;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", known);
     }
+    return error_input(error, name, "no such study or map; there are %s", names);
+}
+
+static bool know_names(const StabilityOptions *options, Error *error) {
+    for (int i = 0; i < options->name_count; i++)
+        if (!is_known(options->names[i])) return refuse_name(options->names[i], error);
     return true;
 }
 
 /* Of the scene and what it names. A network that is not there matters only to the method that asks for it. */
 static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Error *error) {
     char path[STABILITY_PATH_SIZE];
-    const StabilityPlace place = {run->options->scenes, name, false};
+    const StabilityPlace place = {run->options->scenes, name};
     if (!stability_path(path, &place, error)) return false;
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;

@@ -11,7 +11,6 @@ enum { STABILITY_PATH_SIZE = 4096 };
 typedef struct StabilityPlace {
     const char *scenes; /* the folder above stability/ */
     const char *scene;  /* file name without folder and ending */
-    bool stands;
 } StabilityPlace;
 
 /* "scenes/stability/SCENE.yaml". ERROR_INPUT where it is too long. */

@@ -20,7 +20,7 @@ typedef struct Run {
 } Run;
 
 static Scene *read_scene(const StabilityGrid *grid, const SceneSetting *settings, int count, Error *error) {
-    const StabilityPlace place = {grid->scenes, grid->map->scene, grid->map->stands};
+    const StabilityPlace place = {grid->scenes, grid->map->scene};
     return stability_scene(&place, settings, count, error);
 }
 

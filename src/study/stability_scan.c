@@ -41,7 +41,7 @@ typedef struct Run {
 } Run;
 
 static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
-    const StabilityPlace place = {scan->scenes, scan->study->scene, scan->study->stands};
+    const StabilityPlace place = {scan->scenes, scan->study->scene};
     SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
     snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
     return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
@@ -177,7 +177,7 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     const StabilityStudy *study = run.scan->study;
     const ParallelWork work = {study_method, &run};
     run.counter.expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER);
-    run.typical = stability_scene(&(StabilityPlace){run.scan->scenes, study->scene, study->stands}, NULL, 0, error);
+    run.typical = stability_scene(&(StabilityPlace){run.scan->scenes, study->scene}, NULL, 0, error);
     run.results = calloc((size_t)methods, sizeof *run.results);
     bool ok = run.typical != NULL;
     if (ok && run.results == NULL) ok = error_memory(error, study->name);

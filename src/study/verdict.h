@@ -99,7 +99,8 @@ typedef struct WatchedBody {
     Vec2 sample[VERDICT_CREEP_SECONDS]; /* a ring, one a second */
 } WatchedBody;
 
-/* Zero-initialise; freed by verdict_watch_free, and may be begun again. Its insides are verdict_watch.c's. */
+/* Zero-initialise; freed by verdict_watch_free, and may be begun again. Its insides are the
+   checks' (study/verdict_checks.h). */
 typedef struct VerdictWatch {
     VerdictRun run;
     VerdictReading worst; /* of those that are found on the way: from creeps on */

@@ -54,7 +54,7 @@ static bool check_side(Golden *golden, int row, const StabilityScan *scan, int s
 static bool check_refusal(const Golden *golden, int row, const StabilityScan *scan, Error *error) {
     Method method;
     Error reason = {0};
-    const StabilityPlace place = {scenes, scan->study->scene, scan->study->stands};
+    const StabilityPlace place = {scenes, scan->study->scene};
     Scene *scene = stability_scene(&place, NULL, 0, error);
     bool ok = scene != NULL && method_of(golden, row, &method, error);
     if (ok && stability_applies(&method, scene, &reason))
