@@ -34,6 +34,27 @@ bool option_float(const char *option, const char *text, float minimum, float max
     return true;
 }
 
+void options_add_set(SetOptions *options, const char *text) {
+    if (options->count <= SCENE_MAX_PARAMETERS) options->texts[options->count++] = text;
+}
+
+static bool read_setting(const char *text, SceneSetting *setting, Error *error) {
+    const char *value = strchr(text, '=');
+    size_t length = value == NULL ? 0 : (size_t)(value - text);
+    if (length == 0 || length >= sizeof setting->name || !parse_double(value + 1, &setting->value))
+        return error_input(error, "--set", "'%s' is not NAME=VALUE with a number behind the '='", text);
+    memcpy(setting->name, text, length);
+    setting->name[length] = '\0';
+    return true;
+}
+
+Scene *options_read_scene(const char *path, const SetOptions *options, Error *error) {
+    SceneSetting settings[SCENE_MAX_PARAMETERS + 1];
+    for (int i = 0; i < options->count; i++)
+        if (!read_setting(options->texts[i], &settings[i], error)) return NULL;
+    return scene_read_with(path, settings, options->count, error);
+}
+
 bool option_range(const char *option, const char *text, FloatRange *range, Error *error) {
     enum { MAX_VALUES = 100000 };
     if (!parse_range(text, MAX_VALUES, range))

@@ -3,6 +3,7 @@
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
+#include "scene/scene.h"
 
 #include <argp.h>
 #include <stdint.h>
@@ -16,6 +17,20 @@ bool option_seed(const char *option, const char *text, uint64_t *value, Error *e
 
 /* A float, as parse_float reads it, in [minimum, maximum]. */
 bool option_float(const char *option, const char *text, float minimum, float maximum, float *value, Error *error);
+
+/* Values of --set, as often as it is there. A scene that has as many parameters as it may refuses one more. */
+typedef struct SetOptions {
+    int count;
+    const char *texts[SCENE_MAX_PARAMETERS + 1];
+} SetOptions;
+
+#define OPTION_SET(key, group) \
+    { "set", (key), "NAME=VALUE", 0, "Value of one of the scene's parameters (may be repeated)", (group) }
+
+void options_add_set(SetOptions *options, const char *text);
+
+/* scene_read_with what they say. */
+Scene *options_read_scene(const char *path, const SetOptions *options, Error *error);
 
 bool option_range(const char *option, const char *text, FloatRange *range, Error *error);
 

@@ -2,9 +2,9 @@
 #include "cli/panels.h"
 
 #include "cli/progress_bar.h"
+#include "common/file.h"
 #include "simulate/simulate.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static bool add(Panels *panels, Trajectory *run, const char *input, Error *error
     return true;
 }
 
-static bool add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
+bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
     Method method;
     if (!method_parse(&method, method_name, error)) return false;
     char what[2 * SCENE_NAME_SIZE + 8];
@@ -30,20 +30,27 @@ static bool add_run(Panels *panels, const Scene *scene, const char *method_name,
     return add(panels, run, input, error);
 }
 
-static bool add_scene(Panels *panels, const char *input, Error *error) {
-    Scene *scene = scene_read(input, error);
-    bool ok = scene != NULL && add_run(panels, scene, "engine", input, error);
-    if (ok && scene_network(scene, "pair-net") != NULL) ok = add_run(panels, scene, "pair-net", input, error);
+static bool add_scene(Panels *panels, const char *input, const SetOptions *set, Error *error) {
+    Scene *scene = options_read_scene(input, set, error);
+    bool ok = scene != NULL && panels_add_run(panels, scene, "engine", input, error);
+    if (ok && scene_network(scene, "pair-net") != NULL) ok = panels_add_run(panels, scene, "pair-net", input, error);
     scene_destroy(scene);
     return ok;
 }
 
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, Error *error) {
+static bool is_stored(const char *input) {
+    const char *ending = strrchr(input, '.');
+    return ending != NULL && strcmp(ending, ".npz") == 0;
+}
+
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error) {
+    int scenes = 0;
+    for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
+    if (set->count > 0 && scenes != 1)
+        return error_input(error, "--set", "is for one scene (here there are %d)", scenes);
     for (int i = 0; i < input_count; i++) {
-        const char *ending = strrchr(inputs[i], '.');
-        bool stored = ending != NULL && strcmp(ending, ".npz") == 0;
-        bool ok = stored ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
-                         : add_scene(panels, inputs[i], error);
+        bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
+                                       : add_scene(panels, inputs[i], set, error);
         if (!ok) return false;
     }
     return true;
@@ -56,12 +63,10 @@ void panels_free(Panels *panels) {
 
 enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
 
-/* SCENE-METHOD with what does not belong in a file name turned to '_'. */
+/* SCENE-METHOD */
 static void file_stem(const Trajectory *run, char stem[STEM_SIZE]) {
     snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
-    for (char *c = stem; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
-    if (stem[0] == '.') stem[0] = '_';
+    file_name_clean(stem);
 }
 
 bool panels_store(const Panels *panels, const char *directory, Error *error) {

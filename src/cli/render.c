@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/draw_panels.h"
 #include "cli/options.h"
-#include "cli/panels.h"
-#include "cli/progress_bar.h"
 #include "common/file.h"
-#include "render/render.h"
 #include "render/video.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT };
+enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT, SET };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
@@ -21,12 +18,14 @@ static const struct argp_option option_table[] = {
     {"png", PNG, "fast|small", 0, "How hard to compress (default: fast); the pictures are the same", 0},
     {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
     {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
+    OPTION_SET(SET, 0),
     {0}};
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count;
     const char *output, *size, *frames, *video, *png, *jobs, *context;
+    SetOptions set;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -39,6 +38,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case PNG: options->png = value; break;
     case JOBS: options->jobs = value; break;
     case CONTEXT: options->context = value; break;
+    case SET: options_add_set(&options->set, value); break;
     case ARGP_KEY_ARG:
         if (options->input_count == RENDER_PANELS_MAX) argp_error(state, "at most %d panels", RENDER_PANELS_MAX);
         options->inputs[options->input_count++] = value;
@@ -81,15 +81,7 @@ static bool choose_png(const char *name, bool *small, Error *error) {
 }
 
 static bool read_options(const Options *options, RenderOptions *render, Error *error) {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    *render = (RenderOptions){.width = 1920,
-                              .height = 1080,
-                              .first = 0,
-                              .last = -1,
-                              .jobs = cores < 1                 ? 1
-                                      : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
-                                                                : (int)cores,
-                              .directory = options->output};
+    *render = draw_panels_defaults(options->output);
     return choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
@@ -100,55 +92,13 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
            (options->video == NULL || video_check(options->video, render->width, render->height, error));
 }
 
-static int last_frame(const Panels *panels) {
-    int frames = 0;
-    for (int i = 0; i < panels->count; i++)
-        if (panels->runs[i]->frames > frames) frames = panels->runs[i]->frames;
-    return frames - 1;
-}
-
-static bool draw(const Panels *panels, const RenderOptions *render, Error *error) {
-    ProgressBar bar;
-    progress_bar_begin(&bar, "drawing");
-    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, &bar.progress, error);
-    progress_bar_end(&bar);
-    return ok;
-}
-
-static bool encode(const Options *options, const Panels *panels, const RenderOptions *render, Error *error) {
-    if (options->video == NULL) return true;
-    VideoOptions video = {.directory = render->directory,
-                          .first = render->first,
-                          .last = render->last,
-                          .frame_rate = 1 / (double)panels->runs[0]->dt,
-                          .path = options->video};
-    ProgressBar bar;
-    progress_bar_begin(&bar, "encoding");
-    bool ok = video_encode(&video, &bar.progress, error);
-    progress_bar_end(&bar);
-    return ok;
-}
-
-/* Frames of an earlier, longer run would pass for this one's. */
-static void remove_stale_frames(const RenderOptions *render) {
-    char path[4096];
-    for (int frame = render->last + 1;; frame++) {
-        if (snprintf(path, sizeof path, "%s/frame_%06d.png", render->directory, frame) >= (int)sizeof path) return;
-        if (unlink(path) != 0) return;
-    }
-}
-
 static bool render_panels(const Options *options, const Panels *panels, RenderOptions *render, Error *error) {
-    int last = last_frame(panels);
+    int last = panels_last_frame(panels);
     if (render->first > last || render->last > last)
         return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
-    bool whole = render->first == 0 && (render->last < 0 || render->last == last);
-    if (render->last < 0) render->last = last;
     if (!file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
-        !draw(panels, render, error))
+        !draw_panels(panels, render, options->video, error))
         return false;
-    if (whole) remove_stale_frames(render);
-    if (!encode(options, panels, render, error)) return false;
     printf("%d frames -> %s/frame_%06d.png ... frame_%06d.png\n", render->last - render->first + 1, render->directory,
            render->first, render->last);
     if (options->video != NULL) printf("video -> %s\n", options->video);
@@ -161,7 +111,7 @@ int command_render(int argc, char **argv, Error *error) {
     RenderOptions render;
     if (!read_options(&options, &render, error)) return STATUS_DIFFERENT;
     Panels panels = {0};
-    bool ok = panels_load(&panels, options.inputs, options.input_count, error) &&
+    bool ok = panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
               render_panels(&options, &panels, &render, error);
     panels_free(&panels);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;

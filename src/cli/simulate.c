@@ -8,13 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NO_BOMB = 256, BOMB_X, BOMB_FRAME, FRAMES, DT, ITERATIONS, NO_WARM, NO_ACCUMULATE, NO_CORRECTION, HASH };
+enum { NO_BOMB = 256, BOMB_X, BOMB_FRAME, FRAMES, DT, ITERATIONS, NO_WARM, NO_ACCUMULATE, NO_CORRECTION, HASH, SET };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "RUN", 0, "Store the trajectory: RUN.npz, or RUN.csv for poses as text", 0},
     {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "How contacts are solved (default: engine); see twinbox methods", 0},
     {"hash", HASH, "FILE", 0, "Write frame,hash for every frame", 0},
     {NULL, 0, NULL, 0, "Instead of what the scene says:", 1},
+    OPTION_SET(SET, 1),
     {"bomb-x", BOMB_X, "X", 0, "Where the bomb is launched, m", 1},
     {"bomb-frame", BOMB_FRAME, "N", 0, "Step after which the bomb is put in", 1},
     {"no-bomb", NO_BOMB, NULL, 0, "Launch none", 1},
@@ -30,6 +31,7 @@ typedef struct SimulateOptions {
     const char *scene, *output, *method, *hashes;
     const char *bomb_x, *bomb_frame, *frames, *dt, *iterations; /* NULL: as the scene has it */
     bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
+    SetOptions set;
 } SimulateOptions;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -38,6 +40,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case 'o': options->output = value; break;
     case 'm': options->method = value; break;
     case HASH: options->hashes = value; break;
+    case SET: options_add_set(&options->set, value); break;
     case BOMB_X: options->bomb_x = value; break;
     case BOMB_FRAME: options->bomb_frame = value; break;
     case NO_BOMB: options->no_bomb = true; break;
@@ -134,7 +137,7 @@ int command_simulate(int argc, char **argv, Error *error) {
     }
     Method method;
     if (!method_parse(&method, options.method, error)) return STATUS_DIFFERENT;
-    Scene *scene = scene_read(options.scene, error);
+    Scene *scene = options_read_scene(options.scene, &options.set, error);
     bool ok = scene != NULL && run_scene(scene, &method, &options, error);
     scene_destroy(scene);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;

@@ -77,7 +77,9 @@ static bool score_all(const StoredProblem *stored, const Method *methods, int me
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     Reference truth = {0};
     ContactSolution solution = {calloc((size_t)problem->body_count, sizeof *solution.velocities),
-                                calloc((size_t)problem->contact_count + 1, sizeof *solution.impulses), 0};
+                                calloc((size_t)problem->contact_count + 1, sizeof *solution.impulses),
+                                0,
+                                {0}};
     bool ok = solution.velocities != NULL && solution.impulses != NULL;
     if (!ok) error_memory(error, "solve");
     ok = ok && reference_solve(&truth, problem, tolerance, max_visits, NULL, error);

@@ -129,6 +129,14 @@ static bool take_rows(Csv *csv, int max_rows, Error *error) {
     return csv->rows > 1 || fail(&reader, 1, error, csv->rows == 0 ? "an empty table" : "no line behind the header");
 }
 
+bool csv_is_bare(const char *path) {
+    FILE *file = fopen(path, "r");
+    int lines = 0;
+    for (int c; file != NULL && lines < 2 && (c = fgetc(file)) != EOF;) lines += lines == 0 ? c == '\n' : 1;
+    if (file != NULL) fclose(file);
+    return lines == 1;
+}
+
 bool csv_read(Csv *csv, const char *path, size_t max_size, int max_rows, Error *error) {
     *csv = (Csv){.path = path};
     size_t size;

@@ -4,6 +4,7 @@
 
 #include "common/array.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -201,4 +202,10 @@ bool file_make_directory(const char *path, Error *error) {
 size_t file_folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash == NULL ? 0 : (size_t)(slash - path) + 1;
+}
+
+void file_name_clean(char *name) {
+    for (char *c = name; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
+    if (name[0] == '.') name[0] = '_';
 }

@@ -50,16 +50,21 @@ typedef struct Number {
     double full;
 } Number;
 
-/* The decimal number up to `terminator`; *rest is what follows it. */
-static bool take_number(const char *text, char terminator, Number *number, const char **rest) {
-    const char *end = decimal_end(text);
-    if (end == NULL || *end != terminator) return false;
+/* The number of a text that is known to begin with a decimal. */
+static bool convert(const char *text, Number *number) {
     locale_t previous = enter_c_locale();
     if (previous == (locale_t)0) return false;
     *number = (Number){strtof(text, NULL), strtod(text, NULL)};
     leave_c_locale(previous);
-    *rest = end + 1;
     return isfinite(number->single);
+}
+
+/* The decimal number up to `terminator`; *rest is what follows it. */
+static bool take_number(const char *text, char terminator, Number *number, const char **rest) {
+    const char *end = decimal_end(text);
+    if (end == NULL || *end != terminator) return false;
+    *rest = end + 1;
+    return convert(text, number);
 }
 
 bool parse_float(const char *text, float *value) {
@@ -80,6 +85,15 @@ bool parse_double(const char *text, double *value) {
     const char *rest;
     if (!take_number(text, '\0', &number, &rest)) return false;
     *value = number.full;
+    return true;
+}
+
+bool parse_leading_double(const char *text, double *value, const char **rest) {
+    Number number;
+    const char *end = decimal_end(text);
+    if (end == NULL || !convert(text, &number)) return false;
+    *value = number.full;
+    *rest = end;
     return true;
 }
 

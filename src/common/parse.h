@@ -11,6 +11,9 @@ bool parse_float(const char *text, float *value);
 /* A decimal number within the reach of float32, rounded to the nearest double. */
 bool parse_double(const char *text, double *value);
 
+/* The decimal number that text begins with, as parse_double reads it; *rest is what follows it. */
+bool parse_leading_double(const char *text, double *value, const char **rest);
+
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);
 
 /* "A:B:STEP", three floats with STEP > 0 and A <= B. Value i of the range is the decimal A + i * STEP (computed

@@ -46,6 +46,13 @@ typedef struct ContactImpulse {
     float normal, tangent; /* N s, accumulated over the step; b gets +, a gets - */
 } ContactImpulse;
 
+/* What a network said in a step and no body got to feel, counted by contacts or pairs. */
+typedef struct NetworkFallbacks {
+    int not_finite;      /* no numbers, or beyond all bounds: the solver goes on without */
+    int outside_cone;    /* impulses that were brought into the friction cone */
+    int beyond_training; /* steps in which it was not asked, as they are not like those that it learned from */
+} NetworkFallbacks;
+
 /* What a solver fills in; the arrays are the caller's. */
 typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */
@@ -53,4 +60,5 @@ typedef struct ContactSolution {
     /* N s: momentum that the method made from nothing: sum over pairs of moving bodies of |ma dva + mb dvb|; 0 where it
        pushes by impulses */
     float momentum_error;
+    NetworkFallbacks fallbacks; /* zeros without a network */
 } ContactSolution;

@@ -81,6 +81,11 @@ void contact_set_match(ContactSet *set, const ContactSet *last) {
     }
 }
 
+void contact_set_forget(ContactSet *set, int body) {
+    for (int i = 0; i < set->arbiter_count; i++)
+        if (set->arbiters[i].a == body || set->arbiters[i].b == body) set->arbiters[i].count = 0;
+}
+
 /* Mass that an impulse along the unit vector `axis` meets at the contact. */
 static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm_a, Vec2 arm_b, Vec2 axis) {
     float along_a = vec2_dot(arm_a, axis), along_b = vec2_dot(arm_b, axis);

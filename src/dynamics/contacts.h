@@ -10,7 +10,7 @@
 
 typedef struct Arbiter {
     int a, b;         /* bodies, a < b */
-    int first, count; /* its points in the contact set */
+    int first, count; /* its points in the contact set; none where it is forgotten */
 } Arbiter;
 
 /* Zero-initialise; arrays grow and are reused. Arbiters rise by (a, b). */
@@ -33,6 +33,10 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
 
 /* Hands the impulses of the last step to the points of this one that have the same pair and feature. */
 void contact_set_match(ContactSet *set, const ContactSet *last);
+
+/* The pairs of a body are as if they had never touched. Contacts and impulses stay where they are: who reads the last
+   step still needs them. */
+void contact_set_forget(ContactSet *set, int body);
 
 /* The velocity, m/s, that position correction wants along the normal (Baumgarte 1972, as Box2D-Lite has it);
    inverse_dt in 1/s. */

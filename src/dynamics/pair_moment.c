@@ -24,7 +24,7 @@ bool pair_moment_reserve(PairMoment *moment, const ContactProblem *problem) {
 }
 
 ContactSolution pair_moment_solution(const PairMoment *moment) {
-    return (ContactSolution){moment->velocities, moment->impulses, 0};
+    return (ContactSolution){moment->velocities, moment->impulses, 0, {0}};
 }
 
 /* Adds `sign` times what the contact's own push does to a body. */

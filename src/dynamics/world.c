@@ -92,6 +92,14 @@ bool world_add_body(World *world, const BodyDef *def, Error *error) {
     return true;
 }
 
+void world_remove_last_body(World *world) {
+    int body = --world->body_count;
+    contact_set_forget(&world->last, body);
+    /* Or a body added in its place would get its box. */
+    if (world->posed > body) world->posed = body;
+    if (world->bomb == body) world->bomb = -1;
+}
+
 bool world_copy(World *to, const World *from, Error *error) {
     to->def = from->def;
     to->bomb = from->bomb;
@@ -193,7 +201,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                                 .bodies = world->problem_bodies,
                                 .contacts = world->next.contacts};
     world->problem = *problem;
-    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0};
+    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0, {0}};
     *solution = &world->solution;
     return true;
 }

@@ -24,6 +24,10 @@ void world_destroy(World *world);
 /* Adds a body; its index is the number of bodies before it. Indices order the pairs, so the order matters. */
 bool world_add_body(World *world, const BodyDef *def, Error *error);
 
+/* Takes out the body added last. Its contacts are forgotten; those between the others keep their impulses. There is
+   one. */
+void world_remove_last_body(World *world);
+
 /* Tells the contact problem which body is the bomb (-1: none). */
 void world_set_bomb(World *world, int body);
 
@@ -56,6 +60,7 @@ bool world_step(World *world, const ContactSolver *solver, float dt, Error *erro
 int world_body_count(const World *world);
 const Body *world_bodies(const World *world);
 
-/* The contact problem of the last step and its solution; valid until the next. Empty before the first. */
+/* The contact problem of the last step and its solution; valid until the next, also where bodies have been added or
+   taken out meanwhile. Empty before the first. */
 const ContactProblem *world_problem(const World *world);
 const ContactSolution *world_solution(const World *world);

@@ -91,7 +91,7 @@ static void put_names(const Loop *loop) {
         if (loop->rows[i].line != next) continue;
         char text[CSV_NAME_SIZE];
         strcpy(text, loop->rows[i].network);
-        if (strlen(text) > LABEL_MAX) strcpy(text + LABEL_MAX - 3, "...");
+        figure_cut(text, LABEL_MAX);
         figure_text(loop->page, left - 1.5, bottom + (loop->lines - next++ - 0.5) * row_height, "right", 7, text);
     }
 }

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double sample_length = 8, half_upright = 1.3; /* mm, of the legend */
 
@@ -132,6 +133,17 @@ void figure_text(FigurePage *page, double x, double y, const char *align, double
             points);
 }
 
+void figure_link(FigurePage *page, FigureBox box, const char *target, const char *title) {
+    if (page->links == NULL) return;
+    fprintf(page->links, "<a xlink:href=\"%s\"><title>%s</title>", target, title);
+    fprintf(page->links, "<rect x=\"%.3f\" y=\"%.3f\" width=\"%.3f\" height=\"%.3f\" fill-opacity=\"0\"/></a>\n",
+            box.left, page->height - box.bottom - box.height, box.width, box.height);
+}
+
+void figure_cut(char *text, size_t most) {
+    if (strlen(text) > most) strcpy(text + most - 3, "...");
+}
+
 static void put_sample(FigurePage *page, const FigureLook *look, double left, double y) {
     FigureLook line = *look, marks = figure_marks(*look);
     line.marks = false;
@@ -149,11 +161,14 @@ static void put_sample(FigurePage *page, const FigureLook *look, double left, do
     figure_draw(page, &marks);
 }
 
-/* A panel over the whole page, its axes in mm. */
-void figure_legend(FigurePage *page, const FigureLook *looks, int count, int columns, double left, double top) {
+void figure_page_panel(FigurePage *page) {
     figure_panel(page, (FigureBox){0, 0, page->width, page->height}, "");
     fprintf(page->script, "unset border\nunset tics\nset xrange [0:%g]\nset yrange [0:%g]\n", page->width,
             page->height);
+}
+
+void figure_legend(FigurePage *page, const FigureLook *looks, int count, int columns, double left, double top) {
+    figure_page_panel(page);
     double width = (page->width - left) / columns;
     for (int i = 0; i < count; i++) {
         double x = left + width * (i % columns), y = top - FIGURE_LEGEND_ROW * (i / columns);

@@ -20,6 +20,7 @@ typedef struct FigurePage {
     double width, height; /* mm; 0: there is nothing to draw */
     FILE *script;
     FILE *caption; /* one line */
+    FILE *links;   /* SVG, in mm from the upper left corner; NULL: there can be none */
     FILE *plot;    /* what is to be plotted of the panel that is open */
     char *plot_text;
     size_t plot_size;
@@ -78,6 +79,15 @@ void figure_axis_label(FigurePage *page, char letter, const char *label);
 
 /* A text on the page at (x, y) mm: align is "left", "center" or "right". */
 void figure_text(FigurePage *page, double x, double y, const char *align, double points, const char *text);
+
+/* Makes a part of the page a link, in the SVG; `title` is shown where the pointer rests on it. */
+void figure_link(FigurePage *page, FigureBox box, const char *target, const char *title);
+
+/* Cuts a text to so many characters, the last three of them dots; most >= 3. */
+void figure_cut(char *text, size_t most);
+
+/* Opens a panel over the whole page, without a frame, its axes in mm. Of all panels the last, as the legend is. */
+void figure_page_panel(FigurePage *page);
 
 /* A legend in columns over [left, width - right], its first row's middle at `top` mm; of all panels the last. */
 #define FIGURE_LEGEND_ROW 3.7 /* mm */

@@ -97,7 +97,26 @@ static bool run(const char *folder, const char *script, size_t size, Error *erro
     return process_finish(&process, text, sizeof text, error);
 }
 
-static bool collect(const char *folder, int formats, const char *stem, Error *error) {
+/* Puts what goes over the rest before the end of an SVG, which it takes the place of. */
+static bool put_over(char **svg, size_t *size, const char *over) {
+    static const char end[] = "</svg>";
+    char *last = NULL, *text = NULL;
+    for (char *at = *svg; (at = strstr(at, end)) != NULL; at++) last = at;
+    FILE *out = last != NULL ? open_memstream(&text, size) : NULL;
+    if (out == NULL) return false;
+    fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, over, last);
+    bool whole = !ferror(out);
+    if (fclose(out) != 0 || !whole) {
+        free(text);
+        return false;
+    }
+    free(*svg);
+    *svg = text;
+    return true;
+}
+
+static bool collect(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
+    const int formats = format_count(drawing);
     char *data[FORMATS] = {NULL}, path[PATH_MAX];
     size_t size[FORMATS];
     bool done = true;
@@ -106,6 +125,7 @@ static bool collect(const char *folder, int formats, const char *stem, Error *er
         data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
         done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "has drawn no %s", endings[i]);
     }
+    if (done && drawing->over != NULL && !put_over(&data[1], &size[1], drawing->over)) done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {
         int length = snprintf(path, sizeof path, "%s.%s", stem, endings[i]);
         done = length < (int)sizeof path ? file_write(path, data[i], size[i], error)
@@ -119,8 +139,7 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     size_t size;
     char *script = whole_script(drawing, folder, &size);
     if (script == NULL) return error_memory(error, stem);
-    bool done = put_font(folder, error) && run(folder, script, size, error) &&
-                collect(folder, format_count(drawing), stem, error);
+    bool done = put_font(folder, error) && run(folder, script, size, error) && collect(folder, drawing, stem, error);
     free(script);
     return done;
 }

@@ -12,6 +12,7 @@ typedef struct GnuplotDrawing {
     const char *script;   /* what to plot, without terminal and output; trusted: gnuplot can run programs */
     size_t script_size;
     bool without_pdf;
+    const char *over; /* elements that go over those of the SVG, in mm from its upper left corner; NULL: none */
 } GnuplotDrawing;
 
 /* Draws stem.png (300 dots an inch), stem.svg and, unless told not to, stem.pdf, with 8 pt Inter as the default font

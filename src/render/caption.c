@@ -88,8 +88,8 @@ void caption_header(const Picture *picture, int frame, Drawing *drawing) {
         draw_item(layout, &items[i], left, drawing);
         x = left - gap;
     }
-    char title[TRAJECTORY_NAME_SIZE];
-    scene_title(title, sizeof title, picture->panels[0]->scene);
+    char title[TEXT_SIZE];
+    scene_title(title, sizeof title, picture->title != NULL ? picture->title : picture->panels[0]->scene);
     font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left, INK);
 }
 
@@ -139,6 +139,12 @@ static void describe_state(const Picture *picture, int panel, int frame, char *t
         snprintf(text, size, "ended");
 }
 
+/* The note comes first: what is cut short is the method's settings. */
+static void add_note(char *text, size_t size, const char *note, const char *method) {
+    bool both = note != NULL && method[0] != '\0';
+    snprintf(text, size, "%s%s%s", note != NULL ? note : "", both ? "; " : "", method);
+}
+
 void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     if (layout->title.glyphs == NULL) return;
@@ -153,10 +159,9 @@ void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawin
     if (note[0] != '\0') right -= gap;
     describe(trajectory->method, &title, note, sizeof note);
     int x = panel_draw_swatch(picture, panel, rect->left, baseline, drawing) + gap;
-    if (title == NULL) {
-        font_add_fitting(drawing, &layout->title, note, x, baseline, right - x, INK);
-        return;
-    }
-    x = font_add_fitting(drawing, &layout->title, title, x, baseline, right - x, INK) + gap;
-    font_add_fitting(drawing, &layout->method, note, x, baseline, right - x, INK_SOFT);
+    x = font_add_fitting(drawing, &layout->title, title != NULL ? title : note, x, baseline, right - x, INK) + gap;
+    if (title == NULL) note[0] = '\0';
+    char text[2 * TEXT_SIZE];
+    add_note(text, sizeof text, picture->notes[panel], note);
+    font_add_fitting(drawing, &layout->method, text, x, baseline, right - x, INK_SOFT);
 }

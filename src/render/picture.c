@@ -45,6 +45,11 @@ bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, 
     return true;
 }
 
+void picture_caption(Picture *picture, const RenderOptions *options) {
+    picture->title = options->title;
+    for (int i = 0; i < picture->count; i++) picture->notes[i] = options->notes[i];
+}
+
 int picture_panel_frame(const Picture *picture, int panel, int frame) {
     int last = picture->panels[panel]->frames - 1;
     return frame < last ? frame : last;

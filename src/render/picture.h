@@ -13,10 +13,15 @@ typedef struct Picture {
     Layout layout;
     Camera camera;        /* for a panel whose upper left corner is (0, 0) */
     double largest_apart; /* m, over the run */
+    const char *title;    /* as in RenderOptions; outlive the picture */
+    const char *notes[RENDER_PANELS_MAX];
 } Picture;
 
 /* Refuses (ERROR_INPUT) what cannot be shown side by side. The trajectories must outlive the picture. */
 bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error);
+
+/* Takes over what the options say in words. */
+void picture_caption(Picture *picture, const RenderOptions *options);
 
 /* Puts a frame into a cleared drawing. */
 void picture_draw(const Picture *picture, int frame, Drawing *drawing);

@@ -13,10 +13,12 @@ enum { RENDER_PANELS_MAX = 6, RENDER_LEAST_SIDE = 64, RENDER_LARGEST_SIDE = 8192
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_LEAST_SIDE .. RENDER_LARGEST_SIDE */
     RenderContext context;
-    int first, last;       /* frames, both included; last -1: to the end */
-    int jobs;              /* processes that draw, 1 .. RENDER_JOBS_MAX */
-    const char *directory; /* made where it is missing */
-    bool small;            /* files as small as libpng can make them, which takes long */
+    int first, last;                      /* frames, both included; last -1: to the end */
+    int jobs;                             /* processes that draw, 1 .. RENDER_JOBS_MAX */
+    const char *directory;                /* made where it is missing */
+    bool small;                           /* files as small as libpng can make them, which takes long */
+    const char *title;                    /* at the head of the picture; NULL: the scene's name */
+    const char *notes[RENDER_PANELS_MAX]; /* behind what solved a panel; NULL: none */
 } RenderOptions;
 
 /* Writes directory/frame_000000.png and on: all frames of the longest of 1 to 6 panels, or the range asked

@@ -45,6 +45,7 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
                           Error *error) {
     Picture picture;
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
+    picture_caption(&picture, options);
     return renderer_create_planned(&picture, options, error);
 }
 

@@ -6,7 +6,10 @@
 
 #include "common/parse.h"
 #include "common/vec2.h"
+#include "scene/chain.h"
+#include "scene/nearest.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,38 +25,12 @@ const Range range_gravity = {-1e4f, 1e4f, " m/s^2"};
 const Range range_dt = {SCENE_MIN_DT, SCENE_MAX_DT, " s"};
 const Range range_rate = {-1e4f, 1e4f, " 1/s"};
 
-enum { KEY_SIZE = 32 };
-
-static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
-
-/* Letters to insert, drop or replace (Levenshtein 1966), kept row by row. */
-static size_t edits(const char *a, const char *b) {
-    size_t row[KEY_SIZE], columns = strlen(b);
-    for (size_t j = 0; j <= columns; j++) row[j] = j;
-    for (size_t i = 0; a[i] != '\0'; i++) {
-        size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (size_t j = 0; j < columns; j++) {
-            size_t replaced = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = smaller(replaced, 1 + smaller(row[j], diagonal));
-        }
-    }
-    return row[columns];
-}
-
 /* The key that a mistyped one most likely stands for, or NULL. */
 static const char *nearest_key(const Field *fields, const char *key) {
-    const char *nearest = NULL;
-    size_t length = strlen(key), best = 1 + length / 3;
-    if (length >= KEY_SIZE) return NULL;
-    for (const Field *field = fields; field->key != NULL; field++) {
-        size_t distance = edits(key, field->key);
-        if (distance > best || (distance == best && nearest != NULL)) continue;
-        best = distance;
-        nearest = field->key;
-    }
-    return nearest;
+    const char *keys[FIELDS_MAX];
+    int count = 0;
+    for (const Field *field = fields; field->key != NULL; field++) keys[count++] = field->key;
+    return nearest_word(key, keys, count);
 }
 
 static bool unknown_key(const YamlTree *tree, int node, const char *what, const Field *fields, Error *error) {
@@ -110,15 +87,21 @@ static bool is_scalar(const YamlTree *tree, int node) { return tree->nodes[node]
 
 bool field_number(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     float value;
+    double full;
     const Range *range = field->range;
-    if (!is_scalar(tree, node) || !parse_float(yaml_text(tree, node), &value))
-        return yaml_error(tree, node, error, "%s must be a number (got %s)", field->key, yaml_show(tree, node).text);
+    /* A decimal, and a fraction of two, are rounded as everywhere else; a chain once, at its end. */
+    if (is_scalar(tree, node) && parse_float(yaml_text(tree, node), &value))
+        full = (double)value;
+    else if (chain_read(tree, node, field->key, &full, error))
+        value = (float)full;
+    else
+        return false;
     if (range->minimum > 0 && value <= 0)
         return yaml_error(tree, node, error, "%s must be greater than 0 (got %s)", field->key,
-                          yaml_show(tree, node).text);
+                          chain_show(tree, node, full).text);
     if (value < range->minimum || value > range->maximum)
         return yaml_error(tree, node, error, "%s must be from %g to %g%s (got %s)", field->key, (double)range->minimum,
-                          (double)range->maximum, range->unit, yaml_show(tree, node).text);
+                          (double)range->maximum, range->unit, chain_show(tree, node, full).text);
     *(float *)member = value;
     return true;
 }
@@ -135,12 +118,23 @@ bool field_vector(const YamlTree *tree, int node, const Field *field, void *memb
     return field_number(tree, x, field, &vector->x, error) && field_number(tree, y, field, &vector->y, error);
 }
 
+static bool not_whole(const YamlTree *tree, int node, const Field *field, const char *got, Error *error) {
+    return yaml_error(tree, node, error, "%s must be a whole number from %d to %d (got %s)", field->key,
+                      (int)field->range->minimum, (int)field->range->maximum, got);
+}
+
 bool field_int(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     int64_t value, minimum = (int64_t)field->range->minimum, maximum = (int64_t)field->range->maximum;
-    if (!is_scalar(tree, node) || !parse_int(yaml_text(tree, node), minimum, maximum, &value))
-        return yaml_error(tree, node, error, "%s must be a whole number from %d to %d (got %s)", field->key,
-                          (int)minimum, (int)maximum, yaml_show(tree, node).text);
-    *(int *)member = (int)value;
+    double full;
+    if (is_scalar(tree, node) && parse_int(yaml_text(tree, node), minimum, maximum, &value)) {
+        *(int *)member = (int)value;
+        return true;
+    }
+    if (!chain_is(tree, node)) return not_whole(tree, node, field, yaml_show(tree, node).text, error);
+    if (!chain_read(tree, node, field->key, &full, error)) return false;
+    if (full != floor(full) || full < (double)minimum || full > (double)maximum)
+        return not_whole(tree, node, field, chain_show(tree, node, full).text, error);
+    *(int *)member = (int)full;
     return true;
 }
 

@@ -41,11 +41,11 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
 /* The value's node of a key, 0 where it is missing, from what fields_read told. */
 int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key);
 
-/* float; float32 nearest to the decimal, or a fraction such as 1/60. */
+/* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain (chain.h). */
 FieldParser field_number;
 /* Vec2: a list of two numbers. */
 FieldParser field_vector;
-/* int */
+/* int; digits, or a chain whose value is whole. */
 FieldParser field_int;
 /* bool: true, false, on, off, yes, no. */
 FieldParser field_switch;

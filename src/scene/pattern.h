@@ -16,6 +16,7 @@ typedef struct Pattern {
     const PatternKind *kind; /* NULL: one body */
     int count;               /* bodies of a row or a stack, rows of a pyramid */
     Vec2 spacing;            /* m */
+    int until;               /* the step after which a single body goes; 0: it stays */
     BodyDef first;           /* the first body; the others differ from it by their position only */
 } Pattern;
 

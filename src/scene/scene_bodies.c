@@ -21,8 +21,9 @@ static bool field_pattern(const YamlTree *tree, int node, const Field *field, vo
 }
 
 static const Range range_count = {1, SCENE_MAX_BODIES, ""};
+static const Range range_until = {1, SCENE_MAX_FRAMES, ""};
 
-enum { SIZE, STATIC, MASS, POSITION, ANGLE, VELOCITY, SPIN, FRICTION, PATTERN, COUNT, SPACING };
+enum { SIZE, STATIC, MASS, POSITION, ANGLE, VELOCITY, SPIN, UNTIL, FRICTION, PATTERN, COUNT, SPACING };
 
 static const Field body_fields[] = {
     [SIZE] = {"size", field_vector, offsetof(Pattern, first.size), &range_size, true},
@@ -32,6 +33,7 @@ static const Field body_fields[] = {
     [ANGLE] = {"angle", field_number, offsetof(Pattern, first.angle), &range_angle, false},
     [VELOCITY] = {"velocity", field_vector, offsetof(Pattern, first.velocity), &range_speed, false},
     [SPIN] = {"spin", field_number, offsetof(Pattern, first.angular_velocity), &range_spin, false},
+    [UNTIL] = {"until", field_int, offsetof(Pattern, until), &range_until, false},
     [FRICTION] = {"friction", field_number, offsetof(Pattern, first.friction), &range_friction, false},
     [PATTERN] = {"pattern", field_pattern, offsetof(Pattern, kind), NULL, false},
     [COUNT] = {"count", field_int, offsetof(Pattern, count), &range_count, false},
@@ -43,9 +45,11 @@ static bool check_keys(const YamlTree *tree, int node, const Pattern *pattern, c
     bool fixed = pattern->first.fixed, mass = nodes[MASS] != 0;
     if (fixed && mass) return yaml_error(tree, nodes[MASS], error, "a static body has no mass");
     if (!fixed && !mass) return yaml_error(tree, node, error, "a body needs the key 'mass', or 'static: true'");
-    for (int moving = VELOCITY; fixed && moving <= SPIN; moving++)
+    for (int moving = VELOCITY; fixed && moving <= UNTIL; moving++)
         if (nodes[moving] != 0)
             return yaml_error(tree, nodes[moving], error, "a static body has no %s", body_fields[moving].key);
+    if (pattern->kind != NULL && nodes[UNTIL] != 0)
+        return yaml_error(tree, nodes[UNTIL], error, "until is for a single body and not for a pattern");
     for (int key = COUNT; key <= SPACING; key++) {
         if (pattern->kind == NULL && nodes[key] != 0)
             return yaml_error(tree, nodes[key], error, "%s needs the key 'pattern' beside it", body_fields[key].key);
@@ -95,8 +99,28 @@ bool field_bodies(const YamlTree *tree, int node, const Field *field, void *memb
         Pattern pattern;
         int nodes[FIELDS_MAX];
         if (!read_entry(tree, entry, &pattern, nodes, error)) return false;
+        if (pattern.until > 0 && tree->nodes[entry].end < list->end)
+            return yaml_error(tree, nodes[UNTIL], error, "only the last body may have an until");
+        ((Scene *)member)->last_body_until = pattern.until;
         int place = nodes[COUNT] != 0 ? nodes[COUNT] : entry;
         if (!add_bodies(tree, place, &pattern, member, &capacity, error)) return false;
     }
     return true;
+}
+
+/* The value's node of a key of the last body. */
+static int last_body_node(const YamlTree *tree, int node, const char *key) {
+    int entry = node + 1;
+    while (tree->nodes[entry].end < tree->nodes[node].end) entry = tree->nodes[entry].end;
+    int at = entry + 1;
+    while (strcmp(yaml_text(tree, at), key) != 0) at = tree->nodes[at + 1].end;
+    return at + 1;
+}
+
+bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Error *error) {
+    int until = last_body_node(tree, node, body_fields[UNTIL].key);
+    if (scene->bomb.present) return yaml_error(tree, until, error, "until does not go with a bomb");
+    return scene->last_body_until <= scene->frames ||
+           yaml_error(tree, until, error, "the body would go after step %d, after the last (frames: %d)",
+                      scene->last_body_until, scene->frames);
 }

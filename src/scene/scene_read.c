@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include "common/file.h"
+#include "scene/parameters.h"
 #include "scene/scene_bodies.h"
 
 #include <limits.h>
@@ -109,6 +110,15 @@ static bool field_networks(const YamlTree *tree, int node, const Field *field, v
     return true;
 }
 
+/* They are read before all else, as numbers may be made of them. */
+static bool field_parameters(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    (void)node, (void)field, (void)error;
+    Scene *scene = member;
+    scene->parameter_count = tree->parameters->count;
+    memcpy(scene->parameters, tree->parameters->items, sizeof scene->parameters);
+    return true;
+}
+
 static const Field scene_fields[] = {
     {"gravity", field_vector, offsetof(Scene, gravity), &range_gravity, true},
     {"dt", field_number, offsetof(Scene, dt), &range_dt, true},
@@ -121,14 +131,28 @@ static const Field scene_fields[] = {
     {"bodies", field_bodies, 0, NULL, true},
     {"bomb", field_bomb, 0, NULL, false},
     {"networks", field_networks, 0, NULL, false},
+    {"parameters", field_parameters, 0, NULL, false},
     {NULL, NULL, 0, NULL, false}};
 
-static bool read_tree(const YamlTree *tree, Scene *scene, Error *error) {
+static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
+    if (scene->last_body_until > 0)
+        return bodies_check_until(tree, fields_node(scene_fields, nodes, "bodies"), scene, error);
     return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
            yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
                       "the bomb would come in frame %d, after the last (frames: %d)", scene->bomb.frame, scene->frames);
+}
+
+static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
+    Parameters parameters;
+    if (!parameters_read(&parameters, tree, error) ||
+        !parameters_set(&parameters, tree->source.path, settings, count, error))
+        return false;
+    tree->parameters = &parameters;
+    bool ok = read_fields(tree, scene, error) && parameters_all_used(&parameters, tree, error);
+    tree->parameters = NULL;
+    return ok;
 }
 
 /* The name goes into captions and files, so it must be text that prints. */
@@ -140,7 +164,9 @@ static void name_scene(Scene *scene, const char *path) {
     source_printable(scene->name, sizeof scene->name, file);
 }
 
-Scene *scene_read(const char *path, Error *error) {
+Scene *scene_read(const char *path, Error *error) { return scene_read_with(path, NULL, 0, error); }
+
+Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error) {
     YamlTree tree;
     if (!yaml_read(&tree, path, error)) return NULL;
     Scene *scene = calloc(1, sizeof *scene);
@@ -149,7 +175,7 @@ Scene *scene_read(const char *path, Error *error) {
     } else {
         scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
         name_scene(scene, path);
-        if (!read_tree(&tree, scene, error)) {
+        if (!read_tree(&tree, scene, settings, count, error)) {
             scene_destroy(scene);
             scene = NULL;
         }

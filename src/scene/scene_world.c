@@ -101,6 +101,11 @@ uint64_t scene_hash(const Scene *scene) {
     put_word(&record, scene->bomb.present ? (uint32_t)scene->bomb.frame : 0);
     uint64_t hash = hash_xxh3(record.bytes, record.size);
     for (int i = 0; i < scene->body_count; i++) hash = hash_body(hash, &scene->bodies[i]);
+    if (scene->last_body_until > 0) {
+        record = begin_record(hash);
+        put_word(&record, (uint32_t)scene->last_body_until);
+        hash = hash_xxh3(record.bytes, record.size);
+    }
     if (!scene->bomb.present) return hash;
     BodyDef bomb = scene_bomb_body(scene);
     return hash_body(hash, &bomb);

@@ -33,6 +33,8 @@ typedef struct YamlTree {
     int node_count;  /* >= 1; node 0 is the root */
     YamlNode *nodes; /* [node_count] */
     char *texts;     /* the scalars, each with a NUL */
+    /* What $names in it stand for (parameters.h), NULL while they are not known; not owned. */
+    struct Parameters *parameters;
 } YamlTree;
 
 /* Reads the file. An error shows the place (source_error). On failure nothing is to be freed. */

@@ -15,7 +15,7 @@ typedef struct StepObserver {
     void *context;
 } StepObserver;
 
-/* One step of a run: the scene's, and the bomb where it comes after this one. On failure the error names scene and
+/* One step of a run: the scene's, and the bomb where it comes after this one, or the body that goes. On failure the error names scene and
    step. */
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
 

@@ -4,6 +4,16 @@
 #pragma once
 #include "dynamics/contact_problem.h"
 
+#include <stdbool.h>
+#include <string.h>
+
+/* Do the same two bodies touch in both, along one normal? */
+static inline bool contact_shares_surface(const ContactPoint *first, const ContactPoint *second) {
+    return first->a == second->a && first->b == second->b &&
+           memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
+           memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
+}
+
 /* Adds impulse to b and takes it from a. */
 static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
                                  const ProblemBody *bodies, Vec2 impulse) {

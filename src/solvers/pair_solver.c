@@ -53,14 +53,17 @@ static double made_momentum(const ProblemBody *a, const ProblemBody *b, const fl
     return sqrt(x * x + y * y);
 }
 
-/* A number that is not finite never reaches a body: the pair is left as it is. */
+/* A number that is not finite never reaches a body: the pair is left as it is, and counted. */
 static void add_changes(const PairNetwork *network, const ContactProblem *problem, int first,
                         const float changes[PAIR_CHANGES], ContactSolution *solution) {
     const int a = problem->contacts[first].a, b = problem->contacts[first].b;
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
     const BodyVelocity of_a = changed(&solution->velocities[a], body_a, changes);
     const BodyVelocity of_b = changed(&solution->velocities[b], body_b, changes + 3);
-    if (!is_finite_velocity(&of_a) || !is_finite_velocity(&of_b)) return;
+    if (!is_finite_velocity(&of_a) || !is_finite_velocity(&of_b)) {
+        solution->fallbacks.not_finite++;
+        return;
+    }
     solution->velocities[a] = of_a;
     solution->velocities[b] = of_b;
     if (network->target == TARGET_NET || pair_network_outputs(network) == PAIR_CHANGES)
@@ -115,9 +118,14 @@ static void push_points(const ContactProblem *problem, int first, const float *o
             const float *beyond = outputs + 2 * i * stride;
             const ContactImpulse said = {impulse.normal + beyond[0] / inverse_mass,
                                          impulse.tangent + beyond[stride] / inverse_mass};
-            if (isfinite(said.normal) && isfinite(said.tangent)) impulse = said;
+            if (isfinite(said.normal) && isfinite(said.tangent))
+                impulse = said;
+            else
+                solution->fallbacks.not_finite++;
         }
         solution->impulses[first + i] = into_cone(impulse, contact->friction);
+        solution->fallbacks.outside_cone += impulse.normal != solution->impulses[first + i].normal ||
+                                            impulse.tangent != solution->impulses[first + i].tangent;
         contact_push(solution->velocities, contact, problem->bodies, solution->impulses[first + i]);
     }
 }
@@ -129,6 +137,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
         solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
     solution->momentum_error = 0;
+    solution->fallbacks = (NetworkFallbacks){0};
     if (network->target == TARGET_IMPULSE) {
         visit_pairs(solver, problem, solution);
         return true;

@@ -29,7 +29,8 @@ bool scene_answer_knows(SceneAnswer *answer, const SlotNetwork *network, const C
     return true;
 }
 
-void scene_answer_find(SceneAnswer *answer, const SlotNetwork *network, const ContactProblem *problem) {
+void scene_answer_find(SceneAnswer *answer, const SlotNetwork *network, const ContactProblem *problem,
+                       NetworkFallbacks *fallbacks) {
     const SceneView *view = &answer->view;
     slot_network_predict(network, answer->inputs, &view->slots, answer->first, answer->second, answer->outputs);
     for (int i = 0; i < problem->contact_count; i++) answer->change[i] = view->base[i];
@@ -38,8 +39,10 @@ void scene_answer_find(SceneAnswer *answer, const SlotNetwork *network, const Co
         const float limit = problem->contacts[view->contacts[k]].friction;
         to->normal += answer->outputs[2 * k];
         to->tangent += answer->outputs[2 * k + 1];
+        const ContactImpulse said = *to;
         to->normal = to->normal > 0 ? to->normal : 0;
         to->tangent = contact_clamp(to->tangent, -limit * to->normal, limit * to->normal);
+        fallbacks->outside_cone += said.normal != to->normal || said.tangent != to->tangent;
     }
     for (int i = 0; i < problem->contact_count; i++) {
         answer->change[i].normal -= problem->contacts[i].warm_normal;

@@ -19,5 +19,6 @@ void scene_answer_free(SceneAnswer *answer);
 bool scene_answer_knows(SceneAnswer *answer, const SlotNetwork *network, const ContactProblem *problem, bool *known);
 
 /* Of a problem that is known: change, from the warm start to what the network says, inside the friction cones. Not finite
-   where the network is not. */
-void scene_answer_find(SceneAnswer *answer, const SlotNetwork *network, const ContactProblem *problem);
+   where the network is not. Counts those that were outside of their cones. */
+void scene_answer_find(SceneAnswer *answer, const SlotNetwork *network, const ContactProblem *problem,
+                       NetworkFallbacks *fallbacks);

@@ -158,17 +158,20 @@ static bool run(SceneNet *solver, const ContactProblem *problem, Way way) {
 }
 
 /* After the warm start. */
-static bool choose_way(SceneNet *solver, const ContactProblem *problem, Way *way, Error *error) {
+static bool choose_way(SceneNet *solver, const ContactProblem *problem, Way *way, NetworkFallbacks *fallbacks,
+                       Error *error) {
     const SlotNetwork *network = solver->network;
     *way = BY_MOMENTUM;
-    if (problem->bomb < 0 || problem->bodies[network->bomb].inv_mass != network->bomb_inv_mass) return true;
+    if (problem->bomb < 0) return true;
+    bool known = problem->bodies[network->bomb].inv_mass == network->bomb_inv_mass;
     if (!impact_gap_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
-        *way = CALM;
+        if (known) *way = CALM;
         return true;
     }
-    bool known;
-    if (!scene_answer_knows(&solver->answer, network, problem, &known)) return error_memory(error, "scene-net");
+    if (known && !scene_answer_knows(&solver->answer, network, problem, &known))
+        return error_memory(error, "scene-net");
     if (known) *way = BY_NETWORK;
+    fallbacks->beyond_training += !known;
     return true;
 }
 
@@ -183,14 +186,19 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
     Way way;
-    if (!choose_way(solver, problem, &way, error)) return false;
+    solution->fallbacks = (NetworkFallbacks){0};
+    if (!choose_way(solver, problem, &way, &solution->fallbacks, error)) return false;
     if (way == BY_NETWORK) {
-        scene_answer_find(&solver->answer, solver->network, problem);
+        scene_answer_find(&solver->answer, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->answer.change);
-        if (!is_bounded(sweeps)) return solve_without(solver, problem, solution, error);
+        if (!is_bounded(sweeps)) {
+            solution->fallbacks.not_finite++;
+            return solve_without(solver, problem, solution, error);
+        }
     }
     if (!run(solver, problem, way)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
+    solution->fallbacks.not_finite += way == BY_NETWORK;
     return solve_without(solver, problem, solution, error);
 }
 

@@ -9,6 +9,7 @@ extern const ContactSolverKind solver_momentum;
 extern const ContactSolverKind solver_learned_momentum;
 extern const ContactSolverKind solver_block;
 extern const ContactSolverKind solver_nncg;
+extern const ContactSolverKind solver_robust;
 extern const ContactSolverKind solver_pair_net;
 extern const ContactSolverKind solver_contact_net;
 extern const ContactSolverKind solver_relu_net;

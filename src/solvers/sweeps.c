@@ -2,6 +2,7 @@
 #include "solvers/sweeps.h"
 
 #include "common/array.h"
+#include "solvers/contact_velocity.h"
 #include "solvers/sweeps_kernels.h"
 
 #include <math.h>
@@ -65,13 +66,6 @@ static bool moves(const ProblemBody *body) {
            is_negative_zero(body->velocity.y) || is_negative_zero(body->angular_velocity);
 }
 
-/* Can both be points of one SweepPair? */
-static bool share_surface(const ContactPoint *first, const ContactPoint *second) {
-    return first->a == second->a && first->b == second->b &&
-           memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
-           memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
-}
-
 static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
     sweeps->body_count = problem->body_count;
     for (int i = 0; i < problem->body_count; i++) {
@@ -106,7 +100,7 @@ static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, bool warm,
     sweeps->pair_count = 0;
     for (int i = 0; i < problem->contact_count;) {
         const ContactPoint *contact = &problem->contacts[i], *next = contact + 1;
-        bool two = i + 1 < problem->contact_count && share_surface(contact, next);
+        bool two = i + 1 < problem->contact_count && contact_shares_surface(contact, next);
         SweepPair *pair = &sweeps->pairs[sweeps->pair_count];
         pair->normal = contact->normal;
         pair->friction = contact->friction;

@@ -61,14 +61,18 @@ static bool add_entry(ContenderList *list, const Entry *entry, bool quick, Error
     return true;
 }
 
-/* One method of the list: with its own settings, or with all that the study has. */
-static bool add_word(ContenderList *list, char *word, bool quick, Error *error) {
+/* One method of the list with its own settings. */
+static bool add_as_given(ContenderList *list, char *word, Error *error) {
     char *colon = strchr(word, ':');
+    if (colon == NULL) return add(list, word, "", error);
+    *colon = '\0';
+    return add(list, word, colon + 1, error);
+}
+
+/* The same, or with all that the study has. */
+static bool add_word(ContenderList *list, char *word, bool quick, Error *error) {
     bool known = false;
-    if (colon != NULL) {
-        *colon = '\0';
-        return add(list, word, colon + 1, error);
-    }
+    if (strchr(word, ':') != NULL) return add_as_given(list, word, error);
     for (int i = 0; i < ENTRIES; i++) {
         if (strcmp(entries[i].name, word) != 0) continue;
         if (!add_entry(list, &entries[i], quick, error)) return false;
@@ -88,23 +92,40 @@ static char *split(char *text) {
     return NULL;
 }
 
-bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error) {
-    *list = (ContenderList){0};
-    bool ok = true;
-    if (text == NULL) {
-        for (int i = 0; ok && i < ENTRIES; i++) ok = add_entry(list, &entries[i], quick, error);
-    } else {
-        char *copy = strdup(text), *word = copy;
-        if (copy == NULL) return error_memory(error, "contenders");
-        while (ok && word != NULL) {
-            char *next = split(word);
-            ok = add_word(list, word, quick, error);
-            word = next;
-        }
-        free(copy);
+static bool add_all(ContenderList *list, bool quick, Error *error) {
+    for (int i = 0; i < ENTRIES; i++)
+        if (!add_entry(list, &entries[i], quick, error)) return false;
+    return true;
+}
+
+typedef enum Names { NAMES_AS_GIVEN, NAMES_WHOLE, NAMES_QUICK } Names;
+
+/* What a name alone stands for is said by `names`. Of a list that is refused nothing is left. */
+static bool add_words(ContenderList *list, const char *text, Names names, Error *error) {
+    char *copy = strdup(text), *word = copy;
+    bool ok = copy != NULL || error_memory(error, "contenders");
+    while (ok && word != NULL) {
+        char *next = split(word);
+        ok = names == NAMES_AS_GIVEN ? add_as_given(list, word, error)
+                                     : add_word(list, word, names == NAMES_QUICK, error);
+        word = next;
     }
+    free(copy);
     if (!ok) contenders_free(list);
     return ok;
+}
+
+bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error) {
+    *list = (ContenderList){0};
+    if (text != NULL) return add_words(list, text, quick ? NAMES_QUICK : NAMES_WHOLE, error);
+    if (add_all(list, quick, error)) return true;
+    contenders_free(list);
+    return false;
+}
+
+bool contenders_read(ContenderList *list, const char *text, Error *error) {
+    *list = (ContenderList){0};
+    return add_words(list, text, NAMES_AS_GIVEN, error);
 }
 
 void contenders_free(ContenderList *list) {

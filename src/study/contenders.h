@@ -18,6 +18,10 @@ typedef struct ContenderList {
 /* Fills the list from "NAME,NAME:KEY=VALUE,...": a name alone stands for all settings that the study has for it (quick:
    fewer). text NULL: every method. ERROR_INPUT for a name or setting that there is not, or one given twice. */
 bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error);
+
+/* The same, where a name alone stands for the method as the scene has it. */
+bool contenders_read(ContenderList *list, const char *text, Error *error);
+
 void contenders_free(ContenderList *list);
 
 /* Those that can run in the scene: without a method that needs a network which neither its settings nor the scene name.

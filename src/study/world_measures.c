@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/world_measures.h"
 
-double world_energy(const World *world, Vec2 gravity) {
-    const Body *bodies = world_bodies(world);
+double body_energy(const Body *body, Vec2 gravity) {
+    if (body->inv_mass == 0) return 0;
+    double x = body->velocity.x, y = body->velocity.y, spin = body->angular_velocity;
+    double potential = (double)gravity.x * body->position.x + (double)gravity.y * body->position.y;
+    return (0.5 * (x * x + y * y) - potential) / body->inv_mass + 0.5 * spin * spin / body->inv_inertia;
+}
+
+double bodies_energy(const Body *bodies, int count, Vec2 gravity) {
     double sum = 0;
-    for (int i = 0; i < world_body_count(world); i++) {
-        const Body *body = &bodies[i];
-        if (body->inv_mass == 0) continue;
-        double x = body->velocity.x, y = body->velocity.y, spin = body->angular_velocity;
-        double potential = (double)gravity.x * body->position.x + (double)gravity.y * body->position.y;
-        sum += (0.5 * (x * x + y * y) - potential) / body->inv_mass + 0.5 * spin * spin / body->inv_inertia;
-    }
+    for (int i = 0; i < count; i++) sum += body_energy(&bodies[i], gravity);
     return sum;
+}
+
+double world_energy(const World *world, Vec2 gravity) {
+    return bodies_energy(world_bodies(world), world_body_count(world), gravity);
 }
 
 double world_penetration(const World *world) {

@@ -32,7 +32,7 @@ typedef struct Trajectory {
     Vec2 camera_size;                  /* m, width and height; 0, 0 where the scene leaves it to the renderer */
     Vec2 *size;                        /* [N] full width and height, m */
     uint8_t *fixed;                    /* [N] 1: static */
-    Vec2 *position;                    /* [T, N]; NaN while a body is not there yet, as are the next three */
+    Vec2 *position;                    /* [T, N]; NaN while a body is not there, as are the next three */
     float *angle;                      /* [T, N] */
     Vec2 *velocity;                    /* [T, N] m/s */
     float *angular_velocity;           /* [T, N] rad/s */
@@ -60,14 +60,18 @@ void trajectory_end_contacts(Trajectory *trajectory);
    rising index: the definition of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
+/* Every step'th frame from frame 0 on, dt as much longer, with the contacts of the steps that led to these frames. The caller
+   destroys it. step >= 1. */
+Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
+
 /* .npz: version, scene, method, scene_hash, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
    contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Refuses (ERROR_INPUT, naming the file) what is damaged, of another version, or inconsistent: shapes that do
-   not fit each other, contacts out of range, a body that is there with an infinite pose or vanishes again, dt or
-   a size not positive. */
+   not fit each other, contacts out of range or of bodies that were not there before the step, a body that is there
+   with an infinite pose or comes back after it has gone, a static one that goes, dt or a size not positive. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
 /* `frame,body,x,y,angle,vx,vy,omega`, numbers as %.9g (float32 round-trips), dynamic bodies that are there only. */

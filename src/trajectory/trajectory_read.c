@@ -113,7 +113,24 @@ static bool check_head(const Trajectory *t, const char *path, Error *error) {
     return true;
 }
 
-/* Six finite numbers where the body is there, six NaN where not yet, and none vanishes. */
+static bool was_there(const Trajectory *t, int frame, int body) {
+    while (frame > 0)
+        if (trajectory_has(t, --frame, body)) return true;
+    return false;
+}
+
+/* Bodies may come and may go, but a static one stays (it is drawn once), and none comes back: a body is there over one
+   interval of frames. */
+static bool check_presence(const Trajectory *t, int frame, int body, const char *path, Error *error) {
+    bool before = frame > 0 && trajectory_has(t, frame - 1, body), now = trajectory_has(t, frame, body);
+    if (before && !now && t->fixed[body])
+        return error_input(error, path, "frame %d, body %d: it is static and vanishes", frame, body);
+    if (!before && now && was_there(t, frame, body))
+        return error_input(error, path, "frame %d, body %d: it comes back", frame, body);
+    return true;
+}
+
+/* Six finite numbers where the body is there, six NaN where not. */
 static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
     size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
     const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
@@ -125,15 +142,15 @@ static bool check_pose(const Trajectory *t, int frame, int body, const char *pat
     }
     if (known != 6 && missing != 6)
         return error_input(error, path, "frame %d, body %d: pose and velocity are not all finite", frame, body);
-    if (missing == 6 && frame > 0 && trajectory_has(t, frame - 1, body))
-        return error_input(error, path, "frame %d, body %d: it vanishes", frame, body);
-    return true;
+    return check_presence(t, frame, body, path, error);
 }
+
+/* A step finds its contacts where the bodies were before it. */
 
 static bool check_contact(const Trajectory *t, int step, int64_t index, const char *path, Error *error) {
     const TrajectoryContact *contact = &t->contacts[index];
-    if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies || !trajectory_has(t, step, contact->a) ||
-        !trajectory_has(t, step, contact->b))
+    if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies ||
+        !trajectory_has(t, step - 1, contact->a) || !trajectory_has(t, step - 1, contact->b))
         return error_input(error, path, "step %d, contact %lld: no pair of bodies that are there (%d and %d)", step,
                            (long long)index, (int)contact->a, (int)contact->b);
     if (!finite(contact->point) || !finite(contact->normal) || !isfinite(contact->normal_impulse) ||

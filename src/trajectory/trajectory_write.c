@@ -5,7 +5,6 @@
 #include "trajectory/trajectory_arrays.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <stdlib.h>
 
 void contact_arrays_free(ContactArrays *arrays) {
@@ -75,7 +74,8 @@ bool trajectory_write(const Trajectory *t, const char *path, Error *error) {
     return done;
 }
 
-static void print_csv(const Trajectory *t, FILE *out) {
+static void print_csv(FILE *out, const void *context) {
+    const Trajectory *t = context;
     fprintf(out, "frame,body,x,y,angle,vx,vy,omega\n");
     for (int frame = 0; frame < t->frames; frame++) {
         for (int body = 0; body < t->bodies; body++) {
@@ -88,36 +88,17 @@ static void print_csv(const Trajectory *t, FILE *out) {
     }
 }
 
-static void print_hashes(const Trajectory *t, FILE *out) {
+static void print_hashes(FILE *out, const void *context) {
+    const Trajectory *t = context;
     fprintf(out, "frame,hash\n");
     for (int frame = 0; frame < t->frames; frame++)
         fprintf(out, "%d,%016" PRIx64 "\n", frame, trajectory_frame_hash(t, frame));
 }
 
-/* The text is made in memory and in the C locale, whose decimal point is a point. */
-static bool write_text(const Trajectory *t, void (*print)(const Trajectory *, FILE *), const char *path, Error *error) {
-    char *text = NULL;
-    size_t size = 0;
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    FILE *out = c != (locale_t)0 ? open_memstream(&text, &size) : NULL;
-    bool done = out != NULL;
-    if (done) {
-        locale_t previous = uselocale(c);
-        print(t, out);
-        uselocale(previous);
-        done = ferror(out) == 0;
-        done = fclose(out) == 0 && done;
-    }
-    done = done ? file_write(path, text, size, error) : error_memory(error, path);
-    if (c != (locale_t)0) freelocale(c);
-    free(text);
-    return done;
-}
-
 bool trajectory_write_csv(const Trajectory *t, const char *path, Error *error) {
-    return write_text(t, print_csv, path, error);
+    return file_write_text(path, print_csv, t, error);
 }
 
 bool trajectory_write_hashes(const Trajectory *t, const char *path, Error *error) {
-    return write_text(t, print_hashes, path, error);
+    return file_write_text(path, print_hashes, t, error);
 }

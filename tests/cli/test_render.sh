@@ -48,6 +48,20 @@ run 0 simulate single.yaml --frames 3 -o short.npz
 run 0 render short.npz -o one --size 192x108
 equal "frames of a shorter run" "$(ls one | grep -c png)" 4
 
+# One scene with its parameters set, beside a stored run; a body may go before the last frame.
+sed 's/until: 600/until: 2/; s/^frames:.*/frames: 4/; /^networks/d' "$scenes/stability/top_removed.yaml" >top.yaml
+run 0 render top.yaml short.npz --set ratio=3 -o top --size 192x108
+/usr/bin/python3 -c "
+import numpy
+run = numpy.load('top/top-engine.npz', allow_pickle=False)
+assert (~numpy.isnan(run['angle'][:, 11])).tolist() == [True, True, False, False, False]" || fail "the top goes"
+run 2 render single.yaml short.npz short.npz -o x --set ratio=3
+complains "there is no parameter 'ratio' to set"
+run 2 render short.npz -o x --set ratio=3
+complains "--set: error: is for one scene (here there are 0)"
+run 2 render top.yaml top.yaml -o x --set ratio=3
+complains "is for one scene (here there are 2)"
+
 run 2 render single.yaml -o x --size 10x10
 complains "--size"
 run 2 render single.yaml -o x --size 1920

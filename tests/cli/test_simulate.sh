@@ -56,7 +56,39 @@ run = numpy.load('late.npz', allow_pickle=False)
 there = ~numpy.isnan(run['angle'][:, 2])
 assert there.tolist() == 5 * [False] + 8 * [True], there" || fail "a body that is not there yet is NaN"
 
+# A parameter set is the same as the number in the file; what a scene names stays where it is.
+stability=$scenes/stability
+run 0 simulate "$stability/stack_height.yaml" --set height=7 --set iterations=4 --frames 50 --hash set.hash
+says "8 bodies"
+sed 's/value: 10, from: 2/value: 7, from: 2/; s/iterations: .iterations/iterations: 4*$one/; s/  iterations: .*/  one: {value: 1, from: 1, to: 2}/' \
+    "$stability/stack_height.yaml" >seven.yaml
+run 0 simulate seven.yaml --frames 50 --hash seven.hash
+cmp -s set.hash seven.hash || fail "--set is not the number in the file"
+run 0 simulate "$stability/stack_height.yaml" --set height=7 --frames 5 --method pair-net
+run 0 simulate "$stability/top_removed.yaml" --frames 610 -o gone.npz
+/usr/bin/python3 -c "
+import numpy
+run = numpy.load('gone.npz', allow_pickle=False)
+there = ~numpy.isnan(run['angle'][:, 11])
+assert there.tolist() == 600 * [True] + 11 * [False], there" || fail "a body that has gone is NaN"
+run 0 compare gone.npz gone.npz
+says "equal"
+
 # Refused.
+for value in height height= =7 height=x height=nan height=1e999 "height=7 "; do
+    run 2 simulate "$stability/stack_height.yaml" --set "$value"
+    complains "--set: error: '$value' is not NAME=VALUE"
+done
+run 2 simulate "$stability/stack_height.yaml" --set height=41
+complains "stack_height.yaml: error: height must be from 2 to 40 boxes (set to 41)"
+run 2 simulate "$stability/stack_height.yaml" --set height=2.5
+complains "height must be a whole number"
+run 2 simulate "$stability/stack_height.yaml" --set hight=3
+complains "did you mean 'height'?"
+run 2 simulate "$scenes/stack.yaml" --set height=3
+complains "there is no parameter 'height' to set; there are none"
+run 2 simulate "$stability/stack_height.yaml" $(for i in 1 2 3 4 5 6 7; do echo --set height=3; done)
+complains "the parameter 'height' is set twice"
 run 2 simulate nowhere.yaml
 complains "nowhere.yaml: error:"
 run 2 simulate "$scenes/single.yaml" -o run.txt

@@ -56,7 +56,7 @@ static void views_show_what_they_are_named_for(void **state) {
 static void changes_are_those_of_the_pairs_own_impulses(void **state) {
     (void)state;
     ContactImpulse impulses[3] = {{4, 1}, {6, 1}, {1000, 1000}};
-    const ContactSolution solution = {NULL, impulses, 0};
+    const ContactSolution solution = {NULL, impulses, 0, {0}};
     float changes[PAIR_CHANGES];
     const float expected[PAIR_CHANGES] = {0, 0, 0, 1, 5, 4};
     assert_int_equal(pair_contact_count(&problem, 0), 2);
@@ -68,7 +68,7 @@ static void changes_are_those_of_the_pairs_own_impulses(void **state) {
 static void changes_keep_the_pairs_momentum(void **state) {
     (void)state;
     ContactImpulse impulses[3] = {{0, 0}, {0, 0}, {8, 2}};
-    const ContactSolution solution = {NULL, impulses, 0};
+    const ContactSolution solution = {NULL, impulses, 0, {0}};
     float c[PAIR_CHANGES];
     assert_int_equal(pair_contact_count(&problem, 2), 1);
     pair_changes(&problem, &solution, 2, 1, c);
@@ -147,7 +147,7 @@ static void point_changes_go_beyond_the_warm_start(void **state) {
     float changes[PAIR_CHANGES];
     pair_point_changes(&slanted, impulses, 0, changes);
     for (int i = 0; i < PAIR_POINT_CHANGES; i++) assert_near(changes[i], two[i], 1e-6);
-    const ContactSolution solution = {NULL, impulses, 0};
+    const ContactSolution solution = {NULL, impulses, 0, {0}};
     pair_step_changes(&slanted, &solution, 2, PAIR_CONTACT, TARGET_POINTS, changes);
     for (int i = 0; i < PAIR_POINT_CHANGES; i++) assert_near(changes[i], one[i], 1e-6);
 }
@@ -156,7 +156,7 @@ static void point_changes_go_beyond_the_warm_start(void **state) {
 static void net_changes_are_those_of_the_bodies(void **state) {
     (void)state;
     BodyVelocity velocities[3] = {{{3, 6}, 3}, {{3, -2.5f}, -1}, {{0, 0}, 0}};
-    const ContactSolution solution = {velocities, NULL, 0};
+    const ContactSolution solution = {velocities, NULL, 0, {0}};
     const float world[PAIR_CHANGES] = {3, 4, 2, 4, -3, 1}, turned[PAIR_CHANGES] = {5, 0, 2, 0, 5, 1};
     float changes[PAIR_CHANGES];
     pair_step_changes(&slanted, &solution, 0, PAIR_RAW, TARGET_NET, changes);

@@ -179,6 +179,62 @@ static void a_step_can_end_at_poses_given(void **state) {
     world_destroy(world);
 }
 
+/* Ground, a box on it and a box on that; each pair touches in two points. */
+static World *two_boxes_on_ground(Vec2 upper_size) {
+    Error error = {0};
+    World *world = box_on_ground(true, true, 0.495f);
+    const BodyDef upper = {.size = upper_size, .mass = 1, .position = {0, 1.485f}};
+    assert_ok(world_add_body(world, &upper, &error), error);
+    return world;
+}
+
+static void expect_warm(const World *world, int contact, float warm) {
+    assert_near(world_problem(world)->contacts[contact].warm_normal, warm, 0);
+}
+
+/* What the step did can be read until the next, which has the others' contacts and their impulses. */
+static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
+    (void)state;
+    World *world = two_boxes_on_ground(vec2(1, 1));
+    FakeSolver fake = {.impulse = 7};
+    world_set_bomb(world, 2);
+    step(world, &fake);
+    world_remove_last_body(world);
+    assert_int_equal(world_body_count(world), 2);
+    assert_int_equal(world_problem(world)->contact_count, 4);
+    assert_int_equal(world_problem(world)->contacts[3].b, 2);
+    assert_near(world_solution(world)->impulses[3].normal, 10, 0);
+    step(world, &fake);
+    assert_int_equal(world_problem(world)->body_count, 2);
+    assert_int_equal(world_problem(world)->bomb, -1);
+    assert_int_equal(world_problem(world)->contact_count, 2);
+    for (int i = 0; i < 2; i++) expect_warm(world, i, 7 + (float)i);
+    world_destroy(world);
+}
+
+/* One that comes in its place has neither its impulses nor its box; a copy made meanwhile goes on alike. */
+static void a_body_in_the_place_of_one_taken_out_starts_anew(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int same_size = 0; same_size <= 1; same_size++) {
+        World *world = two_boxes_on_ground(vec2(1, 1)), *copy = box_on_ground(false, false, 3);
+        FakeSolver fake = {.impulse = 7};
+        step(world, &fake);
+        world_remove_last_body(world);
+        assert_ok(world_copy(copy, world, &error), error);
+        World *both[] = {world, copy};
+        for (int i = 0; i < 2; i++) {
+            const BodyDef other = {.size = {1, same_size ? 1 : 0.5f}, .mass = 1, .position = {0, 1.485f}};
+            assert_ok(world_add_body(both[i], &other, &error), error);
+            step(both[i], &fake);
+            assert_int_equal(world_problem(both[i])->contact_count, same_size ? 4 : 2);
+            for (int k = 0; k < world_problem(both[i])->contact_count; k++)
+                expect_warm(both[i], k, k < 2 ? 7 + (float)k : 0);
+            world_destroy(both[i]);
+        }
+    }
+}
+
 static void fixed_bodies_stay(void **state) {
     (void)state;
     World *world = box_on_ground(true, true, 5);
@@ -198,6 +254,8 @@ int main(void) {
                                        cmocka_unit_test(a_step_that_fails_leaves_the_world_unchanged),
                                        cmocka_unit_test(a_copy_goes_on_as_the_original),
                                        cmocka_unit_test(a_step_can_end_at_poses_given),
+                                       cmocka_unit_test(a_body_taken_out_takes_its_contacts_with_it),
+                                       cmocka_unit_test(a_body_in_the_place_of_one_taken_out_starts_anew),
                                        cmocka_unit_test(fixed_bodies_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -165,6 +165,30 @@ static void an_absent_body_is_not_drawn(void **state) {
     assert_true(hash_of(1, 640, 360, 0) != half);
 }
 
+static uint64_t hash_with_words(const char *title, const char *note) {
+    Error error = {0};
+    RenderOptions options = {.width = 1280, .height = 720, .title = title, .notes = {NULL, note}};
+    Renderer *renderer = renderer_create(panels, 2, &options, &error);
+    assert_ok(renderer != NULL, error);
+    Image *image = image_create(1280, 720, &error);
+    assert_ok(renderer_draw(renderer, 4, image, &error), error);
+    uint64_t hash = image_hash(image);
+    image_destroy(image);
+    renderer_destroy(renderer);
+    return hash;
+}
+
+/* The scene's own name as the title is no other picture; each word that differs is one. */
+static void a_title_and_notes_are_drawn(void **state) {
+    (void)state;
+    uint64_t plain = hash_of(2, 1280, 720, 4);
+    assert_true(hash_with_words(NULL, NULL) == plain);
+    assert_true(hash_with_words("two_boxes", NULL) == plain);
+    assert_true(hash_with_words("height 15", NULL) != plain);
+    uint64_t falls = hash_with_words(NULL, "falls");
+    assert_true(falls != plain && falls != hash_with_words(NULL, "sinks"));
+}
+
 /* From 9 to 10 and from 99 to 100 the words beside the numbers stay where they are. */
 static void captions_do_not_jump(void **state) {
     (void)state;
@@ -255,6 +279,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(hostile_poses_do_no_harm, make, destroy),
         cmocka_unit_test_setup_teardown(bodies_out_of_view_are_counted, make, destroy),
         cmocka_unit_test_setup_teardown(an_absent_body_is_not_drawn, make, destroy),
+        cmocka_unit_test_setup_teardown(a_title_and_notes_are_drawn, make, destroy),
         cmocka_unit_test_setup_teardown(captions_do_not_jump, make, destroy),
         cmocka_unit_test_setup_teardown(folders_of_networks_are_left_out, make, destroy),
         cmocka_unit_test_setup_teardown(hostile_names_do_no_harm, make, destroy),

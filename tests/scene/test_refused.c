@@ -19,10 +19,10 @@ static const Refused keys[] = {
     {BASE GROUND "gravty: 1\n", "7:1: error: unknown key 'gravty'; did you mean 'gravity'?"},
     {BASE GROUND "colour: red\n", "7:1: error: unknown key 'colour'; a scene has: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
-                                  "position_correction, frames, camera, bodies, bomb, networks"},
+                                  "position_correction, frames, camera, bodies, bomb, networks, parameters"},
     {BASE GROUND "\"a\\eb\": red\n", "7:2: error: unknown key 'a?b'; a scene has: gravity, dt, iterations, "
                                      "warm_starting, accumulate_impulses, "
-                                     "position_correction, frames, camera, bodies, bomb, networks"},
+                                     "position_correction, frames, camera, bodies, bomb, networks, parameters"},
     {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is there twice"},
     {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: a key must be a word"},
@@ -48,12 +48,12 @@ static const Refused numbers[] = {
     {"dt: NaN\n", "1:5: error: dt must be a number (got NaN)"},
     {"dt: inf\n", "1:5: error: dt must be a number (got inf)"},
     {"dt: 1e999\n", "1:5: error: dt must be a number (got 1e999)"},
-    {"dt: 1/0\n", "1:5: error: dt must be a number (got 1/0)"},
+    {"dt: 1/0\n", "1:5: error: dt is divided by 0 (got 1/0)"},
     {"dt: 0x1p-6\n", "1:5: error: dt must be a number (got 0x1p-6)"},
     {"dt: 1 60\n", "1:5: error: dt must be a number (got 1 60)"},
     {"dt:\n", "1:1: error: dt must be a number (got nothing)"},
     {"dt: 0\n", "1:5: error: dt must be greater than 0 (got 0)"},
-    {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -1/60)"},
+    {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -0.0166666675, from -1/60)"},
     {"dt: 2\n", "1:5: error: dt must be from 1e-05 to 1 s (got 2)"},
     {"dt: 1e-6\n", "1:5: error: dt must be from 1e-05 to 1 s (got 1e-6)"},
     {"iterations: 0\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 0)"},
@@ -101,6 +101,18 @@ static const Refused bodies[] = {
      "6:68: error: body 3 of the pattern would lie at (0, 1.5e+06), beyond 1e+06 m"},
 };
 
+static const Refused untils[] = {
+    {BODY(BOX ", until: 300"), NULL},
+    {BODY(BOX ", until: 0"), "6:54: error: until must be a whole number from 1 to 1000000 (got 0)"},
+    {BODY(BOX ", until: 301"), "6:54: error: the body would go after step 301, after the last (frames: 300)"},
+    {BODY(BOX ", until: 3}\n  - {" BOX), "6:54: error: only the last body may have an until"},
+    {BODY(BOX ", until: 3") "bomb: {x: 1, y: 15, size: [1, 1], mass: 50}\n",
+     "6:54: error: until does not go with a bomb"},
+    {BODY(BOX ", until: 3, pattern: row, count: 1, spacing: [1, 1]"),
+     "6:54: error: until is for a single body and not for a pattern"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], until: 1"), "6:57: error: a static body has no until"},
+};
+
 #define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
 
 static const Refused bombs[] = {
@@ -145,7 +157,7 @@ static const Refused yaml[] = {
     {"a: !!float 1\n", "1:12: error: tags (!) are not allowed in a scene"},
     {BASE GROUND "<<: {dt: 1}\n", "7:1: error: unknown key '<<'; a scene has: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
-                                  "position_correction, frames, camera, bodies, bomb, networks"},
+                                  "position_correction, frames, camera, bodies, bomb, networks, parameters"},
     {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed in a scene"},
     {BASE GROUND "---\n" BASE GROUND, "7:1: error: a scene file holds one document only"},
     {"a: \"\\0\"\n", "1:5: error: a text may not contain the character \\0"},
@@ -176,6 +188,7 @@ static void check_table(const Refused *table, size_t count) {
 static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
 static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers); }
 static void bodies_are_checked(void **state) { (void)state, CHECK_TABLE(bodies); }
+static void untils_are_checked(void **state) { (void)state, CHECK_TABLE(untils); }
 static void bombs_are_checked(void **state) { (void)state, CHECK_TABLE(bombs); }
 static void networks_are_checked(void **state) { (void)state, CHECK_TABLE(networks); }
 static void yaml_is_checked(void **state) { (void)state, CHECK_TABLE(yaml); }
@@ -213,12 +226,13 @@ static void excerpt_points_at_the_value(void **state) {
 
 static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     (void)state;
-    expect_refused("{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
-                   "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
-                   "iterations, "
-                   "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks\n"
-                   "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
-                   "      |   ^");
+    expect_refused(
+        "{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+        "1:3: error: unknown key '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80'; a scene has: gravity, dt, "
+        "iterations, "
+        "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks, parameters\n"
+        "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+        "      |   ^");
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
@@ -267,7 +281,7 @@ static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
     expect_refused("{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
                    "1:10: error: unknown key 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'; a scene has: gravity, dt, "
                    "iterations, warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, "
-                   "networks\n"
+                   "networks, parameters\n"
                    "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
                    "      |          ^");
     expect_refused("[" TEXT_64 TEXT_64 ", &a b, " TEXT_64 "]\n",
@@ -293,6 +307,7 @@ int main(void) {
         cmocka_unit_test(keys_are_checked),
         cmocka_unit_test(numbers_are_checked),
         cmocka_unit_test(bodies_are_checked),
+        cmocka_unit_test(untils_are_checked),
         cmocka_unit_test(bombs_are_checked),
         cmocka_unit_test(networks_are_checked),
         cmocka_unit_test(yaml_is_checked),

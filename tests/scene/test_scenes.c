@@ -212,6 +212,8 @@ static const char *const bodies[] = {
     "{mass: 1, size: [1, 1], position: [0, 0], velocity: [0, 1]}",
     "{mass: 1, size: [1, 1], position: [0, 0], spin: 1}",
     "{mass: 1, size: [1, 1], position: [0, 0], friction: 0.3}",
+    "{mass: 1, size: [1, 1], position: [0, 0], until: 1}",
+    "{mass: 1, size: [1, 1], position: [0, 0], until: 2}",
     "{mass: 1, size: [1, 1], position: [0, 0], pattern: row, count: 2, spacing: [0, 0]}",
 };
 

@@ -64,6 +64,62 @@ static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
     scene_destroy(scene);
 }
 
+static Scene *read_top_removed(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/stability/top_removed.yaml", &error);
+    assert_ok(scene != NULL, error);
+    assert_int_equal(scene->last_body_until, 600);
+    scene->last_body_until = 30;
+    scene->frames = 60;
+    return scene;
+}
+
+/* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
+static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_top_removed();
+    Trajectory *trajectory = run(scene, "engine");
+    assert_int_equal(trajectory->bodies, 12);
+    for (int frame = 0; frame <= 60; frame++) assert_int_equal(trajectory_has(trajectory, frame, 11), frame < 30);
+    for (int step = 1; step <= 60; step++) {
+        bool touched = false;
+        for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++)
+            touched |= trajectory->contacts[i].b == 11;
+        assert_int_equal(touched, step <= 30);
+    }
+    const char *path = temporary_path("gone.npz");
+    assert_ok(trajectory_write(trajectory, path, &error), error);
+    Trajectory *read = trajectory_read(path, &error);
+    assert_ok(read != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(trajectory, read, &difference);
+    assert_true(difference.equal);
+    trajectory_destroy(read);
+    trajectory_destroy(trajectory);
+    scene_destroy(scene);
+}
+
+/* One that stands aside changes no bit of the others, neither while it is there nor when it goes. */
+static void a_body_that_touches_none_of_the_others_changes_none(void **state) {
+    (void)state;
+    Scene *scene = read_top_removed();
+    scene->bodies[11].position = vec2(30, 0.5f);
+    Trajectory *with = run(scene, "engine");
+    scene->body_count = 11;
+    scene->last_body_until = 0;
+    Trajectory *without = run(scene, "engine");
+    assert_true(trajectory_has(with, 29, 11) && !trajectory_has(with, 30, 11));
+    for (int frame = 0; frame <= 60; frame++) {
+        assert_memory_equal(&with->position[frame * 12], &without->position[frame * 11], 11 * sizeof(Vec2));
+        assert_memory_equal(&with->angle[frame * 12], &without->angle[frame * 11], 11 * sizeof(float));
+        assert_memory_equal(&with->velocity[frame * 12], &without->velocity[frame * 11], 11 * sizeof(Vec2));
+    }
+    trajectory_destroy(with);
+    trajectory_destroy(without);
+    scene_destroy(scene);
+}
+
 static bool count_step(void *context, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
     int *steps = context;
@@ -139,9 +195,12 @@ static void methods_are_found_by_name(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_trajectory_says_what_it_is), cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
-        cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
-        cmocka_unit_test(a_run_that_cannot_go_on_says_why), cmocka_unit_test(methods_are_found_by_name)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trajectory_says_what_it_is),
+                                       cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
+                                       cmocka_unit_test(the_last_body_goes_after_the_step_it_is_told_to),
+                                       cmocka_unit_test(a_body_that_touches_none_of_the_others_changes_none),
+                                       cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
+                                       cmocka_unit_test(a_run_that_cannot_go_on_says_why),
+                                       cmocka_unit_test(methods_are_found_by_name)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,9 @@ static const SequentialOptions engine_options = {.accumulate = true, .warm = tru
 
 static inline ContactSolution make_solution(const ContactProblem *problem) {
     ContactSolution solution = {calloc((size_t)problem->body_count + 1, sizeof(BodyVelocity)),
-                                calloc((size_t)problem->contact_count + 1, sizeof(ContactImpulse)), 0};
+                                calloc((size_t)problem->contact_count + 1, sizeof(ContactImpulse)),
+                                0,
+                                {0}};
     assert_non_null(solution.velocities);
     assert_non_null(solution.impulses);
     return solution;

@@ -54,15 +54,29 @@ static inline ContactSolver make_network_solver(const ContactSolverKind *kind, c
     return make_solver(kind, text);
 }
 
-/* Solves a problem by the network of a file; returns what the solution says of momentum. */
-static inline float solve_by(const ContactSolverKind *kind, const char *path, int sweeps, const ContactProblem *problem,
-                             BodyVelocity *velocities, ContactImpulse *impulses) {
+/* Solves a problem by the network of a file. */
+static inline ContactSolution solution_by(const ContactSolverKind *kind, const char *path, int sweeps,
+                                          const ContactProblem *problem, BodyVelocity *velocities,
+                                          ContactImpulse *impulses) {
     Error error = {0};
     ContactSolver solver = make_network_solver(kind, path, sweeps);
-    ContactSolution solution = {velocities, impulses, -1};
+    ContactSolution solution = {velocities, impulses, -1, {-1, -1, -1}};
     assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
     free_solver(&solver);
-    return solution.momentum_error;
+    return solution;
+}
+
+/* Returns what the solution says of momentum. */
+static inline float solve_by(const ContactSolverKind *kind, const char *path, int sweeps, const ContactProblem *problem,
+                             BodyVelocity *velocities, ContactImpulse *impulses) {
+    return solution_by(kind, path, sweeps, problem, velocities, impulses).momentum_error;
+}
+
+static inline void assert_fallbacks(const ContactSolution *solution, int not_finite, int outside_cone,
+                                    int beyond_training) {
+    assert_int_equal(solution->fallbacks.not_finite, not_finite);
+    assert_int_equal(solution->fallbacks.outside_cone, outside_cone);
+    assert_int_equal(solution->fallbacks.beyond_training, beyond_training);
 }
 
 /* The file is refused by the solver, which says why. */

@@ -66,6 +66,7 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_momentum);
     steps_allocate_nothing_by(&solver_block);
     steps_allocate_nothing_by(&solver_nncg);
+    steps_allocate_nothing_by(&solver_robust);
     steps_allocate_nothing_by(&solver_relu_net);
 }
 
@@ -123,7 +124,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     ContactSolver solver;
     BodyVelocity velocities[BODIES_MAX];
     ContactImpulse impulses[CONTACTS_MAX];
-    ContactSolution solution = {velocities, impulses, 0};
+    ContactSolution solution = {velocities, impulses, 0, {0}};
     SlotNetwork *network = make_slot_problem(&random, &seed, 20, 0.5f, 0.7f);
     random.problem.bomb = network->bomb;
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;

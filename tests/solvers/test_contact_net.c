@@ -97,7 +97,7 @@ static void impulses_stay_in_their_cones(void **state) {
             contact->warm_normal = impulses[i].normal;
             contact->warm_tangent = impulses[i].tangent;
         }
-        ContactSolution warm = {expected, impulses, 0};
+        ContactSolution warm = {expected, impulses, 0, {0}};
         sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
         for (int i = 0; i < random.problem.body_count; i++) {
             assert_near(v[i].linear.x, expected[i].linear.x, 0);
@@ -123,7 +123,7 @@ static void a_network_of_zeros_is_the_warm_start(void **state) {
         ContactImpulse impulses[CONTACTS_MAX], started[CONTACTS_MAX];
         solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, zeros), 1, &random.problem, v,
                  impulses);
-        ContactSolution warm = {expected, started, 0};
+        ContactSolution warm = {expected, started, 0, {0}};
         sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
         for (int i = 0; i < random.problem.contact_count; i++) {
             assert_near(impulses[i].normal, started[i].normal, 0);
@@ -164,7 +164,9 @@ static void predictions_go_beyond_the_warm_start_into_the_cone(void **state) {
         .body_count = 2, .contact_count = 2, .bomb = -1, .bodies = bodies, .contacts = contacts};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
-    solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, asked), 1, &problem, v, impulses);
+    const ContactSolution solution = solution_by(
+        &solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, asked), 1, &problem, v, impulses);
+    assert_fallbacks(&solution, 0, 1, 0);
     assert_near(impulses[0].normal, 4, 1e-6);
     assert_near(impulses[0].tangent, -1, 1e-6);
     assert_near(impulses[1].normal, 5, 1e-6);
@@ -203,7 +205,9 @@ static void what_is_not_finite_leaves_a_point_its_warm_start(void **state) {
     const ContactProblem problem = {.body_count = 2, .contact_count = 2, .bomb = -1, .bodies = fast, .contacts = two};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
-    solve_by(&solver_contact_net, write_pair_network(network), 1, &problem, v, impulses);
+    const ContactSolution solution =
+        solution_by(&solver_contact_net, write_pair_network(network), 1, &problem, v, impulses);
+    assert_fallbacks(&solution, 1, 1, 0);
     assert_near(impulses[0].normal, 2, 0);
     assert_near(impulses[0].tangent, 0.5, 0);
     assert_near(impulses[1].normal, 1 + 3 / 1.5, 1e-6);

@@ -170,6 +170,11 @@ static void what_is_not_finite_never_reaches_a_body(void **state) {
             assert_near(v[0].linear.x, 1, 0);
             assert_near(v[1].linear.x, 3e38f, 0);
         }
+        const ContactProblem problem = touching(fast);
+        const ContactSolution solution =
+            solution_by(&solver_pair_net, constant_network(PAIR_RELATIVE, target, PAIR_CHANGES, largest), 3, &problem,
+                        v, (ContactImpulse[2]){{0}});
+        assert_fallbacks(&solution, target == TARGET_IMPULSE ? 3 : 1, 0, 0);
     }
 }
 

@@ -87,7 +87,7 @@ static void assert_fixed_point(const ContactSolverKind *kind, const char *text, 
     ContactSolver solver = make_solver(kind, text);
     BodyVelocity velocities[8];
     ContactImpulse impulses[64];
-    ContactSolution solution = {velocities, impulses, 0};
+    ContactSolution solution = {velocities, impulses, 0, {0}};
     assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
     for (int i = 0; i < problem->body_count; i++) {
         assert_near(velocities[i].linear.x, reference->velocities[i].x, 2e-5);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rivals without learning: what any solver of the same problem must keep, and what only they can be asked. */
+#include "consistent.h"
 #include "kernels.h"
 
 #include "network/momentum_schedule.h"
@@ -70,42 +71,20 @@ static void linear_momentum(const ContactProblem *problem, const BodyVelocity *a
     }
 }
 
-/* Velocities are those that the impulses make: b gets +, a gets -. */
-static void assert_consistent(const ContactProblem *problem, const ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        double x = (double)body->velocity.x, y = (double)body->velocity.y, spin = (double)body->angular_velocity;
-        for (int k = 0; k < problem->contact_count; k++) {
-            const ContactPoint *contact = &problem->contacts[k];
-            if (contact->a != i && contact->b != i) continue;
-            ContactImpulse p = solution->impulses[k];
-            Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-            Vec2 sum = vec2_add(vec2_scale(p.normal, contact->normal), vec2_scale(p.tangent, tangent));
-            double sign = contact->a == i ? -1 : 1;
-            Vec2 arm = contact->a == i ? contact->arm_a : contact->arm_b;
-            x += sign * (double)(body->inv_mass * sum.x);
-            y += sign * (double)(body->inv_mass * sum.y);
-            spin += sign * (double)(body->inv_inertia * vec2_cross(arm, sum));
-        }
-        assert_near(solution->velocities[i].linear.x, x, 1e-3);
-        assert_near(solution->velocities[i].linear.y, y, 1e-3);
-        assert_near(solution->velocities[i].angular, spin, 2e-3);
-    }
-}
-
 /* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
 static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
     (void)state;
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem);
-    const ContactSolverKind *const rivals[] = {&solver_momentum, &solver_over_relaxation, &solver_nncg, &solver_block};
+    const ContactSolverKind *const rivals[] = {&solver_momentum, &solver_over_relaxation, &solver_nncg, &solver_robust,
+                                               &solver_block};
     double before[2], after[2];
     linear_momentum(problem, NULL, before);
     for (int k = 1; k <= 40; k++) {
         char text[32];
         snprintf(text, sizeof text, "k=%d", k);
-        for (int rival = 0; rival < 4; rival++) {
+        for (int rival = 0; rival < 5; rival++) {
             solve(rivals[rival], text, problem, &found);
             linear_momentum(problem, found.velocities, after);
             for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 4e-3);
@@ -189,6 +168,7 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_refused(&solver_over_relaxation, "k=0", "k");
     assert_refused(&solver_block, "k=0", "k");
     assert_refused(&solver_nncg, "k=0", "k");
+    assert_refused(&solver_robust, "k=0", "k");
     assert_refused(&solver_relu_net, "k=0", "k");
     assert_refused(&solver_nncg, "k=ten", "k");
     assert_refused(&solver_over_relaxation, "omega=0", "omega");

@@ -95,12 +95,14 @@ static void momentum_and_cones_are_kept(void **state) {
     (void)state;
     static Known known;
     uint32_t seed = 3;
-    int other = 0;
+    int other = 0, outside = 0;
     for (int run = 0; run < RUNS; run++) {
         make_known(&known, &seed, run, 0.7f);
         if (run % 2 == 1)
             for (int s = 1; s < AFTER; s++) known.network->factors[s] = 0.5f;
         solve_by_network(&known);
+        outside += known.found.fallbacks.outside_cone;
+        assert_int_equal(known.found.fallbacks.not_finite, 0);
         solve_by_momentum(&known);
         other += !same_bits(&known);
         assert_impulses_explain(&known, 2e-5);
@@ -113,6 +115,7 @@ static void momentum_and_cones_are_kept(void **state) {
         free_known(&known);
     }
     assert_true(other > RUNS / 2);
+    assert_true(outside > RUNS);
 }
 
 static void assert_refused(Known *known, const char *text) {
@@ -158,10 +161,12 @@ static void a_step_unlike_the_training_is_momentums(void **state) {
         const int input = run % slot_network_inputs(network);
         network->bomb_inv_mass += 0.001f;
         assert_momentums_bits(&known, "another mass");
+        assert_int_equal(known.found.fallbacks.beyond_training, 1);
         network->bomb_inv_mass -= 0.001f;
         network->bomb_inv_mass = known.random.bodies[network->bomb].inv_mass;
         network->high[input] = -1e29f;
         assert_momentums_bits(&known, "an input too high");
+        assert_int_equal(known.found.fallbacks.beyond_training, 1);
         network->high[input] = 1e30f;
         network->low[input] = 1e29f;
         assert_momentums_bits(&known, "an input too low");
@@ -248,6 +253,7 @@ static void a_calm_step_takes_half_the_sweeps(void **state) {
         more += sweep_calmly(&known);
         solve_by_network(&known);
         assert_same_bits(&known.random.problem, &known.found, &known.expected, "a calm step");
+        assert_int_equal(known.found.fallbacks.beyond_training, 0);
         free_known(&known);
     }
     assert_in_range(more, RUNS / 8, RUNS - RUNS / 8);
@@ -315,7 +321,10 @@ static void no_answer_throws_a_body_away(void **state) {
             assert_sane(&known, 5e4);
             assert_impulses_explain(&known, 1e-3);
             solve_by_momentum(&known);
-            if (run % 3 == 0 && wild[w] > 1 && pushes_a_body(&known.random)) assert_true(same_bits(&known));
+            if (run % 3 == 0 && wild[w] > 1 && pushes_a_body(&known.random)) {
+                assert_true(same_bits(&known));
+                assert_int_equal(known.found.fallbacks.not_finite, 1);
+            }
             free_known(&known);
         }
 }

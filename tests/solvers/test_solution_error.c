@@ -81,7 +81,7 @@ static void more_sweeps_rank_better_and_a_perturbed_solution_worse(void **state)
     assert_ok(reference_solve(&solved, landed, 1e-12, 100000, NULL, &failure), failure);
     BodyVelocity velocities[6];
     ContactImpulse impulses[32];
-    ContactSolution solution = {velocities, impulses, 0};
+    ContactSolution solution = {velocities, impulses, 0, {0}};
     double last = INFINITY;
     for (int sweeps = 1; sweeps <= 256; sweeps *= 4) {
         sequential_impulses_solve(landed, &(SequentialOptions){.accumulate = true, .warm = true, .relaxation = 1},

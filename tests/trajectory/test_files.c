@@ -99,9 +99,55 @@ static void bad_poses_are_refused(void **state) {
     REFUSE(angular_velocity[box], NAN, "frame 2, body 1: pose");
     REFUSE(angle[bomb], 0, "frame 1, body 2: pose");
     REFUSE(velocity[bomb].y, INFINITY, "frame 1, body 2: pose");
+}
+
+static void leave(Trajectory *t, int frame, int body) {
+    example_pose(t, frame, body, (float[]){NAN, NAN, NAN, NAN, NAN, NAN});
+}
+
+/* A body may come and go once; a static one stays. */
+static void a_body_is_there_over_one_interval_of_frames(void **state) {
+    (void)state;
+    const char *path = temporary_path("gone.npz");
+    Error error = {0};
     Trajectory *t = example_trajectory();
-    example_pose(t, 3, 2, (float[]){NAN, NAN, NAN, NAN, NAN, NAN});
-    expect_refused(t, "frame 3, body 2: it vanishes");
+    leave(t, 3, 2); /* the bomb: there in frame 2 only */
+    leave(t, 3, 1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(t, r, &difference);
+    assert_true(difference.equal);
+    assert_true(trajectory_has(r, 2, 1) && !trajectory_has(r, 3, 1));
+    trajectory_destroy(r);
+    trajectory_destroy(t);
+
+    t = example_trajectory();
+    example_pose(t, 0, 2, (float[6]){0});
+    expect_refused(t, "frame 2, body 2: it comes back");
+    trajectory_destroy(t);
+    t = example_trajectory();
+    leave(t, 3, 0);
+    expect_refused(t, "frame 3, body 0: it is static and vanishes");
+    trajectory_destroy(t);
+}
+
+/* Step 2 had its contacts where the box was in frame 1: it may be gone in frame 2, but not before. */
+static void contacts_are_of_the_bodies_before_the_step(void **state) {
+    (void)state;
+    const char *path = temporary_path("last_contact.npz");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    leave(t, 2, 1);
+    leave(t, 3, 1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_int_equal(r->contact_start[EXAMPLE_FRAMES], 2);
+    trajectory_destroy(r);
+    leave(t, 1, 1);
+    expect_refused(t, "step 2, contact 0: no pair of bodies that are there (0 and 1)");
     trajectory_destroy(t);
 }
 
@@ -256,6 +302,8 @@ int main(void) {
         cmocka_unit_test(the_smallest_trajectory),
         cmocka_unit_test(bad_heads_are_refused),
         cmocka_unit_test(bad_poses_are_refused),
+        cmocka_unit_test(a_body_is_there_over_one_interval_of_frames),
+        cmocka_unit_test(contacts_are_of_the_bodies_before_the_step),
         cmocka_unit_test(bad_contacts_are_refused),
         cmocka_unit_test(a_contact_of_an_absent_body_is_refused),
         cmocka_unit_test(random_damage_is_refused_or_harmless),

@@ -89,6 +89,42 @@ static void the_hash_is_fnv_of_dynamic_bodies_that_are_there(void **state) {
     trajectory_destroy(t);
 }
 
+/* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
+static void every_third_frame_is_the_same_frame(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *t = trajectory_create(8, 2, &error);
+    strcpy(t->method, "engine");
+    t->dt = 0.125F;
+    t->bomb = 1;
+    t->fixed[0] = 1;
+    t->size[1] = vec2(2, 3);
+    for (int i = 0; i < 16; i++) {
+        t->position[i] = t->velocity[i] = vec2((float)i, 0);
+        t->angle[i] = t->angular_velocity[i] = (float)-i;
+    }
+    for (int step = 1; step < 8; step++)
+        for (int i = 0; i < step % 4; i++)
+            assert_ok(trajectory_add_contact(t, step, &(TrajectoryContact){.a = step, .b = i}, &error), error);
+    trajectory_end_contacts(t);
+    Trajectory *third = trajectory_every(t, 3, &error), *all = trajectory_every(t, 1, &error);
+    assert_ok(third != NULL && all != NULL, error);
+    assert_int_equal(third->frames, 3);
+    assert_true(third->dt == 0.375F && third->bomb == 1 && third->fixed[0] == 1 && third->size[1].y == 3);
+    for (int frame = 0; frame < 3; frame++) {
+        assert_true(trajectory_frame_hash(third, frame) == trajectory_frame_hash(t, 3 * frame));
+        int64_t first = third->contact_start[frame], count = third->contact_start[frame + 1] - first;
+        assert_int_equal(count, 3 * frame % 4);
+        for (int64_t i = 0; i < count; i++) assert_int_equal(third->contacts[first + i].a, 3 * frame);
+    }
+    TrajectoryDifference difference;
+    trajectory_compare(t, all, &difference);
+    assert_true(difference.equal && all->contact_start[8] == t->contact_start[8]);
+    trajectory_destroy(t);
+    trajectory_destroy(third);
+    trajectory_destroy(all);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_new_trajectory_is_empty),
@@ -96,6 +132,7 @@ int main(void) {
         cmocka_unit_test(a_body_is_there_where_its_position_is_finite),
         cmocka_unit_test(contacts_are_found_by_step),
         cmocka_unit_test(the_hash_is_fnv_of_dynamic_bodies_that_are_there),
+        cmocka_unit_test(every_third_frame_is_the_same_frame),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/diverge_print.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+enum { TOLERANCE = 256, SCENE, CSV };
+
+static const struct argp_option option_table[] = {
+    {"tolerance", TOLERANCE, "M", 0,
+     "Runs part where a body's centre is more than M metres from that of the other run (default: 0, any bit of pose or "
+     "velocity)",
+     0},
+    {"scene", SCENE, "FILE", 0,
+     "The scene of the first run: to run it once more by that run's method, with one body shifted by 1e-6 m (the bomb; "
+     "where it has not hit yet, the first that parts; without a bomb the last), and set the growth against this",
+     0},
+    {"csv", CSV, "FILE", 0, "Write frame,time,distance,shifted_distance: the largest of all bodies, s and m", 0},
+    {0}};
+
+typedef struct Options {
+    const char *paths[2];
+    int count;
+    const char *tolerance, *scene, *csv;
+} Options;
+
+static error_t parse(int key, char *value, struct argp_state *state) {
+    Options *options = state->input;
+    switch (key) {
+    case TOLERANCE: options->tolerance = value; break;
+    case SCENE: options->scene = value; break;
+    case CSV: options->csv = value; break;
+    case ARGP_KEY_ARG:
+        if (options->count == 2) argp_error(state, "two runs part, not more ('%s')", value);
+        options->paths[options->count++] = value;
+        break;
+    case ARGP_KEY_END:
+        if (options->count < 2) argp_error(state, "two runs (.npz) are needed");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp argp = {
+    option_table,
+    parse,
+    "RUN RUN",
+    "Tell why two runs part: the first frame, body and contact, whether the solver did it or what came before, and how "
+    "fast their distance grows from there. Of runs of unequal length the frames are compared that both have. Exit "
+    "status 0: they do not part beyond the tolerance, 1: they do.\v"
+    "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv",
+    NULL,
+    NULL,
+    NULL};
+
+/* Two runs and what was found of them. */
+typedef struct Divergence {
+    Trajectory *runs[2];
+    float tolerance;
+    TrajectoryParting parting;
+    double *distance; /* [frames of both] */
+    Growth growth, shifted;
+    Chaos chaos; /* distance NULL: no scene was given */
+} Divergence;
+
+static bool read_runs(Divergence *d, const Options *options, Error *error) {
+    char what[256];
+    for (int i = 0; i < 2; i++)
+        if ((d->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
+    return !trajectory_different_worlds(d->runs[0], d->runs[1], what, sizeof what) ||
+           error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0], what);
+}
+
+static bool measure(Divergence *d, Error *error) {
+    int frames = d->parting.frames;
+    d->distance = malloc((size_t)frames * sizeof *d->distance);
+    if (d->distance == NULL) return error_memory(error, "diverge");
+    for (int frame = 0; frame < frames; frame++)
+        d->distance[frame] = trajectory_distance(d->runs[0], d->runs[1], frame);
+    return growth_measure(d->distance, 0, frames, (double)d->runs[0]->dt, &d->growth, error);
+}
+
+/* The window is that of the two runs. */
+static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
+    ProgressBar bar;
+    int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
+    if (body < 0) return error_input(error, scene, "nothing in it can move, and so nothing be shifted");
+    progress_bar_begin(&bar, d->runs[0]->scene);
+    bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, &bar.progress, error);
+    progress_bar_end(&bar);
+    return ok && growth_measure(d->chaos.distance, d->growth.first, d->growth.end, (double)d->runs[0]->dt, &d->shifted,
+                                error);
+}
+
+static bool find(Divergence *d, const Options *options, Error *error) {
+    if ((options->tolerance != NULL &&
+         !option_float("--tolerance", options->tolerance, 0, FLT_MAX, &d->tolerance, error)) ||
+        !read_runs(d, options, error) ||
+        !trajectory_part(d->runs[0], d->runs[1], (double)d->tolerance, &d->parting, error) || !measure(d, error) ||
+        (options->scene != NULL && !measure_chaos(d, options->scene, error)))
+        return false;
+    const DistanceTable table = {d->parting.frames, (double)d->runs[0]->dt, d->distance, d->chaos.distance};
+    return options->csv == NULL || distance_table_write(&table, options->csv, error);
+}
+
+static void print(const Divergence *d, const Options *options) {
+    const Trajectory *a = d->runs[0], *b = d->runs[1];
+    diverge_print_runs(options->paths, a, b);
+    diverge_print_parting(a, &d->parting, (double)d->tolerance);
+    if (d->parting.first.frame < 0) return;
+    diverge_print_growth(&d->growth, (double)a->dt);
+    if (d->chaos.distance != NULL)
+        diverge_print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
+    else
+        printf("by itself: --scene FILE is needed to tell how a shift of 1e-6 m grows\n");
+}
+
+int command_diverge(int argc, char **argv, Error *error) {
+    Options options = {0};
+    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    Divergence divergence = {0};
+    bool ok = find(&divergence, &options, error);
+    if (ok) print(&divergence, &options);
+    bool same = ok && divergence.parting.beyond.frame < 0;
+    chaos_free(&divergence.chaos);
+    free(divergence.distance);
+    for (int i = 0; i < 2; i++) trajectory_destroy(divergence.runs[i]);
+    return same ? STATUS_SAME : STATUS_DIFFERENT;
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/chaos.h"
+
+#include "simulate/simulate.h"
+#include "trajectory/trajectory_states.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void chaos_free(Chaos *chaos) {
+    free(chaos->distance);
+    *chaos = (Chaos){.frames = 0};
+}
+
+static double shift_x(BodyDef *body) {
+    float before = body->position.x;
+    body->position.x = before + CHAOS_SHIFT;
+    if (body->position.x == before) body->position.x = nextafterf(before, INFINITY);
+    return (double)body->position.x - before;
+}
+
+/* In any step up to the one that leads to the frame. */
+static bool touches(const Trajectory *run, int body, int frame) {
+    for (int64_t i = 0; i < run->contact_start[frame + 1]; i++)
+        if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
+    return false;
+}
+
+int chaos_body(const Trajectory *run, int parted, int frame) {
+    bool parted_moves = parted >= 0 && !run->fixed[parted];
+    if (run->bomb >= 0 && (!parted_moves || touches(run, run->bomb, frame))) return run->bomb;
+    if (run->bomb >= 0) return parted;
+    int body = run->bodies - 1;
+    while (body >= 0 && run->fixed[body]) body--;
+    return body;
+}
+
+/* A copy with bodies of its own, to be freed. The place alone changes: a bomb that aims keeps its velocity. */
+static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *chaos, Error *error) {
+    *shifted = *scene;
+    size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
+    shifted->bodies = malloc(size + 1);
+    if (shifted->bodies == NULL) return error_memory(error, scene->name);
+    if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
+    shifted->bomb.body = scene_bomb_body(scene);
+    shifted->bomb.velocity_from_position = false;
+    chaos->body = body;
+    chaos->shift = shift_x(body == scene->body_count ? &shifted->bomb.body : &shifted->bodies[body]);
+    return true;
+}
+
+/* The shifted run beside the other, which is recorded. */
+typedef struct Watch {
+    Chaos *chaos;
+    const Trajectory *still;
+    ProgressStage stage;
+} Watch;
+
+static bool measure(void *context, int frame, const World *world, Error *error) {
+    Watch *watch = context;
+    const Trajectory *still = watch->still;
+    const Body *bodies = world_bodies(world);
+    double largest = 0;
+    for (int i = 0; i < world_body_count(world); i++)
+        largest = fmax(largest, point_distance(bodies[i].position,
+                                               still->position[(size_t)frame * (size_t)still->bodies + (size_t)i]));
+    watch->chaos->distance[frame] = largest;
+    return progress_stage(&watch->stage, frame, still->frames) ||
+           error_input(error, still->scene, "stopped after step %d of %d", frame, still->frames - 1);
+}
+
+static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
+    const StepObserver observer = {measure, watch};
+    Chaos *chaos = watch->chaos;
+    for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
+    chaos->distance[0] = trajectory_has(watch->still, 0, chaos->body) ? chaos->shift : 0;
+    Error failure = {0};
+    /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+    if (simulate_observed(scene, method, &observer, &failure) || (failure.kind == ERROR_INPUT && !watch->stage.stopped))
+        return true;
+    *error = failure;
+    return false;
+}
+
+/* still: the scene as it is. */
+static bool run_beside(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *still,
+                       const Trajectory *run, int body, const Progress *progress, Error *error) {
+    TrajectoryDifference difference;
+    trajectory_compare(still, run, &difference);
+    if (difference.frame < 0 && still->bodies != run->bodies)
+        return error_input(error, scene->name, "is not the scene of the run: %s", difference.what);
+    chaos->other = difference.frame;
+    Scene shifted;
+    if (!shifted_scene(scene, body, &shifted, chaos, error)) return false;
+    Watch watch = {chaos, still, {progress, 0.5, 0.5, false}};
+    bool ok = run_shifted(&shifted, method, &watch, error);
+    free(shifted.bodies);
+    return ok;
+}
+
+static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, int body, const Progress *progress,
+                     Error *error) {
+    Method method;
+    if (!method_parse(&method, run->method, error)) return false;
+    ProgressStage first = {progress, 0, 0.5, false};
+    Trajectory *still = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
+    bool ok = still != NULL && run_beside(chaos, scene, &method, still, run, body, progress, error);
+    trajectory_destroy(still);
+    return ok;
+}
+
+static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int body, int frames,
+                      const Progress *progress, Error *error) {
+    uint64_t hash = scene_hash(scene);
+    if (hash != run->scene_hash)
+        return error_input(error, path,
+                           "is not the scene of the run by %s: its hash is %016" PRIx64 ", the run has %016" PRIx64,
+                           run->method, hash, run->scene_hash);
+    if (frames - 1 > SCENE_MAX_FRAMES)
+        return error_input(error, path, "%d steps are too many to run; at most %d", frames - 1, SCENE_MAX_FRAMES);
+    scene->frames = frames - 1;
+    *chaos = (Chaos){.frames = frames, .distance = malloc((size_t)frames * sizeof *chaos->distance)};
+    if (chaos->distance == NULL) return error_memory(error, path);
+    if (run_both(chaos, scene, run, body, progress, error)) return true;
+    chaos_free(chaos);
+    return false;
+}
+
+bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, int frames, const Progress *progress,
+               Error *error) {
+    Scene *scene = scene_read(path, error);
+    bool ok = scene != NULL && run_scene(chaos, scene, path, run, body, frames, progress, error);
+    scene_destroy(scene);
+    return ok;
+}

@@ -1,0 +1,95 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+. "$(dirname "$0")/checks.sh"
+
+stack=$scenes/stack.yaml
+run 0 simulate "$stack" --frames 120 -o engine.npz
+run 0 simulate "$stack" --frames 120 --method engine:k=20 -o more.npz
+run 0 simulate "$stack" --frames 60 -o short.npz
+run 0 simulate "$stack" --frames 120 --bomb-x 5.000001 -o moved.npz
+
+run 0 diverge engine.npz engine.npz
+says "equal: 121 frames of 12 bodies, every bit of pose and velocity"
+equal "lines" "$(wc -l <out)" 3
+run 0 diverge engine.npz short.npz
+says "other lengths: compared are the first 61 frames"
+says "equal: 61 frames"
+
+# Ten sweeps and twenty: equal until the first box lies on the ground.
+run 1 diverge engine.npz more.npz
+says "run 1: stack by engine, 121 frames of 12 bodies (engine.npz)"
+says "run 2: stack by engine:k=20, 121 frames of 12 bodies (more.npz)"
+says "first bit: frame 5, body 1:"
+says "cause: the solver"
+says "all states of frame 4 are equal, and so are the 2 contacts of step 5, but not the impulses of 2"
+says "contact of bodies 0 and 1, feature 03020000"
+says "by itself: --scene FILE is needed"
+grep -q "beyond" out && fail "without a tolerance the first bit is where they part"
+
+run 1 diverge engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv
+says "centres beyond 0.01 m: frame 18, body 4:"
+says "the states before that step differ since frame 5: the past did it"
+says "by itself (body 1 shifted by 1e-06 m, the same frames): from"
+says "verdict: "
+equal "header" "$(head -1 distance.csv)" "frame,time,distance,shifted_distance"
+equal "lines" "$(wc -l <distance.csv)" 122
+equal "first frame" "$(sed -n 2p distance.csv)" "0,0,0,9.99999997e-07"
+run 0 diverge engine.npz more.npz --tolerance 1e6 --csv alone.csv
+says "centres within 1e+06 m: 121 frames of 12 bodies"
+equal "first frame" "$(sed -n 2p alone.csv)" "0,0,0,"
+
+# The bomb is shifted: that grows as it does by itself.
+run 1 diverge engine.npz moved.npz --scene "$stack"
+says "other scenes: the hashes are"
+says "first bit: frame 0, body 11 (the bomb):"
+says "cause: the start, before any step"
+says "by itself (body 11 shifted by 9.5e-07 m"
+says "verdict: grows like chaos"
+
+/usr/bin/python3 - <<'PYTHON'
+# A warm start that differs by one bit, in step 30; a run that no program made.
+import numpy
+run = dict(numpy.load("engine.npz", allow_pickle=False))
+first = run["contact_start"][30]
+run["contact_impulse"].view(numpy.uint32)[first, 0] ^= 1
+numpy.savez("silent.npz", **run)
+run["velocity"][40, 3, 0] += 1
+numpy.savez("hidden.npz", **run)
+run["method"] = numpy.array("sorcery")
+numpy.savez("sorcery.npz", **run)
+run["contact_start"][5] = 1 << 60
+numpy.savez("hostile.npz", **run)
+PYTHON
+run 0 diverge engine.npz silent.npz
+says "no state shows it, but contacts of step 30 differ: 1 in impulse, 0 in place, 0 in one run only"
+run 1 diverge engine.npz hidden.npz
+says "first bit: frame 40, body 3: 0 m apart, 0 rad, 1 m/s"
+says "cause: what no state shows, the warm start"
+says "all states of frame 39 are equal, but contacts of step 30 differ: 1 in impulse"
+says "growth of the largest distance: there are no frames with a distance"
+
+run 2 diverge sorcery.npz engine.npz --scene "$stack"
+complains "no such method"
+run 2 diverge engine.npz hostile.npz
+complains "hostile.npz: error: contact_start"
+head -c 1000 engine.npz >cut.npz
+run 2 diverge cut.npz engine.npz
+complains "cut.npz: error:"
+run 2 diverge engine.npz nowhere.npz
+complains "nowhere.npz"
+run 0 simulate "$scenes/single.yaml" --frames 20 -o single.npz
+run 2 diverge engine.npz single.npz
+complains "single.npz: error: cannot be compared with engine.npz: bodies: 12 and 3"
+run 0 simulate "$stack" --frames 20 --dt 1/120 -o slow.npz
+run 2 diverge engine.npz slow.npz
+complains "dt: 0.0166666675 and 0.00833333377 s"
+run 2 diverge engine.npz more.npz --scene "$scenes/single.yaml"
+complains "single.yaml: error: is not the scene of the run by engine"
+run 2 diverge engine.npz more.npz --tolerance -1
+complains "--tolerance: error:"
+run 2 diverge engine.npz more.npz --tolerance nan
+run 2 diverge engine.npz more.npz short.npz
+complains "two runs part, not more"
+run 3 diverge engine.npz more.npz --csv /nowhere/distance.csv
+complains "/nowhere/distance.csv"
+finish

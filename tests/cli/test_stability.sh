@@ -1,0 +1,72 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Where methods fail: the table that is printed, any number of threads, a run that is cut off, what is refused.
+. "$(dirname "$0")/checks.sh"
+
+few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
+OMP_NUM_THREADS=1 run 0 stability $few -o one
+says "bomb_speed: speed in m/s, holds | fails"
+says "heavy_on_one: ratio, holds | fails"
+says "  scene-net                not applicable"
+says "borders -> one/stability.csv; maps -> one/maps.csv"
+[ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "the table is wider than 80 columns"
+equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
+equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
+tables="fallbacks.csv maps.csv refusals.csv stability.csv"
+equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
+equal "maps" "$(wc -l <one/maps.csv)" 1
+OMP_NUM_THREADS=3 run 0 stability $few -o three
+for table in stability maps refusals fallbacks; do
+    cmp -s one/$table.csv three/$table.csv || fail "three threads write another $table.csv"
+done
+
+# A map alone has no borders to print.
+run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
+equal "header of borders" "$(cat map/stability.csv)" "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
+equal "cells" "$(wc -l <map/maps.csv)" 21
+equal "lines printed" "$(wc -l <out)" 4
+equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
+
+# The moving picture of one of its cells: 0.26 m in one step, and three seconds more.
+run 0 stability --scenes "$scenes" -o map --clip speed_thickness:engine:12.6,0.27
+says "speed_thickness:engine:12.6,0.27: settles -> map/clips/speed_thickness-engine-12.57_0.2714.mp4"
+clip=map/clips/speed_thickness-engine-12.57_0.2714
+frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 $clip.mp4)
+equal "frames of the clip" "$frames" "$(ls $clip | wc -l)"
+run 2 stability --scenes "$scenes" -o map --clip speed_thickness:momentum:200,0.1
+complains "map speed_thickness has no method momentum; it has engine"
+run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
+complains "there is no map speed_thickness in one/maps.csv; there are none"
+
+# What is cut off goes on: a border that was changed in between stays.
+"$twinbox" stability $few -o part >out 2>err </dev/null &
+for _ in $(seq 6000); do
+    ls part/parts-*/heavy_on_one >/dev/null 2>&1 && break
+    sleep 0.01
+done
+kill -INT $!
+wait $!
+equal "exit status of a study cut off" $? 2
+complains "stopped; what was done before is kept"
+equal "what was done is kept" "$(ls part/parts-*)" heavy_on_one
+sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/heavy_on_one
+run 0 stability $few -o part
+equal "borders changed by hand that stay" "$(grep -c 'k=4,ratio,,1.5,' part/stability.csv)" 1
+equal "other borders" "$(diff one/stability.csv part/stability.csv | grep -c '^>')" 1
+equal "files" "$(echo $(ls part))" "borders.png borders.svg borders.txt $tables"
+
+run 2 stability --scenes "$scenes" --study nothing -o none
+complains "nothing: error: no such study or map; there are stack_height"
+run 2 stability --scenes "$scenes" --methods magic -o none
+complains "magic: error: no such method"
+run 2 stability --scenes "$scenes" --methods engine,engine -o none
+complains "is given twice"
+run 2 stability --study bomb_speed -o none
+complains "scenes/stability/bomb_speed.yaml"
+run 2 stability
+complains "-o DIR is needed"
+run 2 stability stack_height -o none
+complains "'stack_height' is not expected"
+[ -e none ] && fail "what was refused has left a folder"
+run 3 stability --scenes "$scenes" --study bomb_speed --methods engine -o /proc/none
+finish

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameters of scene files: numbers made of them, settings, and what is refused. */
+#include "scene_text.h"
+
+#include <math.h>
+
+/* A box whose mass is in line 6, column 5 + ..., and two parameters behind it. */
+#define HEIGHT "  height: {value: 10, from: 2, to: 40, unit: boxes, whole: on}\n"
+#define RATIO "  ratio: {value: 0.1, from: -1e3, to: 1e3}\n"
+#define MASS(mass) BODY("size: [1, 1], position: [0, 0], mass: " mass)
+#define SCENE(mass) MASS(mass) "parameters:\n" HEIGHT RATIO
+#define USES_BOTH "camera: {center: [$height, $ratio], size: [1, 1]}\n"
+
+static float mass_of(const char *text) {
+    Scene *scene = good_scene(text);
+    float mass = scene->bodies[0].mass;
+    scene_destroy(scene);
+    return mass;
+}
+
+static void expect_mass(const char *chain, float expected) {
+    char text[2048];
+    snprintf(text, sizeof text, USES_BOTH MASS("%s") "parameters:\n" HEIGHT RATIO, chain);
+    float found = mass_of(text);
+    if (memcmp(&found, &expected, sizeof found) != 0)
+        fail_msg("%s is %.9g, not %.9g", chain, (double)found, (double)expected);
+}
+
+/* From left to right in double, rounded once: 0.1 is the double 0.1 and no float. */
+static void chains_are_computed_from_left_to_right(void **state) {
+    (void)state;
+    expect_mass("$height", 10);
+    expect_mass("$ratio", (float)0.1);
+    expect_mass("2*$height", 20);
+    expect_mass("$height*2", 20);
+    expect_mass("1/$height", (float)0.1);
+    expect_mass("$height/4", 2.5F);
+    expect_mass("2*$height/4*3", 15);
+    expect_mass("60/$height/3", 2);
+    expect_mass("60/$height*3", 18);
+    expect_mass("-0.5*$height*-1", 5);
+    expect_mass("$height*$height*$ratio", (float)(100 * 0.1));
+    expect_mass("$ratio*3", (float)(0.1 * 3));
+    expect_mass("1e30*1e30/1e30/1e30*7", 7);
+    expect_mass("1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*2", 2);
+}
+
+/* The same bits whether the numbers are written or named, and as before there were names: division in float32. */
+static void a_fraction_keeps_its_bits(void **state) {
+    (void)state;
+    static const char written[] = "gravity: [0, -10]\ndt: 1/%d\niterations: 1\nframes: 60\n" GROUND;
+    static const char named[] = "gravity: [0, -10]\ndt: 1/$rate\niterations: 1\nframes: 60*$rate\n" GROUND
+                                "parameters: {rate: {value: %d, from: 1, to: 480, whole: on}}\n";
+    for (int rate = 1; rate <= 480; rate += 13) {
+        const char *const formats[] = {written, named};
+        for (int i = 0; i < 2; i++) {
+            char text[1024];
+            snprintf(text, sizeof text, formats[i], rate);
+            Scene *scene = good_scene(text);
+            float expected = 1.0F / (float)rate;
+            assert_memory_equal(&scene->dt, &expected, sizeof expected);
+            scene_destroy(scene);
+        }
+    }
+}
+
+/* Parameters may stand before or behind the numbers that are made of them; the physics is that of the numbers. */
+static void a_scene_with_parameters_is_the_scene_of_their_values(void **state) {
+    (void)state;
+    static const char parameters[] = "parameters:\n" HEIGHT;
+    static const char scene[] = BASE GROUND
+        "  - {pattern: stack, count: $height, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.05*$height]}\n"
+        "bomb: {x: 0.5*$height, y: 15, size: [1, 1], mass: $height, velocity: {times_position: -0.15*$height}}\n";
+    Scene *plain = good_scene(
+        BASE GROUND "  - {pattern: stack, count: 10, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.5]}\n"
+                    "bomb: {x: 5, y: 15, size: [1, 1], mass: 10, velocity: {times_position: -1.5}}\n");
+    for (int before = 0; before <= 1; before++) {
+        char text[2048];
+        snprintf(text, sizeof text, "%s%s", before ? parameters : scene, before ? scene : parameters);
+        Scene *found = good_scene(text);
+        assert_int_equal(scene_hash(found), scene_hash(plain));
+        assert_int_equal(found->parameter_count, 1);
+        const SceneParameter *height = &found->parameters[0];
+        assert_string_equal(height->name, "height");
+        assert_string_equal(height->unit, "boxes");
+        assert_true(height->value == 10 && height->from == 2 && height->to == 40 && height->whole);
+        scene_destroy(found);
+    }
+    assert_int_equal(plain->parameter_count, 0);
+    scene_destroy(plain);
+}
+
+static Scene *read_with(const char *text, const SceneSetting *settings, int count, Error *error) {
+    *error = (Error){.kind = ERROR_NONE};
+    return scene_read_with(write_scene(text, strlen(text)), settings, count, error);
+}
+
+static void settings_take_the_place_of_values(void **state) {
+    (void)state;
+    const SceneSetting settings[] = {{"ratio", 0.5}, {"height", 40}};
+    static const double masses[] = {1, 5, 20};
+    for (int count = 0; count <= 2; count++) {
+        Error error;
+        Scene *scene = read_with(SCENE("$height*$ratio"), settings, count, &error);
+        assert_ok(scene != NULL, error);
+        assert_near(scene->bodies[0].mass, masses[count], 0);
+        assert_true(scene->parameters[0].value == (count == 2 ? 40 : 10));
+        assert_true(scene->parameters[1].value == (count >= 1 ? 0.5 : 0.1));
+        scene_destroy(scene);
+    }
+}
+
+static void bad_settings_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        SceneSetting settings[2];
+        int count;
+        const char *message;
+    } table[] = {
+        {{{"height", 41}}, 1, " error: height must be from 2 to 40 boxes (set to 41)"},
+        {{{"height", 1}}, 1, " error: height must be from 2 to 40 boxes (set to 1)"},
+        {{{"height", NAN}}, 1, " error: height must be from 2 to 40 boxes (set to nan)"},
+        {{{"ratio", INFINITY}}, 1, " error: ratio must be from -1000 to 1000 (set to inf)"},
+        {{{"height", 2.5}}, 1, " error: height must be a whole number (set to 2.5)"},
+        {{{"height", 3}, {"height", 3}}, 2, " error: the parameter 'height' is set twice"},
+        {{{"hight", 3}}, 1, " error: there is no parameter 'hight' to set; did you mean 'height'?"},
+        {{{"speed", 3}}, 1, " error: there is no parameter 'speed' to set; there are: height, ratio"},
+        {{{"", 3}}, 1, " error: there is no parameter '' to set; there are: height, ratio"},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        Error error;
+        assert_null(read_with(SCENE("$height*$ratio"), table[i].settings, table[i].count, &error));
+        assert_int_equal(error.kind, ERROR_INPUT);
+        assert_string_equal(behind_path(&error), table[i].message);
+    }
+    Error error;
+    assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
+    assert_string_equal(behind_path(&error), " error: there is no parameter 'height' to set; there are none");
+    /* A value in its bounds may still be none for the number that is made of it. */
+    assert_null(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error));
+    assert_error(error, ERROR_INPUT,
+                 "mass must be greater than 0 (got -2.5, from $height*$ratio with height = 10, "
+                 "ratio = -0.25)");
+}
+
+typedef struct Refused {
+    const char *text, *message; /* behind "path:", up to the excerpt */
+} Refused;
+
+#define CHAIN "must be a number or a chain of numbers and parameters such as 2*$name/3"
+#define EIGHT(text) text text text text text text text text
+
+static const Refused chains[] = {
+    {SCENE("0*$height"), "6:44: error: mass must be greater than 0 (got 0, from 0*$height with height = 10)"},
+    {SCENE("1e9*$height"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+10, from 1e9*$height with "
+                           "height = 10)"},
+    {SCENE("1e38*$height*10"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+40, from 1e38*$height*10 "
+                               "with height = 10)"},
+    {SCENE("0/$height"), "6:44: error: mass must be greater than 0 (got 0, from 0/$height with height = 10)"},
+    {SCENE("$height/0"), "6:44: error: mass is divided by 0 (got $height/0 with height = 10)"},
+    {SCENE("1/0*$height"), "6:44: error: mass is divided by 0 (got 1/0*$height with height = 10)"},
+    {SCENE("1/1e-400"), "6:44: error: mass is divided by 0 (got 1/1e-400)"},
+    {SCENE("$"), "6:44: error: mass: the name of a parameter must follow the '$' (got $)"},
+    {SCENE("2*$"), "6:44: error: mass: the name of a parameter must follow the '$' (got 2*$)"},
+    {SCENE("$*2"), "6:44: error: mass: the name of a parameter must follow the '$' (got $*2)"},
+    {SCENE("$Height"), "6:44: error: mass: the name of a parameter must follow the '$' (got $Height)"},
+    {SCENE("2*$hieght"), "6:44: error: mass: unknown parameter '$hieght'; did you mean 'height'?"},
+    {SCENE("$speed"), "6:44: error: mass: unknown parameter '$speed'; there are: height, ratio"},
+    {MASS("$speed"), "6:44: error: mass: unknown parameter '$speed'; there are none"},
+    {MASS("$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"),
+     "6:44: error: mass: unknown parameter '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa'; there are none"},
+    {SCENE("2*"), "6:44: error: mass " CHAIN " (got 2*)"},
+    {SCENE("'*2'"), "6:45: error: mass " CHAIN " (got *2)"},
+    {SCENE("2**3"), "6:44: error: mass " CHAIN " (got 2**3)"},
+    {SCENE("2//3"), "6:44: error: mass " CHAIN " (got 2//3)"},
+    {SCENE("2 * 3"), "6:44: error: mass " CHAIN " (got 2 * 3)"},
+    {SCENE("-$height"), "6:44: error: mass " CHAIN " (got -$height)"},
+    {SCENE("2$height"), "6:44: error: mass " CHAIN " (got 2$height)"},
+    {SCENE("$height$ratio"), "6:44: error: mass " CHAIN " (got $height$ratio)"},
+    {SCENE("$height+1"), "6:44: error: mass " CHAIN " (got $height+1)"},
+    {SCENE("(2*$height)"), "6:44: error: mass " CHAIN " (got (2*$height))"},
+    {SCENE("2*inf"), "6:44: error: mass " CHAIN " (got 2*inf)"},
+    {SCENE("1e308*1e308"), "6:44: error: mass " CHAIN " (got 1e308*1e308)"},
+    {SCENE(EIGHT("1e38*") "1e38"), "6:44: error: mass leaves the finite numbers on the way (got "
+                                   "1e38*1e38*1e38*1e38*1e38*1e38*1e38*1e38*1...)"},
+    {SCENE(EIGHT("1*1*") "1"),
+     "6:44: error: mass: a chain may have at most 16 numbers (got 1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1)"},
+    {SCENE(EIGHT(EIGHT(EIGHT("2*3*"))) "1"),
+     "6:44: error: mass: a chain may have at most 16 numbers (got 2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2...)"},
+    {BODY("size: [1, $height], mass: 1, position: [0, 0]"),
+     "6:16: error: size: unknown parameter '$height'; there are none"},
+};
+
+/* The value of a key of the scene, and a parameter half. */
+#define WHOLE(key)            \
+    "gravity: [0, -10]\n" key \
+    "\nparameters: {half: {value: 0.5, from: 0, to: 1e6}, big: {value: 1e6, from: 0, to: 1e6}}\n"
+
+static const Refused whole_numbers[] = {
+    {WHOLE("frames: 3*$half"),
+     "2:9: error: frames must be a whole number from 1 to 1000000 (got 1.5, from 3*$half with half = 0.5)"},
+    {WHOLE("frames: 0*$half"),
+     "2:9: error: frames must be a whole number from 1 to 1000000 (got 0, from 0*$half with half = 0.5)"},
+    {WHOLE("iterations: 2*$big"),
+     "2:13: error: iterations must be a whole number from 1 to 1000000 (got 2000000, from 2*$big with big = 1000000)"},
+    {WHOLE("iterations: $big*$big*$big*$big"),
+     "2:13: error: iterations must be a whole number from 1 to 1000000 (got 1e+24, from $big*$big*$big*$big with big = "
+     "1000000)"},
+    {WHOLE("iterations: 1/0"), "2:13: error: iterations is divided by 0 (got 1/0)"},
+    {WHOLE("iterations: 2*$haf"), "2:13: error: iterations: unknown parameter '$haf'; did you mean 'half'?"},
+    {WHOLE("dt: $half*$half*$half"), "1:1: error: a scene needs the key 'iterations'"},
+};
+
+#define PARAMETERS(text) BASE GROUND "parameters:\n  " text "\n"
+#define ONE(keys) PARAMETERS("a: {" keys "}")
+#define NAME_32 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+
+static const Refused parameters[] = {
+    {BASE GROUND "parameters: 3\n", "7:13: error: parameters is a mapping of names to values (got 3)"},
+    {BASE GROUND "parameters:\n", "7:1: error: parameters is a mapping of names to values (got nothing)"},
+    {BASE GROUND "parameters: {}\nparameters: {}\n", "8:1: error: key 'parameters' is there twice"},
+    {BASE GROUND "parameters: {}\n", NULL},
+    {PARAMETERS("a: 3"), "8:6: error: a parameter is a mapping of keys to values (got 3)"},
+    {PARAMETERS("A: {value: 1, from: 0, to: 2}"),
+     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got A)"},
+    {PARAMETERS("[a]: {value: 1, from: 0, to: 2}"),
+     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got a list)"},
+    {PARAMETERS(NAME_32 ": {value: 1, from: 0, to: 2}"),
+     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got " NAME_32 ")"},
+    {ONE("value: 1, from: 0"), "8:6: error: a parameter needs the key 'to'"},
+    {ONE("value: 1, form: 0"), "8:17: error: unknown key 'form'; did you mean 'from'?"},
+    {ONE("value: 1, from: 2, to: 3"), "8:14: error: value must be from 2 to 3 (got 1)"},
+    {ONE("value: 1/2, from: 0.75, to: 3"), "8:14: error: value must be from 0.75 to 3 (got 0.5, from 1/2)"},
+    {ONE("value: 1, from: 3, to: 0"), "8:14: error: value must be from 3 to 0 (got 1)"},
+    {ONE("value: x, from: 3, to: 0"), "8:14: error: value must be a number (got x)"},
+    {ONE("value: [1], from: 3, to: 0"), "8:14: error: value must be a number (got a list)"},
+    {ONE("value: .nan, from: 3, to: 0"), "8:14: error: value must be a number (got .nan)"},
+    {ONE("value: 1e999, from: 3, to: 0"), "8:14: error: value must be a number (got 1e999)"},
+    {ONE("value: 1, from: $a, to: 3"), "8:23: error: from may not be made of parameters itself (got $a)"},
+    {ONE("value: 1.5, from: 1, to: 2, whole: on"),
+     "8:14: error: value must be a whole number, as whole is on (got 1.5)"},
+    {ONE("value: 1, from: 1, to: 2.5, whole: on"), "8:30: error: to must be a whole number, as whole is on (got 2.5)"},
+    {ONE("value: 1, from: 1, to: 2, unit: [m]"), "8:39: error: unit must be a text of at most 24 bytes (got a list)"},
+    {ONE("value: 1, from: 1, to: 2, unit: " NAME_32),
+     "8:39: error: unit must be a text of at most 24 bytes (got " NAME_32 ")"},
+    {ONE("value: 1, from: 0, to: 2"), "8:3: error: no number of the scene has the parameter '$a'"},
+    {PARAMETERS("a: {value: 1, from: 0, to: 2}\n  a: {value: 1, from: 0, to: 2}"),
+     "9:3: error: key 'a' is there twice"},
+    {BASE GROUND "parameters: {a: {value: 1, from: 0, to: 2}, b: {value: 1, from: 0, to: 2}, c: {value: 1, from: 0, "
+                 "to: 2},\n d: {value: 1, from: 0, to: 2}, e: {value: 1, from: 0, to: 2}}\n",
+     "8:33: error: a scene may have at most 4 parameters"},
+};
+
+static void check_table(const Refused *table, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (table[i].message != NULL)
+            expect_refused(table[i].text, table[i].message);
+        else
+            scene_destroy(good_scene(table[i].text));
+    }
+}
+
+#define CHECK_TABLE(table) check_table((table), sizeof(table) / sizeof *(table))
+
+static void bad_chains_are_refused(void **state) { (void)state, CHECK_TABLE(chains); }
+static void whole_numbers_are_checked_on_the_result(void **state) { (void)state, CHECK_TABLE(whole_numbers); }
+static void bad_parameters_are_refused(void **state) { (void)state, CHECK_TABLE(parameters); }
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chains_are_computed_from_left_to_right),
+        cmocka_unit_test(a_fraction_keeps_its_bits),
+        cmocka_unit_test(a_scene_with_parameters_is_the_scene_of_their_values),
+        cmocka_unit_test(settings_take_the_place_of_values),
+        cmocka_unit_test(bad_settings_are_refused),
+        cmocka_unit_test(bad_chains_are_refused),
+        cmocka_unit_test(whole_numbers_are_checked_on_the_result),
+        cmocka_unit_test(bad_parameters_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

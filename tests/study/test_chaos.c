@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A run beside itself, shifted: in free flight the shift stays what it is. */
+#include "testing.h"
+
+#include "simulate/simulate.h"
+#include "study/chaos.h"
+
+#include <math.h>
+
+static const char *write_scene(const char *bodies_and_bomb) {
+    const char *path = temporary_path("scene.yaml");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 60\nbodies:\n%s", bodies_and_bomb);
+    fclose(file);
+    return path;
+}
+
+static Trajectory *run_scene(const char *path, const char *text) {
+    Error error = {0};
+    Method method;
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL && method_parse(&method, text, &error), error);
+    Trajectory *run = simulate(scene, &method, NULL, &error);
+    assert_ok(run != NULL, error);
+    scene_destroy(scene);
+    return run;
+}
+
+static const char falling[] = "  - {size: [1, 1], position: [3, 50], mass: 1, friction: 0}\n"
+                              "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n";
+static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], mass: 50, friction: 0.2, velocity: "
+                           "{times_position: 15}}\n";
+
+/* Place alone is shifted, and nothing is touched: the distance is the shift, from when the body is there. That of an
+   aiming bomb would grow, by 15e-6 m/s, if its velocity were shifted as well. */
+static void a_shift_in_free_flight_stays(void **state) {
+    (void)state;
+    char text[1024];
+    Error error = {0};
+    for (int with_bomb = 0; with_bomb < 2; with_bomb++) {
+        snprintf(text, sizeof text, "%s%s", falling, with_bomb ? bomb : "");
+        const char *path = write_scene(text);
+        Trajectory *run = run_scene(path, "engine");
+        int body = chaos_body(run, -1, -1);
+        assert_int_equal(body, with_bomb ? 2 : 0);
+        Chaos chaos;
+        assert_ok(chaos_run(&chaos, path, run, body, 50, NULL, &error), error);
+        assert_true(chaos.body == body && chaos.other == -1 && chaos.frames == 50);
+        assert_near(chaos.shift, 1e-6, 0.2e-6);
+        for (int frame = 0; frame < 50; frame++)
+            assert_near(chaos.distance[frame], with_bomb && frame < 20 ? 0 : chaos.shift, 1e-7);
+        chaos_free(&chaos);
+        trajectory_destroy(run);
+    }
+}
+
+/* So far out that floats are 0.0625 m from each other. */
+static void a_shift_is_at_least_one_float(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
+    Trajectory *run = run_scene(path, "engine");
+    Chaos chaos;
+    assert_ok(chaos_run(&chaos, path, run, 0, 10, NULL, &error), error);
+    assert_true(chaos.shift == 0.0625 && chaos.distance[9] == 0.0625);
+    chaos_free(&chaos);
+    trajectory_destroy(run);
+}
+
+/* The stack of the scenes: struck from step 41 on, body 1 lies on the ground from step 4 on. */
+static void a_bomb_that_has_not_hit_is_not_shifted(void **state) {
+    (void)state;
+    Trajectory *run = run_scene(SOURCE_DIR "/scenes/stack.yaml", "engine");
+    assert_int_equal(run->bomb, 11);
+    int hit = 0;
+    for (int step = 1; hit == 0; step++)
+        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++)
+            if (run->contacts[i].b == run->bomb) hit = step;
+    assert_int_equal(chaos_body(run, 1, hit - 1), 1);
+    assert_int_equal(chaos_body(run, 1, hit), 11);
+    assert_int_equal(chaos_body(run, 0, hit - 1), 11); /* the ground cannot be shifted */
+    assert_int_equal(chaos_body(run, -1, -1), 11);
+    run->bomb = -1;
+    assert_int_equal(chaos_body(run, 1, hit - 1), 11);
+    for (int body = 0; body < run->bodies; body++) run->fixed[body] = 1;
+    assert_int_equal(chaos_body(run, 1, hit - 1), -1);
+    trajectory_destroy(run);
+}
+
+/* The distance is the one that the two trajectories have. */
+static void distances_are_those_of_the_trajectories(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = SOURCE_DIR "/scenes/stack.yaml";
+    Trajectory *run = run_scene(path, "momentum:k=5");
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    scene->bodies[10].position.x = 1e-6F;
+    Method method;
+    assert_ok(method_parse(&method, "momentum:k=5", &error), error);
+    Trajectory *shifted = simulate(scene, &method, NULL, &error);
+    Chaos chaos;
+    assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
+    for (int frame = 0; frame < run->frames; frame++)
+        assert_true(chaos.distance[frame] == trajectory_distance(run, shifted, frame));
+    chaos_free(&chaos);
+    trajectory_destroy(shifted);
+    trajectory_destroy(run);
+    scene_destroy(scene);
+}
+
+static void expect_refused(const Trajectory *run, const char *path, int frames, const char *reason) {
+    Error error = {0};
+    Chaos chaos;
+    assert_false(chaos_run(&chaos, path, run, 1, frames, NULL, &error));
+    assert_error(error, ERROR_INPUT, reason);
+}
+
+static void what_is_not_the_run_is_refused_or_told(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = SOURCE_DIR "/scenes/stack.yaml";
+    Trajectory *run = run_scene(path, "engine");
+    expect_refused(run, SOURCE_DIR "/scenes/single.yaml", 20, "single.yaml: error: is not the scene of the run");
+    expect_refused(run, path, SCENE_MAX_FRAMES + 2, "are too many to run");
+    strcpy(run->method, "engine:network=none");
+    expect_refused(run, path, 20, "network");
+    strcpy(run->method, "pair-net:network=nowhere.npz");
+    expect_refused(run, path, 20, "nowhere.npz");
+    strcpy(run->method, "engine:k=1");
+    Chaos chaos;
+    assert_ok(chaos_run(&chaos, path, run, 1, 20, NULL, &error), error);
+    assert_true(chaos.other > 0);
+    chaos_free(&chaos);
+    run->bodies = 3; /* a forged run with the hash of the scene */
+    run->bomb = 2;
+    expect_refused(run, path, 20, "bodies: 12 and 3");
+    trajectory_destroy(run);
+}
+
+static bool stop_late(void *context, double done, double total) {
+    (void)context;
+    return done < 0.75 * total;
+}
+
+/* A stop is no state that left the finite numbers. */
+static void a_stop_is_an_error(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = SOURCE_DIR "/scenes/stack.yaml";
+    Trajectory *run = run_scene(path, "engine");
+    Chaos chaos;
+    assert_false(chaos_run(&chaos, path, run, 1, 101, &(Progress){stop_late, NULL}, &error));
+    assert_error(error, ERROR_INPUT, "stopped after step 51 of 100");
+    trajectory_destroy(run);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_shift_in_free_flight_stays),
+        cmocka_unit_test(a_shift_is_at_least_one_float),
+        cmocka_unit_test(a_bomb_that_has_not_hit_is_not_shifted),
+        cmocka_unit_test(distances_are_those_of_the_trajectories),
+        cmocka_unit_test(what_is_not_the_run_is_refused_or_told),
+        cmocka_unit_test(a_stop_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
