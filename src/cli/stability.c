@@ -66,7 +66,7 @@ static const struct argp argp = {
     "settles, sways or creeps. Takes up to twenty minutes on two cores; what is cut off goes on where it stopped.\v"
     "Example: twinbox stability -o out/stability\n"
     "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
-    "         twinbox stability -o out/stability --clip height_iterations:engine:10,20",
+    "         twinbox stability -o out/stability --clip height_iterations:engine:15,5",
     NULL,
     NULL,
     NULL};

@@ -36,8 +36,9 @@ static int print_method(const Csv *csv, int row) {
     int next = row, width = printf("  %-*s", LABEL_WIDTH, label);
     do {
         describe(csv, next, border);
+        if (next > row) width += printf(";");
         if (next > row && width + (int)strlen(border) + 2 > LINE_WIDTH) width = printf("\n  %-*s", LABEL_WIDTH, "") - 1;
-        width += printf("%s%s", next > row ? "; " : " ", border);
+        width += printf(" %s", border);
         next++;
     } while (next < csv->rows && same(csv, next, row, STUDY, SETTING));
     printf("\n");
