@@ -20,6 +20,12 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
     return stability_path(path, place, error) ? scene_read_with(path, settings, count, error) : NULL;
 }
 
+const char *stability_unit(const Scene *scene, const char *parameter) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, parameter) == 0) return scene->parameters[i].unit;
+    return "";
+}
+
 void stability_shift(Scene *scene, int seed) {
     BodyDef *body = scene->bomb.present ? &scene->bomb.body : NULL;
     for (int i = scene->body_count - 1; i >= 0; i--)

@@ -19,6 +19,9 @@ bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place,
 /* Reads it with these numbers. The caller frees it. */
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
 
+/* The unit of one of the scene's numbers; "" where it has none. */
+const char *stability_unit(const Scene *scene, const char *parameter);
+
 /* Shifts the first body that moves, or else the bomb, along x: not at all for seed 0, by 1e-6 m forth and back for 1
    and 2. */
 void stability_shift(Scene *scene, int seed);

@@ -46,14 +46,8 @@ static bool judge_cell(void *context, int cell, Error *error) {
     return ok;
 }
 
-static const SceneParameter *parameter_of(const Scene *scene, const char *name) {
-    for (int i = 0; i < scene->parameter_count; i++)
-        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-    return NULL;
-}
-
 static void put_axis(const Run *run, const char *parameter, double value, FILE *lines) {
-    fprintf(lines, "%s,%s,%.9g,", parameter, parameter_of(run->typical, parameter)->unit, value);
+    fprintf(lines, "%s,%s,%.9g,", parameter, stability_unit(run->typical, parameter), value);
 }
 
 static void put_cells(const Run *run, int method, FILE *lines) {

@@ -114,12 +114,6 @@ static bool study_method(void *context, int i, Error *error) {
     return border_search(&result->borders, &study->scan, &probe, error);
 }
 
-static const char *unit_of(const Scene *scene, const char *parameter) {
-    for (int i = 0; i < scene->parameter_count; i++)
-        if (strcmp(scene->parameters[i].name, parameter) == 0) return scene->parameters[i].unit;
-    return "";
-}
-
 static void put_method(const Run *run, const char *table, int i, FILE *lines) {
     const Contender *contender = &run->scan->methods->items[i];
     fprintf(lines, "%s:%s,%s,", table, run->scan->study->name, contender->name);
@@ -129,7 +123,7 @@ static void put_method(const Run *run, const char *table, int i, FILE *lines) {
 static void put_border(const Run *run, int i, const Border *border, FILE *lines) {
     const StabilityStudy *study = run->scan->study;
     put_method(run, "stability", i, lines);
-    fprintf(lines, ",%s,%s,", study->parameter, unit_of(run->typical, study->parameter));
+    fprintf(lines, ",%s,%s,", study->parameter, stability_unit(run->typical, study->parameter));
     if (border != NULL && !isnan(border->holds_at)) fprintf(lines, "%.9g", border->holds_at);
     fprintf(lines, ",");
     if (border != NULL && !isnan(border->fails_at)) fprintf(lines, "%.9g", border->fails_at);
@@ -150,7 +144,7 @@ static void put_fallbacks(const Run *run, int i, FILE *lines) {
         const NetworkRun *network_run = &result->network_runs[k];
         const NetworkFallbacks *fallbacks = &network_run->fallbacks;
         put_method(run, "fallbacks", i, lines);
-        fprintf(lines, ",%s,%s,%.9g,%d,%d,%d,%d\n", study->parameter, unit_of(run->typical, study->parameter),
+        fprintf(lines, ",%s,%s,%.9g,%d,%d,%d,%d\n", study->parameter, stability_unit(run->typical, study->parameter),
                 network_run->value, network_run->steps, fallbacks->not_finite, fallbacks->outside_cone,
                 fallbacks->beyond_training);
     }

@@ -60,3 +60,19 @@ static inline void expect_refused_bytes(const void *text, size_t size, const cha
 static inline void expect_refused(const char *text, const char *expected) {
     expect_refused_bytes(text, strlen(text), expected);
 }
+
+/* A text, and why it is refused; NULL: it is not. */
+typedef struct Refused {
+    const char *text, *message; /* behind "path:", up to the excerpt */
+} Refused;
+
+static inline void check_table(const Refused *table, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (table[i].message != NULL)
+            expect_refused(table[i].text, table[i].message);
+        else
+            scene_destroy(good_scene(table[i].text));
+    }
+}
+
+#define CHECK_TABLE(table) check_table((table), sizeof(table) / sizeof *(table))

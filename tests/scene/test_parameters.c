@@ -143,10 +143,6 @@ static void bad_settings_are_refused(void **state) {
                  "ratio = -0.25)");
 }
 
-typedef struct Refused {
-    const char *text, *message; /* behind "path:", up to the excerpt */
-} Refused;
-
 #define CHAIN "must be a number or a chain of numbers and parameters such as 2*$name/3"
 #define EIGHT(text) text text text text text text text text
 
@@ -250,17 +246,6 @@ static const Refused parameters[] = {
                  "to: 2},\n d: {value: 1, from: 0, to: 2}, e: {value: 1, from: 0, to: 2}}\n",
      "8:33: error: a scene may have at most 4 parameters"},
 };
-
-static void check_table(const Refused *table, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        if (table[i].message != NULL)
-            expect_refused(table[i].text, table[i].message);
-        else
-            scene_destroy(good_scene(table[i].text));
-    }
-}
-
-#define CHECK_TABLE(table) check_table((table), sizeof(table) / sizeof *(table))
 
 static void bad_chains_are_refused(void **state) { (void)state, CHECK_TABLE(chains); }
 static void whole_numbers_are_checked_on_the_result(void **state) { (void)state, CHECK_TABLE(whole_numbers); }

@@ -7,10 +7,6 @@
 #define BOX "size: [1, 1], mass: 1, position: [0, 0]"
 #define TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
-typedef struct Refused {
-    const char *text, *message; /* behind "path:", up to the excerpt */
-} Refused;
-
 static const Refused keys[] = {
     {BASE, "1:1: error: a scene needs the key 'bodies'"},
     {GROUND, "1:1: error: a scene needs the key 'gravity'"},
@@ -173,17 +169,6 @@ static const Refused yaml[] = {
     {"", "1:1: error: there is no scene in this file"},
     {"# nothing\n", "1:1: error: there is no scene in this file"},
 };
-
-static void check_table(const Refused *table, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        if (table[i].message != NULL)
-            expect_refused(table[i].text, table[i].message);
-        else
-            scene_destroy(good_scene(table[i].text));
-    }
-}
-
-#define CHECK_TABLE(table) check_table((table), sizeof(table) / sizeof *(table))
 
 static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
 static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers); }
