@@ -211,6 +211,17 @@ static bool draw_weights(SlotNetwork *network, uint64_t seed) {
     return true;
 }
 
+/* Rounding the rows to bytes moved the means of what it sees, too: back to 0. */
+static void recentre(SlotNetwork *network, const SlotSamples *samples) {
+    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
+    for (int p = 0, input = 0; p < 4; p++)
+        for (int k = 0; k < projections[p]->to; k++, input++) {
+            double sum = 0;
+            for (int i = 0; i < samples->count; i++) sum += (double)samples->items[i].inputs[input];
+            projections[p]->centre[k] += (float)(sum / samples->count);
+        }
+}
+
 SlotNetwork *slot_network_for(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error) {
     if (samples->count == 0) {
         error_input(error, "scene-net", "no launch touches a box so hard that there is something to learn");
@@ -229,6 +240,8 @@ SlotNetwork *slot_network_for(SlotSamples *samples, const SlotWidths *widths, ui
               find_projections(network, samples, seed, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
     if (ok) slot_network_pack(network);
+    ok = ok && slot_samples_look(samples, 0, network, error);
+    if (ok) recentre(network, samples);
     if (ok && slot_samples_look(samples, 0, network, error)) return network;
     slot_network_destroy(network);
     return NULL;
