@@ -38,7 +38,7 @@ const StabilityStudy stability_studies[] = {
     {"friction_ramp", "friction_ramp", "slope", LINEAR(0, 0.6, 13), .stands = true, .quick = true, .weight = 1},
     {"far_from_origin", "far_from_origin", "distance", LOGARITHMIC(1, 1e6, 13), .stands = true, .unshifted = true,
      .quick = true, .weight = 2},
-    {"at_rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .weight = 13},
+    {"at_rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .rests = true, .weight = 13},
     {"bomb_speed", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .quick = true, .weight = 0.5},
     {"bomb_speed_thick", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .fixed = {"thickness", 1}, .weight = 0.5},
     {"bomb_mass", "random_bombs", "mass", LOGARITHMIC(1, 1000, 13), .weight = 2},
