@@ -2,6 +2,8 @@
 /* Panels side by side on a page of a paper, the legend of what occurs below. */
 #include "figure/stability_map.h"
 
+#include "figure/chart_data.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -124,12 +126,12 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
     figure_linear(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
-/* From each cell to its clip; the title has the cell's name as --clip takes it. */
+/* From each cell to its clip; the title has the cell's name as --clip takes it, but for letters that are not plain. */
 static void put_links(const Layout *layout, int panel, FigureBox box) {
     const MapPanels *map = layout->map;
     const TileScale size = layout->cell;
     MapCell cell = *map->methods[panel];
-    char method[METHOD_TEXT_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
+    char method[MAP_METHOD_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
     map_cell_method(method, &cell);
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
@@ -140,6 +142,7 @@ static void put_links(const Layout *layout, int panel, FigureBox box) {
             map_cell_clip(clip, &cell);
             snprintf(target, sizeof target, "%s.mp4", clip);
             snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
+            for (char *c = title; *c != '\0'; c++) *c = chart_plain_letter(*c);
             figure_link(layout->page,
                         (FigureBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
                         target, title);

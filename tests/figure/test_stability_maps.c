@@ -65,6 +65,26 @@ static void cells_link_to_their_clips(void **state) {
         temporary_folder);
 }
 
+/* 119 bytes of path, and characters that are nothing to SVG and gnuplot; 128 are too many. */
+static void settings_may_be_paths(void **state) {
+    (void)state;
+    char setting[200], maps[1024], borders[1024], program[2048];
+    snprintf(setting, sizeof setting, "network=%0*d/<it's>/net.npz", 103, 0);
+    snprintf(maps, sizeof maps, MAPS "m,pair-net,%s,a,,1,b,,2,falls,,,,\n", setting);
+    snprintf(borders, sizeof borders, BORDERS "stack,pair-net,%s,height,boxes,10,11,falls\n", setting);
+    start_afresh(maps, borders);
+    draw();
+    snprintf(program, sizeof program,
+             "%ssvg = read('map-m')\n"
+             "expect('m:pair-net:network=' + 103 * '0' + '/?it?s?/net.npz:1,2 falls' in svg, True, 'link')\n"
+             "expect(texts(svg).count('pair-net, network=net.npz'), 1, 'title')\n"
+             "expect(sum(t.endswith(', network=net.npz') for t in texts(read('borders'))), 1, 'label')\n",
+             SVG_FUNCTIONS);
+    run_python(program, temporary_folder);
+    snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
+    expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting has more than 127 bytes");
+}
+
 /* Whatever the order of the rows and the distance of the values: rising, and each a tic. */
 static void axes_name_their_values(void **state) {
     (void)state;
@@ -88,7 +108,10 @@ static void titles_are_cut_where_they_tell_the_least(void **state) {
                  {"engine", "k=10,warm=off", "engine, k=10, warm=off", 22},
                  {"learned-momentum", "k=10,warm=off", "learned..., k=10, warm=off", 26},
                  {"learned-momentum", "k=10,warm=off", "learned-momentum,...", 20},
-                 {"learned-momentum", "", "learned...", 10}};
+                 {"learned-momentum", "", "learned...", 10},
+                 {"scene-net", "network=../of/networks/a-b.npz,k=4", "scene-net, network=a-b.npz, k=4", 40},
+                 {"scene-net", "k=4,network=<it's>.npz", "scene-net, k=4, network=?it?s?.npz", 40},
+                 {"pair-net", "network=a-long-name-of-a-network.npz", "pair-net, network=a-long-name...", 32}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[STABILITY_TEXT_SIZE];
         stability_method_text(text, cases[i].most, cases[i].method, cases[i].setting);
@@ -160,6 +183,7 @@ int main(void) {
         cmocka_unit_test(each_verdict_has_its_tile),
         cmocka_unit_test(the_border_parts_holding_from_failing),
         cmocka_unit_test(cells_link_to_their_clips),
+        cmocka_unit_test(settings_may_be_paths),
         cmocka_unit_test(axes_name_their_values),
         cmocka_unit_test(titles_are_cut_where_they_tell_the_least),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
