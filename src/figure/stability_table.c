@@ -158,17 +158,18 @@ void border_table_free(BorderTable *table) {
     *table = (BorderTable){.count = 0};
 }
 
-/* "k=10, warm=off", "network=net.npz". */
+/* "k=10, warm=off"; of "k=5,network=DIR/net.npz": "k=5, net.npz". */
 static size_t show_setting(char shown[2 * CSV_TEXT_SIZE], const char *setting) {
-    size_t used = 0, value = 0;
+    size_t used = 0, item = 0;
     for (const char *c = setting; *c != '\0'; c++) {
         if (*c == '/') {
-            used = value;
+            used = item;
             continue;
         }
         shown[used++] = chart_plain_letter(*c);
-        if (*c == ',') shown[used++] = ' ';
-        if (*c == ',' || *c == '=') value = used;
+        if (*c != ',') continue;
+        shown[used++] = ' ';
+        item = used;
     }
     shown[used] = '\0';
     return used;

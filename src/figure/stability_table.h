@@ -63,7 +63,7 @@ void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 /* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part; and "Height (boxes)", for an
+/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part alone; and "Height (boxes)", for an
    axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * CSV_TEXT_SIZE + 8 };
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
