@@ -12,7 +12,7 @@ static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_r
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
                     tic_digit = 1.65, letter = 1.55;
 
-enum { LEGEND_COLUMNS = 6, TICS_SIZE = MAP_MAX_VALUES * 40 };
+enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2, TICS_SIZE = MAP_MAX_VALUES * 40 };
 
 typedef struct Layout {
     const MapPanels *map;
@@ -61,7 +61,7 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     double page_width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH;
     layout.columns = panels == 1 ? 1 : panels <= 4 ? 2 : panels <= 6 ? 3 : 4;
     layout.rows = (panels + layout.columns - 1) / layout.columns;
-    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS / 2 : LEGEND_COLUMNS;
+    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* One more for the border. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
     layout.left = label_room + number_width(map->y, map->y_count);
