@@ -207,6 +207,33 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
     contenders_free(&methods);
 }
 
+/* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
+static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
+    (void)state;
+    Error error = {0};
+    char folder[300];
+    snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
+    const StabilityOptions options = {.folder = folder,
+                                      .scenes = scenes,
+                                      .methods = "engine,robust",
+                                      .quick = true,
+                                      .name_count = 1,
+                                      .names = {"slope_friction"}};
+    assert_ok(stability_run(&options, NULL, &error), error);
+    char *maps = read_table(folder, "maps");
+    int cells = 0;
+    for (const char *row = maps; (row = strstr(row, ",slope,,")) != NULL; cells++) {
+        double slope, friction;
+        char verdict[20];
+        row++;
+        assert_int_equal(sscanf(row, "slope,,%lf,friction,,%lf,%19[a-z]", &slope, &friction, verdict), 3);
+        if ((strcmp(verdict, "settles") == 0) != (slope < friction))
+            fail_msg("slope %g on %g %s", slope, friction, verdict);
+    }
+    assert_int_equal(cells, 2 * 4 * 4);
+    free(maps);
+}
+
 /* Stopped in the map, it keeps the study; the rest gives the same tables as in one go. */
 static void what_is_cut_off_goes_on(void **state) {
     (void)state;
@@ -257,6 +284,7 @@ int main(void) {
                                        cmocka_unit_test(iterations_are_the_scenes_where_a_method_leaves_them_open),
                                        cmocka_unit_test(a_study_writes_borders_maps_and_refusals),
                                        cmocka_unit_test(a_study_at_rest_writes_drift_and_energy),
+                                       cmocka_unit_test(a_map_of_slopes_has_its_border_at_the_friction),
                                        cmocka_unit_test(what_is_cut_off_goes_on),
                                        cmocka_unit_test(names_and_methods_that_there_are_not_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
