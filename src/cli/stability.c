@@ -21,7 +21,7 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv, refusals.csv, fallbacks.csv and the figures of them go",
+    {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures go",
      0},
     {"methods", METHODS, "LIST", 0,
      "Methods, separated by commas; a name alone has as many iterations as the scene says (default: the engine, "

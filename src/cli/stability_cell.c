@@ -48,7 +48,7 @@ static void add_name(Names *names, const char *name) {
 static const MapCell *fail(const MapTable *table, const StabilityCell *cell, bool map_known, bool method_known,
                            Error *error) {
     Names names = {.used = 0}, ups = {.used = 0};
-    char text[METHOD_TEXT_SIZE];
+    char text[MAP_METHOD_SIZE];
     for (int i = 0; i < table->count; i++) {
         const MapCell *row = &table->cells[i];
         map_cell_method(text, row);
@@ -81,7 +81,7 @@ const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *c
     bool map_known = false, method_known = false;
     for (int i = 0; i < table->count; i++) {
         const MapCell *row = &table->cells[i];
-        char method[METHOD_TEXT_SIZE];
+        char method[MAP_METHOD_SIZE];
         if (strcmp(row->map, cell->map) != 0) continue;
         map_known = true;
         map_cell_method(method, row);

@@ -52,7 +52,7 @@ static Scene *read_scene(const Clip *clip, Error *error) {
 
 /* What explodes may leave the finite numbers in the seconds after: then they are left out. */
 static bool run_row(Clip *clip, Scene *scene, const MapCell *row, int shown, Error *error) {
-    char method[METHOD_TEXT_SIZE];
+    char method[MAP_METHOD_SIZE];
     Error failure = {0};
     map_cell_method(method, row);
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;

@@ -5,5 +5,6 @@
 
 #include <stdbool.h>
 
-/* Prints the borders of folder/stability.csv, a block a study, a line a method, and where the tables are. */
+/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method, and where the
+   tables are. */
 bool stability_print(const char *folder, Error *error);

@@ -7,6 +7,9 @@
 
 #include <stdint.h>
 
+/* m: overlap that is left as it is. */
+#define CONTACT_SLOP 0.01f
+
 typedef struct ProblemBody {
     Vec2 position;               /* m */
     float angle;                 /* rad */

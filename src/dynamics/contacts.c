@@ -98,8 +98,8 @@ static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm
 float contact_bias(float separation, float inverse_dt) {
     /* Only what is deeper than the slop is pushed out, or resting contacts would jitter between touching and apart
        (Catto 2006). */
-    const float slop = 0.01f, bias_factor = 0.2f;
-    float depth = separation + slop;
+    const float bias_factor = 0.2f;
+    float depth = separation + CONTACT_SLOP;
     return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
 }
 

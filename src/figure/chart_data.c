@@ -11,12 +11,16 @@
 
 static const double lost_drift = 0.5; /* m: half a box */
 
-void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
+char chart_plain_letter(char letter) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
+    return strchr(plain, letter) != NULL ? letter : '?';
+}
+
+void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;
     bool cut = length > room;
     if (cut) length = room - 3;
-    for (size_t i = 0; i < length; i++) out[i] = strchr(plain, text[i]) != NULL ? text[i] : '?';
+    for (size_t i = 0; i < length; i++) out[i] = chart_plain_letter(text[i]);
     strcpy(out + length, cut ? "..." : "");
 }
 

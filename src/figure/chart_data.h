@@ -51,5 +51,8 @@ typedef struct Chart {
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
+/* The letter, or '?' in place of one that is not plain. */
+char chart_plain_letter(char letter);
+
 /* Copies a text, made plain and cut to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);

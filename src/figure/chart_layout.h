@@ -8,7 +8,7 @@
 
 /* mm */
 #define LEFT_MARGIN 16.5
-#define RIGHT_MARGIN 2.0
+#define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
 #define LEGEND_ROW 3.7
 #define FOOT_ROW 3.4
 

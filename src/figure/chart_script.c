@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 /* mm */
-static const double gap = 5, top_margin = 5.5, axis_room = 9;
+static const double gap = 8, top_margin = 5.5, axis_room = 9;
 
 static const char *const panel_titles[CHART_PANELS] = {"Impact frames", "The 60 frames after"};
 

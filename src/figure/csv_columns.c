@@ -21,6 +21,14 @@ static bool read_name(const Csv *csv, int row, int field, const CsvColumn *colum
            csv_error(csv, row, field, error, "%s cannot be drawn (got %s)", column->name, csv_show(text).text);
 }
 
+static bool read_text(const Csv *csv, int row, int field, const CsvColumn *column, char *member, Error *error) {
+    const char *text = csv_text(csv, row, field);
+    if (strlen(text) >= CSV_TEXT_SIZE)
+        return csv_error(csv, row, field, error, "%s has more than %d bytes", column->name, CSV_TEXT_SIZE - 1);
+    strcpy(member, text);
+    return true;
+}
+
 static bool read_word(const Csv *csv, int row, int field, const CsvColumn *column, int *member, Error *error) {
     const char *text = csv_text(csv, row, field);
     for (*member = 0; column->words[*member] != NULL; ++*member)
@@ -42,6 +50,7 @@ static bool read_field(const Csv *csv, int row, int field, const CsvColumn *colu
     void *member = item + column->offset;
     switch (column->kind) {
     case CSV_NAME: return read_name(csv, row, field, column, member, error);
+    case CSV_TEXT: return read_text(csv, row, field, column, member, error);
     case CSV_WORD: return read_word(csv, row, field, column, member, error);
     default: return read_number(csv, row, field, column, member, error);
     }

@@ -5,11 +5,12 @@
 
 #include <stddef.h>
 
-enum { CSV_NAME_SIZE = 40, CSV_MAX_ROWS = 5000, CSV_MAX_COLUMNS = 16 };
+enum { CSV_NAME_SIZE = 40, CSV_TEXT_SIZE = 128, CSV_MAX_ROWS = 5000, CSV_MAX_COLUMNS = 16 };
 
 /* What a field is, and the member of the struct that takes it. */
 typedef enum CsvKind {
     CSV_NAME,   /* char[CSV_NAME_SIZE]: plain as of chart_plain(), so that no name can be more than one to gnuplot */
+    CSV_TEXT,   /* char[CSV_TEXT_SIZE]: as it is */
     CSV_WORD,   /* int: which of a list of words */
     CSV_NUMBER, /* double in [minimum, maximum] */
     CSV_MAYBE   /* the same, or NAN where the field is empty */

@@ -2,6 +2,8 @@
 /* Panels side by side on a page of a paper, the legend of what occurs below. */
 #include "figure/stability_map.h"
 
+#include "figure/chart_data.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +12,7 @@ static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_r
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
                     tic_digit = 1.65, letter = 1.55;
 
-enum { LEGEND_COLUMNS = 6, TICS_SIZE = MAP_MAX_VALUES * 40 };
+enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2, TICS_SIZE = MAP_MAX_VALUES * 40 };
 
 typedef struct Layout {
     const MapPanels *map;
@@ -59,7 +61,7 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     double page_width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH;
     layout.columns = panels == 1 ? 1 : panels <= 4 ? 2 : panels <= 6 ? 3 : 4;
     layout.rows = (panels + layout.columns - 1) / layout.columns;
-    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS / 2 : LEGEND_COLUMNS;
+    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* One more for the border. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
     layout.left = label_room + number_width(map->y, map->y_count);
@@ -124,12 +126,12 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
     figure_linear(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
-/* From each cell to its clip; the title has the cell's name as --clip takes it. */
+/* From each cell to its clip; the title has the cell's name as --clip takes it, but for letters that are not plain. */
 static void put_links(const Layout *layout, int panel, FigureBox box) {
     const MapPanels *map = layout->map;
     const TileScale size = layout->cell;
     MapCell cell = *map->methods[panel];
-    char method[METHOD_TEXT_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
+    char method[MAP_METHOD_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
     map_cell_method(method, &cell);
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
@@ -140,6 +142,7 @@ static void put_links(const Layout *layout, int panel, FigureBox box) {
             map_cell_clip(clip, &cell);
             snprintf(target, sizeof target, "%s.mp4", clip);
             snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
+            for (char *c = title; *c != '\0'; c++) *c = chart_plain_letter(*c);
             figure_link(layout->page,
                         (FigureBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
                         target, title);

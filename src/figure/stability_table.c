@@ -3,6 +3,7 @@
 
 #include "common/csv.h"
 #include "common/file.h"
+#include "figure/chart_data.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -17,7 +18,7 @@ enum { LEAST_NAME = 6 };
 static const CsvColumn map_columns[] = {
     {"map", CSV_NAME, offsetof(MapCell, map), NULL, 0, 0},
     {"method", CSV_NAME, offsetof(MapCell, method), NULL, 0, 0},
-    {"setting", CSV_NAME, offsetof(MapCell, setting), NULL, 0, 0},
+    {"setting", CSV_TEXT, offsetof(MapCell, setting), NULL, 0, 0},
     {"x_parameter", CSV_NAME, offsetof(MapCell, x_parameter), NULL, 0, 0},
     {"x_unit", CSV_NAME, offsetof(MapCell, x_unit), NULL, 0, 0},
     {"x", CSV_NUMBER, offsetof(MapCell, x), NULL, -LARGEST, LARGEST},
@@ -34,7 +35,7 @@ static const CsvColumn map_columns[] = {
 static const CsvColumn border_columns[] = {
     {"study", CSV_NAME, offsetof(BorderRow, study), NULL, 0, 0},
     {"method", CSV_NAME, offsetof(BorderRow, method), NULL, 0, 0},
-    {"setting", CSV_NAME, offsetof(BorderRow, setting), NULL, 0, 0},
+    {"setting", CSV_TEXT, offsetof(BorderRow, setting), NULL, 0, 0},
     {"parameter", CSV_NAME, offsetof(BorderRow, parameter), NULL, 0, 0},
     {"unit", CSV_NAME, offsetof(BorderRow, unit), NULL, 0, 0},
     {"holds_at", CSV_MAYBE, offsetof(BorderRow, holds_at), NULL, -LARGEST, LARGEST},
@@ -53,13 +54,13 @@ bool stability_row_error(const char *path, int row, Error *error, const char *fo
     return error_input(error, where, "%s", what);
 }
 
-void map_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *cell) {
-    snprintf(method, METHOD_TEXT_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
+void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
+    snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
 }
 
 void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
     static const char folder[] = "clips/";
-    char method[METHOD_TEXT_SIZE];
+    char method[MAP_METHOD_SIZE];
     map_cell_method(method, cell);
     snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g_%.4g", folder, cell->map, method, cell->x, cell->y);
     file_name_clean(name + strlen(folder));
@@ -157,15 +158,27 @@ void border_table_free(BorderTable *table) {
     *table = (BorderTable){.count = 0};
 }
 
-/* What is too long loses the end of its name, as long as that leaves some: settings tell panels apart. */
-void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
-    char name[CSV_NAME_SIZE], shown[2 * CSV_NAME_SIZE] = "";
-    size_t used = 0;
-    for (const char *c = setting; *c != '\0' && used + 3 < sizeof shown; c++) {
-        shown[used++] = *c;
-        if (*c == ',') shown[used++] = ' ';
+/* "k=10, warm=off"; of "k=5,network=DIR/net.npz": "k=5, net.npz". */
+static size_t show_setting(char shown[2 * CSV_TEXT_SIZE], const char *setting) {
+    size_t used = 0, item = 0;
+    for (const char *c = setting; *c != '\0'; c++) {
+        if (*c == '/') {
+            used = item;
+            continue;
+        }
+        shown[used++] = chart_plain_letter(*c);
+        if (*c != ',') continue;
+        shown[used++] = ' ';
+        item = used;
     }
     shown[used] = '\0';
+    return used;
+}
+
+/* What is too long loses the end of its name, as long as that leaves some: settings tell panels apart. */
+void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
+    char name[CSV_NAME_SIZE], shown[2 * CSV_TEXT_SIZE];
+    size_t used = show_setting(shown, setting);
     snprintf(name, sizeof name, "%s", method);
     if (used > 0 && used + 2 + LEAST_NAME <= most) figure_cut(name, most - used - 2);
     snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", name, used > 0 ? ", " : "", shown);

@@ -3,13 +3,12 @@
 #pragma once
 #include "figure/csv_columns.h"
 #include "figure/verdict_look.h"
-#include "simulate/method.h"
 
 enum { STABILITY_MAX_CELLS = 40000, STABILITY_MAX_BORDERS = 2000, STABILITY_MAX_PANELS = 512 };
 
-/* A cell of a map. Names are plain (chart_plain). */
+/* A cell of a map. Names are plain (chart_plain); a setting is as it was given, and may be the path of a network. */
 typedef struct MapCell {
-    char map[CSV_NAME_SIZE], method[CSV_NAME_SIZE], setting[CSV_NAME_SIZE];
+    char map[CSV_NAME_SIZE], method[CSV_NAME_SIZE], setting[CSV_TEXT_SIZE];
     char x_parameter[CSV_NAME_SIZE], x_unit[CSV_NAME_SIZE];
     char y_parameter[CSV_NAME_SIZE], y_unit[CSV_NAME_SIZE];
     double x, y;
@@ -20,7 +19,7 @@ typedef struct MapCell {
 
 /* A border of a method: the last value that holds and the first that fails, how. */
 typedef struct BorderRow {
-    char study[CSV_NAME_SIZE], method[CSV_NAME_SIZE], setting[CSV_NAME_SIZE];
+    char study[CSV_NAME_SIZE], method[CSV_NAME_SIZE], setting[CSV_TEXT_SIZE];
     char parameter[CSV_NAME_SIZE], unit[CSV_NAME_SIZE];
     double holds_at; /* NAN: nothing holds */
     double
@@ -54,16 +53,18 @@ void border_table_free(BorderTable *table);
 bool stability_row_error(const char *path, int row, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* A cell's method as method_parse() takes it: "engine:k=10". */
-void map_cell_method(char method[METHOD_TEXT_SIZE], const MapCell *cell);
+enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + CSV_TEXT_SIZE };
+void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
 
 /* Where the clip of a cell goes, from the tables' folder, without an ending: "clips/MAP-METHOD-X_Y". */
-enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + METHOD_TEXT_SIZE + 40 };
+enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
 void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 
 /* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine, k=10, warm=off", of at most so many characters; and "Height (boxes)", for an axis. */
-enum { STABILITY_TEXT_SIZE = 3 * CSV_NAME_SIZE + 8 };
+/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part alone; and "Height (boxes)", for an
+   axis. */
+enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * CSV_TEXT_SIZE + 8 };
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);

@@ -19,6 +19,7 @@ static const Entry entries[] = {
     {"learned-momentum", "k=5 k=10 k=20 k=50", "k=10 k=20"},
     {"block", "k=5 k=10 k=20 k=50 k=100", "k=10"},
     {"nncg", "k=5 k=10 k=20 k=50 k=100", "k=20"},
+    {"robust", "k=5 k=10 k=20 k=50 k=100", "k=10"},
     {"substepping", "substeps=2 substeps=4 substeps=10 substeps=20 substeps=50", "substeps=10"},
     {"pair-net", NULL, NULL},
     {"contact-net", NULL, NULL},

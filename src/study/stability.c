@@ -107,7 +107,8 @@ static bool write_tables(const Run *run, Error *error) {
     return study_parts_table(&run->parts, folder, "stability", STABILITY_HEADER, error) &&
            study_parts_table(&run->parts, folder, "maps", MAPS_HEADER, error) &&
            study_parts_table(&run->parts, folder, "refusals", REFUSALS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error);
+           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error) &&
+           study_parts_table(&run->parts, folder, "rest", REST_HEADER, error);
 }
 
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {

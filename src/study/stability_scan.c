@@ -15,21 +15,20 @@ enum { RUNS_OF_A_BORDER = 8 };
 
 typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
 
-/* What a network said in a run and was not done. */
-typedef struct NetworkRun {
+/* Without a shift. */
+typedef struct ScanRun {
     double value;
-    int steps;
-    NetworkFallbacks fallbacks;
-} NetworkRun;
+    VerdictReading reading;
+} ScanRun;
 
 /* What came of a method. */
 typedef struct Result {
     Part part;
     BorderList borders;
-    Error reason;             /* refused */
-    NetworkRun *network_runs; /* [network_run_count] */
-    size_t network_run_capacity;
-    int network_run_count;
+    Error reason;  /* refused */
+    ScanRun *runs; /* [run_count] */
+    size_t run_capacity;
+    int run_count;
 } Result;
 
 typedef struct Run {
@@ -65,11 +64,11 @@ typedef struct Asked {
     Result *result;
 } Asked;
 
-static bool keep_fallbacks(Result *result, double value, const VerdictReading *reading, Error *error) {
-    if (!array_reserve((void **)&result->network_runs, &result->network_run_capacity,
-                       (size_t)result->network_run_count + 1, sizeof *result->network_runs))
-        return error_memory(error, "fallbacks");
-    result->network_runs[result->network_run_count++] = (NetworkRun){value, reading->steps, reading->fallbacks};
+static bool keep_run(Result *result, double value, const VerdictReading *reading, Error *error) {
+    if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
+                       sizeof *result->runs))
+        return error_memory(error, "runs");
+    result->runs[result->run_count++] = (ScanRun){value, *reading};
     return true;
 }
 
@@ -79,9 +78,7 @@ static bool ask(void *context, double value, int seed, Verdict *verdict, Error *
     VerdictReading reading;
     if (!stability_scan_run(run->scan, asked->method, value, seed, &run->converged, &reading, error)) return false;
     *verdict = reading.verdict;
-    if (seed == 0 && stability_has_setting(asked->method, "network") &&
-        !keep_fallbacks(asked->result, value, &reading, error))
-        return false;
+    if (seed == 0 && !keep_run(asked->result, value, &reading, error)) return false;
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
 
@@ -131,22 +128,41 @@ static void put_border(const Run *run, int i, const Border *border, FILE *lines)
 }
 
 static int by_value(const void *left, const void *right) {
-    const NetworkRun *a = left, *b = right;
+    const ScanRun *a = left, *b = right;
     return (a->value > b->value) - (a->value < b->value);
 }
 
-static void put_fallbacks(const Run *run, int i, FILE *lines) {
+static void put_value(const Run *run, const char *table, int i, double value, FILE *lines) {
     const StabilityStudy *study = run->scan->study;
-    const Result *result = &run->results[i];
-    if (result->network_run_count == 0) return;
-    qsort(result->network_runs, (size_t)result->network_run_count, sizeof *result->network_runs, by_value);
-    for (int k = 0; k < result->network_run_count; k++) {
-        const NetworkRun *network_run = &result->network_runs[k];
-        const NetworkFallbacks *fallbacks = &network_run->fallbacks;
-        put_method(run, "fallbacks", i, lines);
-        fprintf(lines, ",%s,%s,%.9g,%d,%d,%d,%d\n", study->parameter, stability_unit(run->typical, study->parameter),
-                network_run->value, network_run->steps, fallbacks->not_finite, fallbacks->outside_cone,
-                fallbacks->beyond_training);
+    put_method(run, table, i, lines);
+    fprintf(lines, ",%s,%s,%.9g", study->parameter, stability_unit(run->typical, study->parameter), value);
+}
+
+static void put_fallbacks(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
+    const NetworkFallbacks *fallbacks = &scan_run->reading.fallbacks;
+    put_value(run, "fallbacks", i, scan_run->value, lines);
+    fprintf(lines, ",%d,%d,%d,%d\n", scan_run->reading.steps, fallbacks->not_finite, fallbacks->outside_cone,
+            fallbacks->beyond_training);
+}
+
+static void put_rest(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
+    const VerdictReading *reading = &scan_run->reading;
+    put_value(run, "rest", i, scan_run->value, lines);
+    fprintf(lines, ",%s,%d,", verdict_name(reading->verdict), reading->steps);
+    if (isfinite(reading->drift)) fprintf(lines, "%.4g", reading->drift);
+    fprintf(lines, ",");
+    if (isfinite(reading->gained)) fprintf(lines, "%.4g", reading->gained);
+    fprintf(lines, "\n");
+}
+
+static void put_runs(const Run *run, int i, FILE *lines) {
+    const bool network = stability_has_setting(&run->scan->methods->items[i].method, "network");
+    Result *result = &run->results[i];
+    if (result->run_count == 0) return;
+    qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
+    for (int k = 0; k < result->run_count; k++) {
+        if (network) put_fallbacks(run, i, &result->runs[k], lines);
+        if (run->scan->study->rests) put_rest(run, i, &result->runs[k], lines);
     }
 }
 
@@ -155,7 +171,7 @@ static void put_result(const Run *run, int i, FILE *lines) {
     if (result->part == PART_LEFT_OUT) return;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
         put_border(run, i, &result->borders.items[k], lines);
-    put_fallbacks(run, i, lines);
+    put_runs(run, i, lines);
     if (result->part != PART_REFUSED) return;
     put_border(run, i, NULL, lines);
     put_method(run, "refusals", i, lines);
@@ -177,7 +193,7 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     if (ok && run.results == NULL) ok = error_memory(error, study->name);
     ok = ok && parallel_for(&work, methods, study->name, NULL, error);
     for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
-    for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].network_runs);
+    for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
     free(run.results);
     converged_runs_free(&run.converged);
     scene_destroy(run.typical);

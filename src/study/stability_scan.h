@@ -7,6 +7,7 @@
 #define STABILITY_HEADER "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
 #define REFUSALS_HEADER "study,method,setting,reason"
 #define FALLBACKS_HEADER "study,method,setting,parameter,unit,value,steps,not_finite,outside_cone,beyond_training"
+#define REST_HEADER "study,method,setting,parameter,unit,value,verdict,steps,drift,energy"
 
 /* In place of a verdict, where the method does not go with the scene. */
 #define STABILITY_NOT_APPLICABLE "not applicable"
@@ -17,8 +18,8 @@ typedef struct StabilityScan {
     const ContenderList *methods;
 } StabilityScan;
 
-/* Writes the lines of the tables "stability", "refusals" and "fallbacks" (of each run by a network, without a shift) in
-   the order of the methods, which are studied in parallel. A method that has its own number of iterations has no row
+/* Writes the lines of the tables "stability", "refusals", "fallbacks" (of each run by a network, without a shift) and "rest"
+   (of each run of a study that rests, without a shift) in the order of the methods, which are studied in parallel. A method that has its own number of iterations has no row
    where those are scanned. `scan` is a StabilityScan. */
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error);
 

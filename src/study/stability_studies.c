@@ -38,7 +38,7 @@ const StabilityStudy stability_studies[] = {
     {"friction_ramp", "friction_ramp", "slope", LINEAR(0, 0.6, 13), .stands = true, .quick = true, .weight = 1},
     {"far_from_origin", "far_from_origin", "distance", LOGARITHMIC(1, 1e6, 13), .stands = true, .unshifted = true,
      .quick = true, .weight = 2},
-    {"at_rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .weight = 13},
+    {"at_rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .rests = true, .weight = 13},
     {"bomb_speed", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .quick = true, .weight = 0.5},
     {"bomb_speed_thick", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .fixed = {"thickness", 1}, .weight = 0.5},
     {"bomb_mass", "random_bombs", "mass", LOGARITHMIC(1, 1000, 13), .weight = 2},
@@ -58,7 +58,10 @@ const StabilityMap stability_maps[] = {
     {.name = "speed_thickness", .scene = "bomb_speed", .x = {"speed", LOGARITHMIC(5, 200, 12), 5},
      .y = {"thickness", LOGARITHMIC(0.1, 2, 10), 4}, .quick = true, .weight = 3},
     {.name = "spin_x", .scene = "random_bombs", .x = {"spin", LINEAR(0, 20, 11), 4}, .y = {"x", LINEAR(-5, 5, 11), 4},
-     .quick = true, .weight = 10}};
+     .quick = true, .weight = 10},
+    /* No cell lies on the border, where the slope is the friction. */
+    {.name = "slope_friction", .scene = "friction_ramp", .x = {"slope", LINEAR(0.025, 0.575, 12), 4},
+     .y = {"friction", LINEAR(0.05, 0.6, 12), 4}, .stands = true, .weight = 2}};
 /* clang-format on */
 
 const int stability_study_count = sizeof stability_studies / sizeof stability_studies[0];

@@ -14,6 +14,7 @@ typedef struct StabilityStudy {
     bool stands;        /* VerdictRun */
     bool iterations;    /* the scene's iterations are scanned: only for methods that take them from there */
     bool unshifted;     /* a tiny shift tells nothing: it is rounded away, or nothing comes near anything else */
+    bool rests;         /* a run's drift and energy count as well as its verdict */
     bool quick;         /* one of the few that are looked at in a quick run */
     double weight;      /* s for all methods on two cores, roughly */
 } StabilityStudy;

@@ -5,6 +5,7 @@
 #include "study/verdict_checks.h"
 #include "study/world_measures.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 const char *verdict_name(Verdict verdict) {
@@ -47,6 +48,12 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
     return meet(watch, bodies, count, error);
 }
 
+static void remember_rest(VerdictWatch *watch) {
+    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].rested = watch->bodies[i].last;
+    watch->rested_count = watch->body_count;
+    watch->rested = watch->energy;
+}
+
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     if (watch->worst.verdict == VERDICT_NON_FINITE) return true;
     watch->frame = step->frame;
@@ -59,6 +66,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
     check_creep(watch, step);
     check_calm(watch, step);
     remember(watch, step->bodies);
+    if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) remember_rest(watch);
     return true;
 }
 
@@ -80,7 +88,7 @@ void verdict_watch_failed(VerdictWatch *watch, int frame) {
 
 bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.verdict >= VERDICT_EXPLODES; }
 
-VerdictReading verdict_watch_end(const VerdictWatch *watch) {
+static VerdictReading read_verdict(const VerdictWatch *watch) {
     if (watch->worst.verdict > VERDICT_SWAYS) return watch->worst;
     const bool calm = watch->calm >= VERDICT_CALM_FRAMES;
     return (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_SWAYS,
@@ -88,6 +96,17 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
                             .body = -1,
                             .value = calm ? watch->kinetic : watch->loud,
                             .unit = "J"};
+}
+
+VerdictReading verdict_watch_end(const VerdictWatch *watch) {
+    VerdictReading reading = read_verdict(watch);
+    reading.drift = reading.gained = NAN;
+    if (watch->rested_count == 0 || watch->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) return reading;
+    reading.drift = 0;
+    reading.gained = watch->energy - watch->rested;
+    for (int i = 0; i < watch->rested_count && i < watch->body_count; i++)
+        reading.drift = fmax(reading.drift, verdict_distance(watch->bodies[i].rested, watch->bodies[i].last));
+    return reading;
 }
 
 /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */

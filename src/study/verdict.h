@@ -64,7 +64,10 @@ typedef struct VerdictReading {
        energy. Non-finite: m/s, the greatest speed before. */
     double value;
     const char *unit; /* "J", "m", "deg", "m/s" */
-    int steps;        /* taken, and what was not done of what a network said in them; both of verdict_run alone */
+    /* What has become of what had VERDICT_CREEP_FROM seconds to come to rest, since then; NAN where the run is not longer.
+       m: the farthest that a body has gone, of those that were there then. J: by how much the energy has grown. */
+    double drift, gained;
+    int steps; /* taken, and what was not done of what a network said in them; both of verdict_run alone */
     NetworkFallbacks fallbacks;
 } VerdictReading;
 
@@ -95,6 +98,7 @@ typedef struct WatchedBody {
     Vec2 last, stood; /* m: in the last frame; before the step that first found it touching */
     float last_angle, stood_angle;
     bool touched;
+    Vec2 rested; /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
     Vec2 sample[VERDICT_CREEP_SECONDS]; /* a ring, one a second */
 } WatchedBody;
@@ -110,10 +114,13 @@ typedef struct VerdictWatch {
     size_t capacity;
     double kept;    /* J: least over whole seconds of the greatest energy in one, and what has joined since */
     double peak;    /* J: the greatest energy of the second that is not over yet */
+    double energy;  /* J: of the last frame */
+    double rested;  /* J: of that after VERDICT_CREEP_FROM seconds */
     double kinetic; /* J: mean of the bodies that move */
     double loud;    /* J: the same in the last frame that was not calm */
     double speed;   /* m/s: of the fastest body */
     int calm, deep, peak_steps; /* frames on end */
+    int rested_count;           /* bodies after VERDICT_CREEP_FROM seconds; 0 before */
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);

@@ -16,7 +16,7 @@ int verdict_steps(double seconds, float dt) {
     return steps > 1 ? (int)steps : 1;
 }
 
-static double distance(Vec2 a, Vec2 b) { return hypot((double)a.x - b.x, (double)a.y - b.y); }
+double verdict_distance(Vec2 a, Vec2 b) { return hypot((double)a.x - b.x, (double)a.y - b.y); }
 static double smaller_side(const Body *body) { return fminf(body->size.x, body->size.y); }
 
 bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
@@ -28,7 +28,7 @@ bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
             verdict_note(watch, VERDICT_NON_FINITE, i, watch->speed, "m/s");
             return false;
         }
-        speed = fmax(speed, distance(body->velocity, vec2(0, 0)));
+        speed = fmax(speed, verdict_distance(body->velocity, vec2(0, 0)));
     }
     watch->speed = speed;
     return true;
@@ -65,6 +65,7 @@ static double converged_energy(const VerdictRun *run, int frame) {
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     const VerdictRun *run = &watch->run;
     double energy = bodies_energy(step->bodies, step->body_count, run->gravity);
+    watch->energy = energy;
     int joined = step->body_count - watch->body_count;
     double brought = joined > 0 ? bodies_energy(step->bodies + watch->body_count, joined, run->gravity) : 0;
     watch->kept += brought;
@@ -116,7 +117,8 @@ void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
         const Vec2 now = step->bodies[i].position;
         if (step->bodies[i].inv_mass == 0 || passes_any(step, now, now)) continue;
         if (passes_any(step, watched->outside, now))
-            verdict_note(watch, VERDICT_TUNNELS, i, distance(watched->last, now) / (double)watch->run.dt, "m/s");
+            verdict_note(watch, VERDICT_TUNNELS, i, verdict_distance(watched->last, now) / (double)watch->run.dt,
+                         "m/s");
         watched->outside = now;
     }
 }
@@ -184,7 +186,7 @@ void check_creep(VerdictWatch *watch, const VerdictStep *step) {
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *watched = &watch->bodies[i];
         Vec2 *sample = &watched->sample[watched->samples % VERDICT_CREEP_SECONDS], now = step->bodies[i].position;
-        double way = watched->samples >= VERDICT_CREEP_SECONDS ? distance(*sample, now) : 0;
+        double way = watched->samples >= VERDICT_CREEP_SECONDS ? verdict_distance(*sample, now) : 0;
         *sample = now;
         watched->samples++;
         if (way <= most || (i == step->bomb && !run->stands)) continue;

@@ -18,3 +18,6 @@ void check_calm(VerdictWatch *watch, const VerdictStep *step);
 
 /* Steps that come nearest to so many seconds; at least one. */
 int verdict_steps(double seconds, float dt);
+
+/* m */
+double verdict_distance(Vec2 from, Vec2 to);

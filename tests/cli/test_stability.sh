@@ -12,11 +12,11 @@ says "borders -> one/stability.csv; maps -> one/maps.csv"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "the table is wider than 80 columns"
 equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
 equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
-tables="fallbacks.csv maps.csv refusals.csv stability.csv"
+tables="fallbacks.csv maps.csv refusals.csv rest.csv stability.csv"
 equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
 equal "maps" "$(wc -l <one/maps.csv)" 1
 OMP_NUM_THREADS=3 run 0 stability $few -o three
-for table in stability maps refusals fallbacks; do
+for table in stability maps refusals fallbacks rest; do
     cmp -s one/$table.csv three/$table.csv || fail "three threads write another $table.csv"
 done
 
@@ -24,7 +24,7 @@ done
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
 equal "header of borders" "$(cat map/stability.csv)" "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
 equal "cells" "$(wc -l <map/maps.csv)" 21
-equal "lines printed" "$(wc -l <out)" 4
+equal "lines printed" "$(wc -l <out)" 5
 equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
 
 # The moving picture of one of its cells: 0.26 m in one step, and three seconds more.
@@ -37,6 +37,13 @@ run 2 stability --scenes "$scenes" -o map --clip speed_thickness:momentum:200,0.
 complains "map speed_thickness has no method momentum; it has engine"
 run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
 complains "there is no map speed_thickness in one/maps.csv; there are none"
+
+# 10,000 steps at rest.
+run 0 stability --scenes "$scenes" --study at_rest --methods robust,pair-net -o rest
+says "at_rest: the last height that holds, drift and energy from 10 s on"
+says "  robust                   20 settles, 0 m, 0 J"
+says "  pair-net                 1 explodes"
+equal "runs at rest" "$(grep -c '^at_rest,robust,,height,boxes,[0-9]*,settles,10000,0,0$' rest/rest.csv)" 10
 
 # What is cut off goes on: a border that was changed in between stays.
 "$twinbox" stability $few -o part >out 2>err </dev/null &

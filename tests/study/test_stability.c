@@ -182,6 +182,58 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
     free(refusals);
 }
 
+/* Two boxes of the same weight stay where they are; where a network lifts them off within ten seconds there is nothing to
+   tell. */
+static void a_study_at_rest_writes_drift_and_energy(void **state) {
+    (void)state;
+    Error error = {0};
+    const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
+                                  .stands = true, .rests = true};
+    ContenderList methods;
+    assert_ok(contenders_read(&methods, "robust,pair-net", &error), error);
+    StabilityScan scan = {&study, scenes, &methods};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *lines = open_memstream(&text, &size);
+    assert_non_null(lines);
+    assert_ok(stability_scan_write(&scan, lines, NULL, &error), error);
+    assert_int_equal(fclose(lines), 0);
+    assert_non_null(strstr(text, "\nrest:two,robust,,ratio,,1,settles,3600,0,0\n"));
+    assert_non_null(strstr(text, "\nrest:two,robust,,ratio,,2,settles,3600,0,0\n"));
+    const char *lifted = strstr(text, "\nrest:two,pair-net,,ratio,,1,explodes,");
+    assert_non_null(lifted);
+    assert_memory_equal(strchr(strstr(lifted, "explodes,") + 9, ','), ",,\n", 3);
+    free(text);
+    contenders_free(&methods);
+}
+
+/* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
+static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
+    (void)state;
+    Error error = {0};
+    char folder[300];
+    snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
+    const StabilityOptions options = {.folder = folder,
+                                      .scenes = scenes,
+                                      .methods = "engine,robust",
+                                      .quick = true,
+                                      .name_count = 1,
+                                      .names = {"slope_friction"}};
+    assert_ok(stability_run(&options, NULL, &error), error);
+    char *maps = read_table(folder, "maps");
+    int cells = 0;
+    for (const char *row = maps; (row = strstr(row, ",slope,,")) != NULL; cells++) {
+        double slope, friction;
+        char verdict[20];
+        row++;
+        assert_int_equal(sscanf(row, "slope,,%lf,friction,,%lf,%19[a-z]", &slope, &friction, verdict), 3);
+        if ((strcmp(verdict, "settles") == 0) != (slope < friction))
+            fail_msg("slope %g on %g %s", slope, friction, verdict);
+    }
+    assert_int_equal(cells, 2 * 4 * 4);
+    free(maps);
+}
+
 /* Stopped in the map, it keeps the study; the rest gives the same tables as in one go. */
 static void what_is_cut_off_goes_on(void **state) {
     (void)state;
@@ -197,8 +249,8 @@ static void what_is_cut_off_goes_on(void **state) {
     error = (Error){0};
     assert_ok(run_shots(cut, "engine,momentum", &rest, &error), error);
     assert_int_equal(rest.count, 2 * 5 * 4);
-    static const char *const names[] = {"stability", "maps", "refusals", "fallbacks"};
-    for (int i = 0; i < 4; i++) {
+    static const char *const names[] = {"stability", "maps", "refusals", "fallbacks", "rest"};
+    for (int i = 0; i < 5; i++) {
         char *expected = read_table(whole, names[i]), *found = read_table(cut, names[i]);
         assert_string_equal(found, expected);
         free(expected);
@@ -231,6 +283,8 @@ int main(void) {
                                        cmocka_unit_test(a_method_that_goes_with_some_values_only_does_not_apply),
                                        cmocka_unit_test(iterations_are_the_scenes_where_a_method_leaves_them_open),
                                        cmocka_unit_test(a_study_writes_borders_maps_and_refusals),
+                                       cmocka_unit_test(a_study_at_rest_writes_drift_and_energy),
+                                       cmocka_unit_test(a_map_of_slopes_has_its_border_at_the_friction),
                                        cmocka_unit_test(what_is_cut_off_goes_on),
                                        cmocka_unit_test(names_and_methods_that_there_are_not_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);

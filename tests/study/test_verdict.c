@@ -2,6 +2,8 @@
 /* Both sides of the limits of what holds, falls and sinks, on runs made by hand. */
 #include "study/trial.h"
 
+#include <math.h>
+
 static void a_resting_box_settles(void **state) {
     (void)state;
     Trial trial;
@@ -257,6 +259,23 @@ static void bodies_may_leave_and_join(void **state) {
     assert_verdict(trial_end(&trial), VERDICT_SETTLES);
 }
 
+/* Up by 0.5 m in the first ten seconds, then by 0.03 m aside and 0.04 m up: 0.05 m of 1 kg, and 10 m/s^2 over 0.04 m. */
+static void drift_is_counted_after_ten_seconds(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial_go(&trial, 300);
+    trial.bodies[1].position.y = 1;
+    trial_go(&trial, 600);
+    const VerdictReading before = verdict_watch_end(&trial.watch);
+    assert_true(isnan(before.drift) && isnan(before.gained));
+    trial.bodies[1].position = vec2(0.03f, 1.04f);
+    trial_go(&trial, TRIAL_FRAMES);
+    const VerdictReading after = trial_end(&trial);
+    assert_near(after.drift, 0.05, 1e-6);
+    assert_near(after.gained, 0.4, 1e-5);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_resting_box_settles),
                                        cmocka_unit_test(settled_is_kinetic_energy_a_body),
@@ -271,6 +290,7 @@ int main(void) {
                                        cmocka_unit_test(sinking_is_a_second_deeper_than_a_twentieth),
                                        cmocka_unit_test(sinking_names_the_body),
                                        cmocka_unit_test(seconds_are_steps_of_the_scene),
-                                       cmocka_unit_test(bodies_may_leave_and_join)};
+                                       cmocka_unit_test(bodies_may_leave_and_join),
+                                       cmocka_unit_test(drift_is_counted_after_ten_seconds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figure of borders, from tables made up here; and what holds for it and maps alike. */
+#include "stability_drawn.h"
+
+static void borders_are_drawn_as_the_table_has_them(void **state) {
+    (void)state;
+    start_afresh(MAPS ONE_CELL,
+                 BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
+                         "height,momentum,,height,boxes,20,19,sinks\nheight,nncg,,height,boxes,40,,settles\n"
+                         "height,pair-net,,height,boxes,,2,explodes\nheight,scene-net,,height,boxes,,,not applicable\n"
+                         "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,creeps\n");
+    draw();
+    char program[4096];
+    snprintf(program, sizeof program,
+             "%ssvg = read('borders')\n"
+             "expect(count(svg, '#A3CBE5'), 4 + 2 + 2, 'bars')\n"
+             "expect(count(svg, '%s'), 3 + 1, 'falls')\nexpect(count(svg, '%s'), 1 + 1, 'explodes')\n"
+             "expect(count(svg, '%s'), 1 + 1, 'sinks')\n"
+             "for text in ('Time step', 'Rate (Hz)', 'engine, k=10', 'never holds', 'not applicable'):\n"
+             "    expect(texts(svg).count(text), 1, text)\n",
+             SVG_FUNCTIONS, verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill,
+             verdict_looks[VERDICT_SINKS].fill);
+    run_python(program, temporary_folder);
+}
+
+/* Of a method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar is where it fails. The
+   other holds throughout, and its bar tells where the panel ends. */
+static void bars_end_at_the_next_border(void **state) {
+    (void)state;
+    start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,15,16,falls\na,engine,,h,,20,19,sinks\na,engine,,h,,25,26,falls\n"
+                                        "a,nncg,,h,,30,,settles\n");
+    draw();
+    run_python(SVG_FUNCTIONS
+               "bars = re.findall(\"polygon fill = 'rgb.163, 203, 229.' points = '([^']*)'\", read('borders'))\n"
+               "ends = [sorted({float(p.split(',')[0]) for p in bar.split()}) for bar in bars][:4]\n"
+               "left, right = ends[3]\n"
+               "expect(ends[1], ends[2], 'both bars of what holds from 20 to 25')\n"
+               "assert left == ends[0][0] < ends[0][1] < ends[1][0] < ends[1][1] < right, ends\n",
+               temporary_folder);
+}
+
+/* Beyond 30 luck decides, to the end of the range: the bar ends there, and the tile stands at the far end; on an axis of
+   which smaller values are harder that is the left one. Of b luck is all there is. */
+static void where_luck_decides_no_bar_is_drawn(void **state) {
+    (void)state;
+    start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,30,,falls\na,nncg,,h,,20,40,sinks\nb,engine,,r,,,,falls\n"
+                                        "b,nncg,,r,,60,50,sinks\nc,engine,,r,,60,,falls\nc,nncg,,r,,80,50,sinks\n");
+    draw();
+    char program[2048];
+    snprintf(program, sizeof program,
+             "%sdef ends(rgb): return [sorted({float(p.split(',')[0]) for p in bar.split()}) for bar in\n"
+             "    re.findall(\"polygon fill = 'rgb.%%s.' points = '([^']*)'\" %% rgb, read('borders'))]\n"
+             "bars, falls, sinks = ends('163, 203, 229'), ends('238, 154,  46'), ends('207, 100,  20')\n"
+             "expect(len(bars), 2 + 1 + 2 + 2, 'bars and their samples')\n"
+             "assert bars[0][1] < falls[0][0] and bars[0][0] == bars[1][0], (bars, falls)\n"
+             "assert sinks[0][1] <= falls[0][0], 'the far end is beyond the last value'\n"
+             "assert falls[2][1] < sinks[2][0] + 1 < bars[3][0] < bars[4][0], (bars, falls, sinks)\n",
+             SVG_FUNCTIONS);
+    run_python(program, temporary_folder);
+}
+
+/* Of nothing but what has no values, of one value, of zero and below, of forty decades. */
+static void odd_borders_are_drawn(void **state) {
+    (void)state;
+    static const char *const rows[] = {"a,engine,,x,,,,not applicable\n", "a,engine,,x,,0,,settles\n",
+                                       "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
+                                       "a,engine,,x,,-1e30,1e30,falls\n", "a,engine,,x,,3,3.0000001,falls\n"};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char borders[256];
+        snprintf(borders, sizeof borders, BORDERS "%s", rows[i]);
+        start_afresh(MAPS ONE_CELL, borders);
+        draw();
+    }
+}
+
+static void borders_out_of_order_are_refused_with_their_place(void **state) {
+    (void)state;
+    static const struct {
+        const char *rows, *message;
+    } cases[] = {
+        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at must be a number"},
+        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: unknown verdict"},
+        {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
+        {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
+        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' does not fit the values"},
+        {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have a value"},
+        {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n", "stability.csv:3:1: error: another parameter than study s"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char borders[1024];
+        snprintf(borders, sizeof borders, BORDERS "%s", cases[i].rows);
+        expect_refused(MAPS ONE_CELL, borders, cases[i].message);
+    }
+}
+
+static char *read_file(const char *name, size_t *size) {
+    Error error = {0};
+    char *data = file_read(temporary_path(name), 1 << 24, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+static void the_same_tables_give_the_same_files(void **state) {
+    (void)state;
+    static const char *const names[] = {"map-grid.png", "map-grid.svg", "map-grid.txt",
+                                        "borders.png",  "borders.svg",  "borders.txt"};
+    char *maps = make_map(2, 4, 4), *data[2][6];
+    size_t size[2][6];
+    for (int run = 0; run < 2; run++) {
+        start_afresh(maps, BORDERS ONE_BORDER);
+        draw();
+        for (int i = 0; i < 6; i++) data[run][i] = read_file(names[i], &size[run][i]);
+    }
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(size[0][i], size[1][i]);
+        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
+        free(data[0][i]);
+        free(data[1][i]);
+    }
+    free(maps);
+}
+
+/* Studies without a map, and a map alone. */
+static void a_table_without_rows_has_no_figure(void **state) {
+    (void)state;
+    start_afresh(MAPS, BORDERS ONE_BORDER);
+    draw();
+    assert_int_equal(access(temporary_path("borders.png"), R_OK), 0);
+    start_afresh(MAPS ONE_CELL, BORDERS);
+    draw();
+    assert_int_equal(access(temporary_path("borders.png"), F_OK), -1);
+    assert_int_equal(access(temporary_path("map-stack.png"), R_OK), 0);
+}
+
+int main(void) {
+    temporary_path(""); /* makes the folder */
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(borders_are_drawn_as_the_table_has_them),
+        cmocka_unit_test(bars_end_at_the_next_border),
+        cmocka_unit_test(where_luck_decides_no_bar_is_drawn),
+        cmocka_unit_test(odd_borders_are_drawn),
+        cmocka_unit_test(borders_out_of_order_are_refused_with_their_place),
+        cmocka_unit_test(the_same_tables_give_the_same_files),
+        cmocka_unit_test(a_table_without_rows_has_no_figure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
