@@ -20,15 +20,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { REST_SWEEPS = 20 };
+enum { REST_SWEEPS = 20, MORE_SWEEPS = 48 };
 
-/* m/s, RMS over the contacts: the gaps from which on a step goes on, after the network and its sweeps, and where there
-   was little to do from the start: there all bodies are to be right. */
-static const float near_enough = 0.1f, calm_enough = 0.015f;
+/* The gap from which on a step goes on after the network and its sweeps; and, of it, the share that is still too much
+   where there was little to do from the start: there all bodies are to be right. */
+static const float near_default = 0.1f; /* m/s, RMS over the contacts */
+static const float calm_share = 0.15f;
 
 /* What is done of a step: as the method momentum does, `rest` sweeps; where the bomb is there, of the training's mass, but
-   the gap is below the gate, half as many, and as many again where they do not do; the network, `after` sweeps, and `rest`
-   where they do not do. */
+   the gap is below the gate, half as many, and as many again, twice at most, while that is not near enough; the network,
+   `after` sweeps, and up to MORE_SWEEPS more while that is not. */
 typedef enum Way { BY_MOMENTUM, CALM, BY_NETWORK } Way;
 
 /* What is pushed beyond it cannot be taken back: rounding alone would leave more than 1e-3 m/s. */
@@ -39,16 +40,20 @@ typedef struct SceneNet {
     const SlotNetwork *network; /* that one, or another's */
     Momentum momentum;
     SceneAnswer answer;
+    float near;                           /* m/s */
     int after, rest, half;                /* sweeps with the network, and without */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_plain;                     /* no factor of them does anything */
     float *rest_factors, *half_factors;   /* [rest], [half] */
+    const float *more_factors;            /* [more] of those that a step goes on by: one of the above */
+    int more;
 } SceneNet;
 
 static const SettingSpec settings[] = {
     {"network", "file of the trained network (the scene's own)"},
     {"after", "sweeps after the network (as it was trained for)"},
-    {"rest", "sweeps with momentum where it is not asked, or does not get near (20; half where calm)"},
+    {"near", "m/s that contacts may miss their aim by before more sweeps follow (0.1)"},
+    {"rest", "sweeps with momentum where it is not asked (20; half where calm)"},
     {NULL, NULL}};
 
 static void destroy(void *state) {
@@ -74,9 +79,12 @@ static void choose_factors(SceneNet *solver) {
                                                                     : 0;
     for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_by_hand(s, solver->rest);
     for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_by_hand(s, solver->half);
+    learned &= solver->after > 0;
+    solver->more_factors = learned ? solver->after_factors : solver->rest_factors;
+    solver->more = learned ? solver->after : solver->rest;
 }
 
-static SceneNet *make(const SlotNetwork *network, int after, int rest, Error *error) {
+static SceneNet *make(const SlotNetwork *network, int after, int rest, float near, Error *error) {
     SceneNet *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         error_memory(error, "scene-net");
@@ -85,6 +93,7 @@ static SceneNet *make(const SlotNetwork *network, int after, int rest, Error *er
     solver->network = network;
     solver->after = after;
     solver->rest = rest;
+    solver->near = near;
     solver->half = (rest + 1) / 2;
     solver->rest_factors = malloc((size_t)rest * sizeof *solver->rest_factors);
     solver->half_factors = malloc((size_t)solver->half * sizeof *solver->half_factors);
@@ -106,10 +115,12 @@ static void *create(const Settings *chosen, Error *error) {
     SlotNetwork *network = slot_network_read(path, error);
     if (network == NULL) return NULL;
     int after = network->sweeps, rest = REST_SWEEPS;
+    float near = near_default;
     SceneNet *solver = NULL;
     if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &after, error) &&
-        settings_int(chosen, "rest", 1, SWEEPS_MAX, &rest, error))
-        solver = make(network, after, rest, error);
+        settings_int(chosen, "rest", 1, SWEEPS_MAX, &rest, error) &&
+        settings_float(chosen, "near", 0, 1e6f, &near, error))
+        solver = make(network, after, rest, near, error);
     if (solver == NULL)
         slot_network_destroy(network);
     else
@@ -143,16 +154,26 @@ static bool run_after(SceneNet *solver) {
                                : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* What is left tells how near a step is; what is not near yet goes on. */
+/* What is left tells how near a step is: as many sweeps again while that is above `near`, `most` in all. */
+static bool go_on(SceneNet *solver, const ContactProblem *problem, float near, const float *factors, int count,
+                  int most) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    for (int done = 0; done < most && impact_gap_reaches(sweeps, problem->contact_count, near); done += count)
+        if (!sweeps_run_momentum(sweeps, factors, count)) return false;
+    return true;
+}
+
 static bool run(SceneNet *solver, const ContactProblem *problem, Way way) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    if (way == CALM)
-        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) &&
-               (!impact_gap_reaches(sweeps, problem->contact_count, calm_enough) ||
-                sweeps_run_momentum(sweeps, solver->half_factors, solver->half));
-    if (way == BY_NETWORK) {
-        if (!run_after(solver)) return false;
-        if (!impact_gap_reaches(sweeps, problem->contact_count, near_enough)) return true;
+    const int half = solver->half;
+    switch (way) {
+    case CALM:
+        return sweeps_run_momentum(sweeps, solver->half_factors, half) &&
+               go_on(solver, problem, calm_share * solver->near, solver->half_factors, half, 2 * half);
+    case BY_NETWORK:
+        return run_after(solver) &&
+               go_on(solver, problem, solver->near, solver->more_factors, solver->more, MORE_SWEEPS);
+    case BY_MOMENTUM: break;
     }
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
 }
@@ -207,6 +228,6 @@ const ContactSolverKind solver_scene_net = {
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, Error *error) {
     solver->kind = &solver_scene_net;
-    solver->state = make(network, network->sweeps, REST_SWEEPS, error);
+    solver->state = make(network, network->sweeps, REST_SWEEPS, near_default, error);
     return solver->state != NULL;
 }
