@@ -135,9 +135,9 @@ static void check_rows(Trial *trial, const PackedRows *packed, const float *grad
 
 static void check_biases(Trial *trial, float *biases, const float *gradient, int count, uint32_t *seed, Tally *tally) {
     const float *part = gradient + (biases - trial->network->parameters);
-    check_block(trial, biases, part, count, -1, 4e-3, tally);
+    check_block(trial, biases, part, count, -1, 2e-3, tally);
     for (int i = 0; i < OF_EACH_BLOCK; i++)
-        check_block(trial, biases, part, count, (int)uniform(seed, 0, (float)count - 0.01f), 4e-3, tally);
+        check_block(trial, biases, part, count, (int)uniform(seed, 0, (float)count - 0.01f), 2e-3, tally);
 }
 
 static void check_parameters(Trial *trial, const float *gradient, uint32_t *seed, Tally tallies[6]) {
