@@ -64,7 +64,8 @@ double picture_apart(const Picture *picture, int frame) {
     return largest;
 }
 
-void picture_draw(const Picture *picture, int frame, Drawing *drawing) {
+void picture_draw(const Picture *picture, Moment moment, Drawing *drawing) {
+    const int frame = moment.frame;
     for (int i = 0; i < picture->count; i++) panel_draw_still(picture, i, frame, drawing);
     drawing->still_shapes = drawing->shape_count;
     caption_header(picture, frame, drawing);

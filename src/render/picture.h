@@ -3,6 +3,7 @@
 #pragma once
 #include "render/camera.h"
 #include "render/layout.h"
+#include "render/moment.h"
 
 /* All that is decided once for a sequence, from the whole run, so that nothing moves between frames but
  * bodies. */
@@ -23,8 +24,8 @@ bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, 
 /* Takes over what the options say in words. */
 void picture_caption(Picture *picture, const RenderOptions *options);
 
-/* Puts a frame into a cleared drawing. */
-void picture_draw(const Picture *picture, int frame, Drawing *drawing);
+/* Puts a moment into a cleared drawing. */
+void picture_draw(const Picture *picture, Moment moment, Drawing *drawing);
 
 /* The frame that a panel shows: its last one once it has ended. */
 int picture_panel_frame(const Picture *picture, int panel, int frame);

@@ -55,28 +55,29 @@ static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *
            canvas_paint(renderer->canvas, &renderer->drawing, PAGE, changed, image, error);
 }
 
-static bool compose(Renderer *renderer, int frame, Error *error) {
+static bool compose(Renderer *renderer, Moment moment, Error *error) {
+    const int frame = moment.frame;
     if (frame < 0 || frame >= renderer->picture.frames)
         return error_input(error, "render", "frame %d asked for; the frames are 0 to %d", frame,
                            renderer->picture.frames - 1);
     drawing_clear(&renderer->drawing);
-    picture_draw(&renderer->picture, frame, &renderer->drawing);
+    picture_draw(&renderer->picture, moment, &renderer->drawing);
     return true;
 }
 
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
     renderer->follows = false;
-    return compose(renderer, frame, error) && paint(renderer, NULL, image, error);
+    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
 }
 
-bool renderer_draw_next(Renderer *renderer, int frame, Image *image, const bool **changed, Error *error) {
+bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
     const Drawing nothing = {0}, before = renderer->drawing;
     bool follows = renderer->follows;
     renderer->follows = false; /* until all has gone well */
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
-    if (!compose(renderer, frame, error)) return false;
+    if (!compose(renderer, moment, error)) return false;
     bool part =
         damage_find(follows ? &renderer->before : &nothing, &renderer->drawing, image->height, renderer->changed);
     renderer->follows = paint(renderer, part ? renderer->changed : NULL, image, error);

@@ -51,7 +51,7 @@ static bool draw_frames(const WorkerJob *job, Renderer *renderer, const FrameSin
     const bool *changed;
     for (int frame = job->first; frame <= job->last; frame++) {
         fill_texts(&texts, job->picture, frame);
-        if (!renderer_draw_next(renderer, frame, image, &changed, error) ||
+        if (!renderer_draw_next(renderer, moment_stored(frame), image, &changed, error) ||
             !sink->write(sink->context, frame, image, changed, texts.entries, TEXTS, error))
             return false;
         if (!report(pipe, error)) return false; /* the parent has gone, or wants no more */

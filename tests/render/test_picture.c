@@ -201,7 +201,7 @@ static void captions_do_not_jump(void **state) {
     int left = 0;
     for (int frame = 0; frame < 1010; frame += 7) {
         drawing_clear(&drawing);
-        picture_draw(&picture, frame, &drawing);
+        picture_draw(&picture, moment_stored(frame), &drawing);
         if (frame == 0) left = drawing.glyphs[0].box[0];
         assert_int_equal(drawing.glyphs[0].box[0], left); /* the "t" of "t = 0.000 s" */
     }
@@ -231,7 +231,7 @@ static void hostile_names_do_no_harm(void **state) {
         Drawing drawing = {0};
         Error error = {0};
         assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
-        picture_draw(&picture, 3, &drawing);
+        picture_draw(&picture, moment_stored(3), &drawing);
         for (size_t i = 0; i < drawing.glyph_count; i++) {
             const int32_t *box = drawing.glyphs[i].box;
             assert_true(box[0] >= 0 && box[0] + box[2] <= 400 && box[1] >= 0 && box[1] + box[3] <= 300);

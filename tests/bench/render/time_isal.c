@@ -133,7 +133,7 @@ static bool draw_range(const Picture *picture, const Job *job, bool own, int fir
         return false;
     bool ok = true;
     for (int frame = first; ok && frame < behind; frame++)
-        ok = renderer_draw_next(renderer, frame, image, &changed, error) &&
+        ok = renderer_draw_next(renderer, moment_stored(frame), image, &changed, error) &&
              frames.write(frames.context, frame, image, changed, NULL, 0, error);
     ok = frames.close(frames.context, error) && ok;
     image_destroy(image);
