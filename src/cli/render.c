@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
 #include "cli/options.h"
+#include "cli/render_look.h"
 #include "common/file.h"
 #include "render/video.h"
 
@@ -26,11 +27,13 @@ typedef struct Options {
     int input_count;
     const char *output, *size, *frames, *video, *png, *jobs, *context;
     SetOptions set;
+    RenderLookOptions look;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
     Options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->look; break;
     case 'o': options->output = value; break;
     case SIZE: options->size = value; break;
     case FRAMES: options->frames = value; break;
@@ -52,6 +55,8 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return 0;
 }
 
+static const struct argp_child children[] = {{&render_look_argp, 0, NULL, 0}, {0}};
+
 static const struct argp argp = {
     option_table,
     parse,
@@ -59,7 +64,7 @@ static const struct argp argp = {
     "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
     "run by the engine and by the pair-net that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
-    NULL,
+    children,
     NULL,
     NULL};
 
@@ -82,7 +87,8 @@ static bool choose_png(const char *name, bool *small, Error *error) {
 
 static bool read_options(const Options *options, RenderOptions *render, Error *error) {
     *render = draw_panels_defaults(options->output);
-    return choose_context(options->context, &render->context, error) &&
+    return render_look_read(&options->look, &render->look, error) &&
+           choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
@@ -92,11 +98,12 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
            (options->video == NULL || video_check(options->video, render->width, render->height, error));
 }
 
-static bool render_panels(const Options *options, const Panels *panels, RenderOptions *render, Error *error) {
+static bool render_panels(Options *options, const Panels *panels, RenderOptions *render, Error *error) {
     int last = panels_last_frame(panels);
     if (render->first > last || render->last > last)
         return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
-    if (!file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+    if (!render_look_apply(&options->look, &render->look, panels, error) ||
+        !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, options->video, error))
         return false;
     printf("%d frames -> %s/frame_%06d.png ... frame_%06d.png\n", render->last - render->first + 1, render->directory,

@@ -2,7 +2,9 @@
 #include "render/panel.h"
 
 #include "render/grid.h"
-#include "render/style.h"
+#include "render/marks.h"
+#include "render/pose.h"
+#include "trajectory/trajectory_states.h"
 
 #include <math.h>
 
@@ -12,15 +14,11 @@ static const double LEAST_OUTLINE = 1.0;    /* pixels */
 static const double LEAST_OUTLINED = 5.0;   /* pixels; a smaller box would be all outline */
 static const double LARGEST_CORNER = 0.009; /* of the panel's shorter side */
 static const double LARGEST_OUTLINE = 0.0026;
-
-static const BodyColors body_colors[RENDER_PANELS_MAX] = {
-    {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the physics, or whatever comes first */
-    {0xE69F00, 0x7A4F00, 0xFFD47A}, /* orange */
-    {0x009E73, 0x004D38, 0x5CCBAA}, /* bluish green */
-    {0xCC79A7, 0x6E2F52, 0xEBBBD5}, /* reddish purple */
-    {0x56B4E9, 0x1D5F87, 0xB5DFF7}, /* sky blue */
-    {0xD8CB2B, 0x6B640E, 0xF4EDA0}, /* yellow, darkened to stand out from white */
-};
+static const double GHOST = 0.0034;     /* thickness of an outline without a box */
+static const double LEAST_GHOST = 1.6;  /* pixels */
+static const double NESTED = 1.2;       /* thicknesses that all outlines show below the last, at most */
+static const double LEAST_NESTED = 0.7; /* the same of one below the next, where there are few */
+static const double PALE = 0.55;        /* of the panel's colour in what lies behind outlines */
 
 /* A box of the width and height given in pixels, upright in the middle of nowhere. */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
@@ -38,12 +36,21 @@ static Shape styled_box(const Picture *picture, double width, double height, con
                    .band_color = colors->band};
 }
 
-static void place(Shape *shape, const Picture *picture, const Rect *panel, Vec2 position, double angle) {
+Point panel_point(const Picture *picture, int panel, double x, double y) {
     const Camera *camera = &picture->camera;
-    shape->x = panel->left + camera->left + camera->scale * (double)position.x;
-    shape->y = panel->top + camera->top - camera->scale * (double)position.y;
-    shape->cosine = cos(angle);
-    shape->sine = sin(angle);
+    const Rect *rect = &picture->layout.panels[panel];
+    return (Point){rect->left + camera->left + camera->scale * x, rect->top + camera->top - camera->scale * y};
+}
+
+double panel_side(const Picture *picture) {
+    Rect panel = picture->layout.panels[0];
+    return fmin(panel.right - panel.left, panel.bottom - panel.top);
+}
+
+static void place(Shape *shape, const Picture *picture, int panel, const Pose *pose) {
+    Point at = panel_point(picture, panel, pose->x, pose->y);
+    shape->x = at.x, shape->y = at.y;
+    shape->cosine = cos(pose->angle), shape->sine = sin(pose->angle);
 }
 
 static void draw_part(Shape part, const Shape *whole, double up, const Rect *clip, Drawing *drawing) {
@@ -53,84 +60,148 @@ static void draw_part(Shape part, const Shape *whole, double up, const Rect *cli
 }
 
 /* A dot in a ring, and a bar from it towards the local top. */
-static void draw_target(const Shape *bomb, double radius, const Rect *clip, Drawing *drawing) {
-    uint32_t light = BOMB.band;
+static void draw_target(const Shape *bomb, double radius, uint32_t light, const Rect *clip, Drawing *drawing) {
     Shape bar = {.half_width = radius / 7, .half_height = 0.3 * radius, .fill = light};
     Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = radius / 3};
     Shape dot = {.half_width = radius / 3, .half_height = radius / 3, .radius = radius / 3, .fill = light};
-    ring.fill = BOMB.fill, ring.line = light;
+    ring.fill = bomb->fill, ring.line = light;
     draw_part(bar, bomb, 1.2 * radius, clip, drawing);
     draw_part(ring, bomb, 0, clip, drawing);
     draw_part(dot, bomb, 0, clip, drawing);
 }
 
-static void draw_body(const Picture *picture, int panel, int frame, int body, Drawing *drawing) {
-    static const BodyColors ground = {GROUND, GROUND_LINE, GROUND};
-    const Trajectory *trajectory = picture->panels[panel];
+/* Of a colour that tells the distance, with a mark on it to be seen on the lightest and the darkest. */
+static BodyColors distance_colors(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    const Trajectory *first = picture->panels[0], *other = picture->panels[run];
+    uint32_t line = theme->bodies[run].line;
+    if (moment.frame >= first->frames || moment.frame >= other->frames)
+        return (BodyColors){theme->ground, line, theme->ground_line};
+    Pose a = pose_at(first, moment, body), b = pose_at(other, moment, body);
+    double share = scales_share(&picture->scales, sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)));
+    uint32_t fill = theme_ramp(theme, share), white = 0xFFFFFF;
+    bool is_light = (fill >> 8 & 255) > 140; /* green counts most */
+    return (BodyColors){fill, line, is_light ? theme_mix(fill, 0, 0.6) : theme_mix(fill, white, 0.7)};
+}
+
+static BodyColors colors_of(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    const Trajectory *trajectory = picture->panels[run];
+    if (trajectory->fixed[body]) return (BodyColors){theme->ground, theme->ground_line, theme->ground};
+    if (picture_colors_distance(picture, run)) return distance_colors(picture, run, moment, body);
+    BodyColors colors = body == trajectory->bomb ? theme->bomb : theme->bodies[run];
+    if (picture->look.compare != LOOK_OVERLAY) return colors;
+    return (BodyColors){theme_mix(colors.fill, theme->panel, PALE), colors.line,
+                        theme_mix(colors.band, theme->panel, PALE)};
+}
+
+static Shape body_shape(const Picture *picture, int panel, int run, Moment moment, int body, const BodyColors *colors) {
+    const Trajectory *trajectory = picture->panels[run];
+    double scale = picture->camera.scale;
+    Shape shape =
+        styled_box(picture, scale * (double)trajectory->size[body].x, scale * (double)trajectory->size[body].y, colors);
+    Pose pose = pose_at(trajectory, moment, body);
+    place(&shape, picture, panel, &pose);
+    return shape;
+}
+
+static void draw_body(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
+    const Trajectory *trajectory = picture->panels[run];
     const Rect *clip = &picture->layout.panels[panel];
-    size_t i = (size_t)frame * (size_t)trajectory->bodies + (size_t)body;
-    double width = picture->camera.scale * (double)trajectory->size[body].x;
-    double height = picture->camera.scale * (double)trajectory->size[body].y;
     bool fixed = trajectory->fixed[body], bomb = body == trajectory->bomb;
-    const BodyColors *colors = fixed ? &ground : bomb ? &BOMB : &body_colors[panel];
-    Shape shape = styled_box(picture, width, height, colors);
-    place(&shape, picture, clip, trajectory->position[i], (double)trajectory->angle[i]);
+    BodyColors colors = colors_of(picture, run, moment, body);
+    Shape shape = body_shape(picture, panel, run, moment, body, &colors);
     if (fixed) shape.radius = 0;
     if (fixed || bomb) shape.band = 0;
     drawing_add_shape(drawing, &shape, clip);
-    if (bomb) draw_target(&shape, TARGET * fmin(width, height), clip, drawing);
+    double side = 2 * fmin(shape.half_width, shape.half_height);
+    if (bomb) draw_target(&shape, TARGET * side, colors.band, clip, drawing);
 }
 
-static void draw_bodies(const Picture *picture, int panel, int frame, bool fixed, Drawing *drawing) {
-    const Trajectory *trajectory = picture->panels[panel];
+static void draw_bodies(const Picture *picture, int panel, int run, Moment moment, bool fixed, Drawing *drawing) {
+    const Trajectory *trajectory = picture->panels[run];
     for (int body = 0; body < trajectory->bodies; body++)
         if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
-            draw_body(picture, panel, picture_panel_frame(picture, panel, frame), body, drawing);
+            draw_body(picture, panel, run, moment, body, drawing);
 }
 
-static void draw_frame(const Rect *r, int thickness, Drawing *drawing) {
+/* The bomb's own outline is in its colour, and so is that of its ghost. Of several outlines in one place the later are
+   thinner, and all can be seen. */
+static void draw_ghosts(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
+    const Trajectory *trajectory = picture->panels[run];
+    int above = picture->look.compare == LOOK_OVERLAY ? picture->count - 1 - run : 0;
+    double thickness =
+        fmax(GHOST * panel_side(picture), LEAST_GHOST) * (1 + above * fmin(LEAST_NESTED, NESTED / picture->count));
+    for (int body = 0; body < trajectory->bodies; body++) {
+        if (trajectory->fixed[body]) continue;
+        const BodyColors *colors = body == trajectory->bomb ? &picture->theme->bomb : &picture->theme->bodies[run];
+        Shape shape = body_shape(picture, panel, run, moment, body, colors);
+        shape.hollow = true;
+        shape.line = picture_colors_distance(picture, run) ? colors_of(picture, run, moment, body).fill : colors->fill;
+        shape.outline = thickness;
+        drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
+    }
+}
+
+static void draw_frame(const Rect *r, int thickness, uint32_t color, Drawing *drawing) {
     int left = r->left - thickness, right = r->right + thickness;
-    drawing_add_rect(drawing, (Rect){left, r->top - thickness, right, r->top}, FRAME);
-    drawing_add_rect(drawing, (Rect){left, r->bottom, right, r->bottom + thickness}, FRAME);
-    drawing_add_rect(drawing, (Rect){left, r->top, r->left, r->bottom}, FRAME);
-    drawing_add_rect(drawing, (Rect){r->right, r->top, right, r->bottom}, FRAME);
+    drawing_add_rect(drawing, (Rect){left, r->top - thickness, right, r->top}, color);
+    drawing_add_rect(drawing, (Rect){left, r->bottom, right, r->bottom + thickness}, color);
+    drawing_add_rect(drawing, (Rect){left, r->top, r->left, r->bottom}, color);
+    drawing_add_rect(drawing, (Rect){r->right, r->top, right, r->bottom}, color);
 }
 
-void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *drawing) {
+void panel_draw_still(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Rect *rect = &picture->layout.panels[panel];
-    drawing_add_rect(drawing, *rect, PANEL);
+    drawing_add_rect(drawing, *rect, picture->theme->panel);
     grid_draw_lines(picture, panel, drawing);
-    draw_bodies(picture, panel, frame, true, drawing);
-    draw_frame(rect, picture->layout.hairline, drawing);
+    draw_bodies(picture, panel, picture_run(picture, panel), moment, true, drawing);
+    draw_frame(rect, picture->layout.hairline, picture->theme->frame, drawing);
     grid_draw_axes(picture, panel, drawing);
 }
 
-void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing) {
-    int bomb = picture->panels[panel]->bomb;
-    draw_bodies(picture, panel, frame, false, drawing);
-    if (bomb >= 0) draw_body(picture, panel, picture_panel_frame(picture, panel, frame), bomb, drawing);
+/* The runs whose outlines lie over the panel's bodies. */
+static void draw_outlines(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    const RenderLook *look = &picture->look;
+    if (look->compare == LOOK_OVERLAY)
+        for (int run = 1; run < picture->count; run++) draw_ghosts(picture, panel, run, moment, drawing);
+    else if (picture_run(picture, panel) > 0 && (look->compare == LOOK_DIFFERENCE || (look->show & LOOK_GHOSTS) != 0))
+        draw_ghosts(picture, panel, 0, moment, drawing);
 }
 
-int panel_count_unseen(const Picture *picture, int panel, int frame) {
-    const Trajectory *trajectory = picture->panels[panel];
+void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    int run = picture_run(picture, panel), bomb = picture->panels[run]->bomb;
+    marks_draw_below(picture, panel, moment, drawing);
+    draw_bodies(picture, panel, run, moment, false, drawing);
+    if (bomb >= 0) draw_body(picture, panel, run, moment, bomb, drawing);
+    draw_outlines(picture, panel, moment, drawing);
+    marks_draw_above(picture, panel, moment, drawing);
+}
+
+int panel_count_unseen(const Picture *picture, int panel, Moment moment) {
+    int run = picture_run(picture, panel), count = 0;
+    const Trajectory *trajectory = picture->panels[run];
     const Rect *rect = &picture->layout.panels[panel];
-    int shown = picture_panel_frame(picture, panel, frame), count = 0;
+    int frame = pose_moment(trajectory, moment).frame;
     for (int body = 0; body < trajectory->bodies; body++) {
-        if (trajectory->fixed[body] || !trajectory_has(trajectory, shown, body)) continue;
-        Shape shape = {0};
-        place(&shape, picture, rect, trajectory->position[(size_t)shown * (size_t)trajectory->bodies + (size_t)body],
-              0);
-        bool inside = shape.x >= rect->left && shape.x < rect->right && shape.y >= rect->top && shape.y < rect->bottom;
+        if (trajectory->fixed[body] || !trajectory_has(trajectory, frame, body)) continue;
+        Pose pose = pose_at(trajectory, moment, body);
+        Point at = panel_point(picture, panel, pose.x, pose.y);
+        bool inside = at.x >= rect->left && at.x < rect->right && at.y >= rect->top && at.y < rect->bottom;
         count += !inside;
     }
     return count;
 }
 
-int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline, Drawing *drawing) {
-    int side = picture->layout.title.pixels * 3 / 4;
-    Shape shape = styled_box(picture, side, side, &body_colors[panel]);
+int panel_draw_swatch(const Picture *picture, int run, bool hollow, int left, int baseline, int pixels,
+                      Drawing *drawing) {
+    int side = pixels * 3 / 4;
+    const BodyColors *colors = &picture->theme->bodies[run];
+    Shape shape = styled_box(picture, side, side, colors);
     shape.x = left + side / 2.0;
     shape.y = baseline - side / 2.0;
+    shape.hollow = hollow;
+    if (hollow) shape.line = colors->fill, shape.outline = fmax(2, side / 8.0);
     drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
     return left + side;
 }
