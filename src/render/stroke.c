@@ -70,6 +70,7 @@ void stroke_dashed(Drawing *drawing, Point from, Point to, Pen *pen, const Rect 
                  parts[] = {pen->dash.on * t, pen->dash.off * t, pen->dash.on2 * t, pen->dash.off2 * t};
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), done = 0;
     double period = parts[0] + parts[1] + parts[2] + parts[3];
+    if (!isfinite(length)) return;
     if (!(period > 0)) {
         stroke_line(drawing, from, to, t, pen->color, clip);
         return;

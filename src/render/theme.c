@@ -71,9 +71,9 @@ uint32_t theme_mix(uint32_t from, uint32_t to, double share) {
 }
 
 uint32_t theme_ramp(const Theme *theme, double share) {
-    /* Oklab: lightness 0.95 to 0.27, hue 104 to 295 degrees, chroma 0.135 or what sRGB can show. */
-    static const uint32_t stops[] = {0xFDF382, 0xC7E77F, 0x8DD886, 0x4CC791, 0x0DAF9B, 0x05959B,
-                                     0x047C95, 0x05638E, 0x094790, 0x28297B, 0x2F095F};
+    /* Oklab: hue 104 to 295 degrees, chroma 0.135 or what sRGB can show, each as light as CIE L* is to be. */
+    static const uint32_t stops[] = {0xFEF483, 0xC6E57E, 0x8AD482, 0x46C18C, 0x02A995, 0x0B8F95,
+                                     0x08778E, 0x005E89, 0x04438D, 0x272879, 0x2E085E};
     enum { LAST = sizeof stops / sizeof stops[0] - 1 };
     double at = LAST * (theme->ramp_near + (theme->ramp_far - theme->ramp_near) * fmin(fmax(share, 0), 1));
     int below = at < LAST - 1 ? (int)at : LAST - 1;
