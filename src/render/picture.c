@@ -45,10 +45,14 @@ bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, 
     return true;
 }
 
-void picture_caption(Picture *picture, const RenderOptions *options) {
+bool picture_dress(Picture *picture, const RenderOptions *options, Error *error) {
+    (void)error;
     picture->title = options->title;
     for (int i = 0; i < picture->count; i++) picture->notes[i] = options->notes[i];
+    return true;
 }
+
+void picture_free(Picture *picture) { (void)picture; }
 
 int picture_panel_frame(const Picture *picture, int panel, int frame) {
     int last = picture->panels[panel]->frames - 1;

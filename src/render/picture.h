@@ -21,8 +21,10 @@ typedef struct Picture {
 /* Refuses (ERROR_INPUT) what cannot be shown side by side. The trajectories must outlive the picture. */
 bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error);
 
-/* Takes over what the options say in words. */
-void picture_caption(Picture *picture, const RenderOptions *options);
+/* Takes over the options' words and look. Refuses (ERROR_INPUT) a look that the runs do not have: a comparison of other
+   bodies, a bomb to follow where there is none. What it makes is freed by picture_free, also after an error. */
+bool picture_dress(Picture *picture, const RenderOptions *options, Error *error);
+void picture_free(Picture *picture);
 
 /* Puts a moment into a cleared drawing. */
 void picture_draw(const Picture *picture, Moment moment, Drawing *drawing);

@@ -4,11 +4,12 @@
 #pragma once
 #include "common/progress.h"
 #include "image/image.h"
+#include "render/look.h"
 #include "trajectory/trajectory.h"
 
 typedef enum RenderContext { RENDER_CONTEXT_AUTO, RENDER_CONTEXT_OSMESA, RENDER_CONTEXT_EGL } RenderContext;
 
-enum { RENDER_PANELS_MAX = 6, RENDER_LEAST_SIDE = 64, RENDER_LARGEST_SIDE = 8192, RENDER_JOBS_MAX = 256 };
+enum { RENDER_PANELS_MAX = LOOK_RUNS_MAX, RENDER_LEAST_SIDE = 64, RENDER_LARGEST_SIDE = 8192, RENDER_JOBS_MAX = 256 };
 
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_LEAST_SIDE .. RENDER_LARGEST_SIDE */
@@ -19,6 +20,7 @@ typedef struct RenderOptions {
     bool small;                           /* files as small as libpng can make them, which takes long */
     const char *title;                    /* at the head of the picture; NULL: the scene's name */
     const char *notes[RENDER_PANELS_MAX]; /* behind what solved a panel; NULL: none */
+    RenderLook look;                      /* zeroed: bodies side by side */
 } RenderOptions;
 
 /* Writes directory/frame_000000.png and on: all frames of the longest of 1 to 6 panels, or the range asked

@@ -11,6 +11,7 @@
 
 struct Renderer {
     Picture picture;
+    bool owns_picture;
     Context context;
     GlFunctions gl;
     Canvas *canvas;
@@ -45,8 +46,13 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
                           Error *error) {
     Picture picture;
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
-    picture_caption(&picture, options);
-    return renderer_create_planned(&picture, options, error);
+    Renderer *renderer = NULL;
+    if (picture_dress(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
+    if (renderer == NULL)
+        picture_free(&picture);
+    else
+        renderer->owns_picture = true;
+    return renderer;
 }
 
 /* `changed` is NULL where everything is to be painted. */
@@ -93,5 +99,6 @@ void renderer_destroy(Renderer *renderer) {
     drawing_free(&renderer->drawing);
     drawing_free(&renderer->before);
     free(renderer->changed);
+    if (renderer->owns_picture) picture_free(&renderer->picture);
     free(renderer);
 }

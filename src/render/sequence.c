@@ -142,9 +142,10 @@ bool render_sequence(const Trajectory *const *panels, int panel_count, const Ren
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error) ||
         !choose_range(options, &picture, &first, &last, error) || !file_make_directory(options->directory, error))
         return false;
-    picture_caption(&picture, options);
     int frames = last - first + 1;
     Sequence sequence = {.jobs = options->jobs < frames ? options->jobs : frames, .total = frames};
     WorkerJob job = {.picture = &picture, .options = options};
-    return draw_all(&sequence, &job, first, progress, error);
+    bool ok = picture_dress(&picture, options, error) && draw_all(&sequence, &job, first, progress, error);
+    picture_free(&picture);
+    return ok;
 }
