@@ -3,13 +3,6 @@
 
 #include "trajectory/trajectory_states.h"
 
-static int find_impact(const Trajectory *run) {
-    for (int step = 1; step < run->frames && run->bomb >= 0; step++)
-        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++)
-            if (run->contacts[i].a == run->bomb || run->contacts[i].b == run->bomb) return step;
-    return -1;
-}
-
 /* Looks no further than the earliest found yet. */
 static void find_apart(Events *events, const Trajectory *const *runs, int other) {
     const Trajectory *a = runs[0], *b = runs[other];
@@ -26,7 +19,7 @@ static void find_apart(Events *events, const Trajectory *const *runs, int other)
 Events events_find(const Trajectory *const *runs, int count) {
     Events events = {.impact = -1, .apart = -1, .run = -1, .body = -1};
     char what[256];
-    for (int i = 0; i < count && events.impact < 0; i++) events.impact = find_impact(runs[i]);
+    for (int i = 0; i < count && events.impact < 0; i++) events.impact = trajectory_impact(runs[i]);
     for (int i = 1; i < count; i++)
         if (!trajectory_different_worlds(runs[0], runs[i], what, sizeof what)) find_apart(&events, runs, i);
     return events;

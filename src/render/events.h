@@ -7,7 +7,7 @@
 #define EVENTS_APART 1e-3
 
 typedef struct Events {
-    int impact; /* first frame that a contact of the bomb led to, in the first run that has one; -1: none */
+    int impact; /* trajectory_impact() of the first run that has one; -1: none */
     int apart; /* first frame in which a body of another run is more than EVENTS_APART from the first run's; -1: none */
     int run, body; /* whose */
 } Events;

@@ -9,7 +9,14 @@
 
 typedef enum RenderContext { RENDER_CONTEXT_AUTO, RENDER_CONTEXT_OSMESA, RENDER_CONTEXT_EGL } RenderContext;
 
-enum { RENDER_PANELS_MAX = LOOK_RUNS_MAX, RENDER_LEAST_SIDE = 64, RENDER_LARGEST_SIDE = 8192, RENDER_JOBS_MAX = 256 };
+enum {
+    RENDER_PANELS_MAX = LOOK_RUNS_MAX,
+    RENDER_LEAST_SIDE = 64,
+    RENDER_LARGEST_SIDE = 8192,
+    RENDER_JOBS_MAX = 256,
+    RENDER_SLOW_MAX = 16, /* times */
+    RENDER_HOLD_MAX = 60  /* s */
+};
 
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_LEAST_SIDE .. RENDER_LARGEST_SIDE */
@@ -21,14 +28,31 @@ typedef struct RenderOptions {
     const char *title;                    /* at the head of the picture; NULL: the scene's name */
     const char *notes[RENDER_PANELS_MAX]; /* behind what solved a panel; NULL: none */
     RenderLook look;                      /* zeroed: bodies side by side */
+    int slow;                             /* times slower around the impact; 0, 1: nowhere */
+    double hold;                          /* s that the last frame stays */
+    bool title_card, end_card;            /* before and after the run */
+    bool resume;                          /* keep what an earlier, equal call has drawn */
 } RenderOptions;
 
-/* Writes directory/frame_000000.png and on: all frames of the longest of 1 to 6 panels, or the range asked
-   for; a shorter panel holds its last frame. Processes of its own draw, so that the caller keeps its
-   environment and threads. Progress counts frames; where it asks to stop, the frames begun are finished and
-   the error is "stopped" (ERROR_INPUT). */
+/* What became of a sequence. */
+typedef struct RenderResult {
+    int first, last;  /* numbers of the files */
+    bool all;         /* these are all there are */
+    int kept;         /* of them, found whole from an earlier call */
+    char why[256];    /* to resume, and nothing could be: why; else empty */
+    uint64_t *hashes; /* [last - first + 1], image_hash of each; to be freed by the caller */
+} RenderResult;
+
+/* Writes directory/frame_000000.png and on: the moments (moments.h) of the longest of 1 to 6 panels, or those of the range
+   asked for; a shorter panel holds its last frame. Without slow motion, hold and cards file k is frame k. Beside them
+   manifest.json (manifest.h) tells what was drawn. Processes of its own draw, so that the caller keeps its environment and
+   threads. Progress counts pictures; where it asks to stop, those begun are finished and the error is "stopped"
+   (ERROR_INPUT). `result` may be NULL.
+
+   To resume: pictures of an earlier call, ended or killed, that are there and whole, with the pixels and the texts that
+   they had, stay; all others are drawn. Where that call was of other runs, options or another version, that is all. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     const Progress *progress, Error *error);
+                     RenderResult *result, const Progress *progress, Error *error);
 
 typedef struct Renderer Renderer;
 

@@ -67,12 +67,12 @@ static void any_number_of_jobs_writes_the_same_files(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions one = options_for(temporary_path("one/deep"), 1);
-    assert_ok(render_sequence(panels, 2, &one, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &one, NULL, NULL, &error), error);
     assert_int_equal(count_files(one.directory), FRAMES);
     for (int jobs = 2; jobs <= 20; jobs += 9) {
         RenderOptions many = options_for(temporary_path("many"), jobs);
         many.context = jobs == 11 ? RENDER_CONTEXT_EGL : RENDER_CONTEXT_OSMESA;
-        assert_ok(render_sequence(panels, 2, &many, NULL, &error), error);
+        assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
         assert_int_equal(count_files(many.directory), FRAMES);
         for (int frame = 0; frame < FRAMES; frame++)
             assert_same_file(frame_path(one.directory, frame), frame_path(many.directory, frame));
@@ -84,7 +84,7 @@ static void a_sequence_holds_the_frames_of_the_renderer(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("range"), 2);
     options.first = 3, options.last = 7;
-    assert_ok(render_sequence(panels, 2, &options, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     assert_int_equal(count_files(options.directory), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     Image *image = image_create(options.width, options.height, &error);
@@ -111,7 +111,7 @@ static void frames_tell_their_origin(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("texts"), 1);
     options.first = options.last = FRAMES - 1;
-    assert_ok(render_sequence(panels, 2, &options, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     const char *path = frame_path(options.directory, FRAMES - 1);
     char hashes[64];
     snprintf(hashes, sizeof hashes, "%016llx | %016llx",
@@ -144,7 +144,7 @@ static void progress_counts_the_frames(void **state) {
     Error error = {0};
     Listener listener = {.stop_at = 1000};
     RenderOptions options = options_for(temporary_path("progress"), 3);
-    assert_ok(render_sequence(panels, 2, &options, &(Progress){listen_to, &listener}, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error), error);
     assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
 }
 
@@ -156,7 +156,7 @@ static void a_sequence_can_be_stopped(void **state) {
     panels[0] = runs[0] = run_make("engine", 2000);
     Listener listener = {.stop_at = 5};
     RenderOptions options = options_for(temporary_path("stopped"), 3);
-    assert_false(render_sequence(panels, 2, &options, &(Progress){listen_to, &listener}, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error));
     assert_error(error, ERROR_INPUT, "stopped");
     assert_true(count_files(options.directory) < 1000);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
@@ -182,7 +182,7 @@ static void a_full_disk_is_told(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
     limit_files(100, SIG_IGN);
-    bool ok = render_sequence(panels, 2, &options, NULL, &error);
+    bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
     assert_error(error, ERROR_SYSTEM, "full/frame_00000");
@@ -195,7 +195,7 @@ static void a_killed_process_is_told(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
     limit_files(100, SIG_DFL);
-    bool ok = render_sequence(panels, 2, &options, NULL, &error);
+    bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
     assert_error(error, ERROR_SYSTEM, "a drawing process was ended by signal");
@@ -208,11 +208,11 @@ static void folders_that_cannot_be_written_are_refused(void **state) {
     const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
     assert_ok(file_write(file, "", 0, &error), error);
     RenderOptions options = options_for(inside, 1);
-    assert_false(render_sequence(panels, 2, &options, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_error(error, ERROR_SYSTEM, "file");
     error = (Error){0};
     options.directory = "/proc/frames";
-    assert_false(render_sequence(panels, 2, &options, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_error(error, ERROR_SYSTEM, "/proc");
 }
 
@@ -235,7 +235,7 @@ static void wrong_options_are_refused(void **state) {
         Error error = {0};
         RenderOptions options = wrong[i].options;
         options.directory = directory;
-        assert_false(render_sequence(panels, 2, &options, NULL, &error));
+        assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
         assert_error(error, ERROR_INPUT, wrong[i].text);
         assert_int_not_equal(access(directory, F_OK), 0);
     }
