@@ -122,4 +122,5 @@ void legend_draw(const Picture *picture, Drawing *drawing) {
     if (look->show & LOOK_VELOCITIES)
         add_arrow(&row, scales->named_velocity * scales->velocity, picture->theme->velocity, scales->named_velocity,
                   "m/s");
+    if (look->show & (LOOK_IMPULSES | LOOK_VELOCITIES)) add_text(&row, "(two heads: longer than shown)");
 }

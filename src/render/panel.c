@@ -125,8 +125,15 @@ static void draw_bodies(const Picture *picture, int panel, int run, Moment momen
             draw_body(picture, panel, run, moment, body, drawing);
 }
 
-/* The bomb's own outline is in its colour, and so is that of its ghost. Of several outlines in one place the later are
-   thinner, and all can be seen. */
+/* The bomb's outline is in its colour. */
+static uint32_t outline_color(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    if (picture_colors_distance(picture, run)) return colors_of(picture, run, moment, body).fill;
+    if (body == picture->panels[run]->bomb) return theme->bomb.fill;
+    return run == 0 ? theme->ghost : theme->bodies[run].fill;
+}
+
+/* Of several outlines in one place the later are thinner, and all can be seen. */
 static void draw_ghosts(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
     const Trajectory *trajectory = picture->panels[run];
     int above = picture->look.compare == LOOK_OVERLAY ? picture->count - 1 - run : 0;
@@ -134,10 +141,9 @@ static void draw_ghosts(const Picture *picture, int panel, int run, Moment momen
         fmax(GHOST * panel_side(picture), LEAST_GHOST) * (1 + above * fmin(LEAST_NESTED, NESTED / picture->count));
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body]) continue;
-        const BodyColors *colors = body == trajectory->bomb ? &picture->theme->bomb : &picture->theme->bodies[run];
-        Shape shape = body_shape(picture, panel, run, moment, body, colors);
+        Shape shape = body_shape(picture, panel, run, moment, body, &picture->theme->bodies[run]);
         shape.hollow = true;
-        shape.line = picture_colors_distance(picture, run) ? colors_of(picture, run, moment, body).fill : colors->fill;
+        shape.line = outline_color(picture, run, moment, body);
         shape.outline = thickness;
         drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
     }
@@ -201,7 +207,7 @@ int panel_draw_swatch(const Picture *picture, int run, bool hollow, int left, in
     shape.x = left + side / 2.0;
     shape.y = baseline - side / 2.0;
     shape.hollow = hollow;
-    if (hollow) shape.line = colors->fill, shape.outline = fmax(2, side / 8.0);
+    if (hollow) shape.line = run == 0 ? picture->theme->ghost : colors->fill, shape.outline = fmax(2, side / 8.0);
     drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
     return left + side;
 }

@@ -7,6 +7,7 @@ static const double HEAD = 4.2;       /* length of an arrow's head over its thic
 static const double LEAST_HEAD = 3;   /* the same where the whole arrow is short */
 static const double LEAST_LENGTH = 2; /* of an arrow over its thickness */
 static const double HALO = 1.0;       /* pixels to each side, and a third of the thickness */
+static const double APART = 0.85;     /* two heads, over their length */
 static const double HEAD_SINE = 0.5;  /* of half the angle between its sides: 30 degrees */
 static const double HEAD_COSINE = 0.8660254037844386;
 static const int MOST_DASHES = 10000; /* of one piece: a line of 8,192 pixels has fewer */
@@ -51,7 +52,7 @@ static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool
     double c = dx / length, s = dy / length;
     stroke_line(drawing, from, to, thickness, color, clip);
     for (int i = 0; i < (longer ? 2 : 1); i++) {
-        Point tip = {to.x - i * 0.6 * head * c, to.y - i * 0.6 * head * s};
+        Point tip = {to.x - i * APART * head * c, to.y - i * APART * head * s};
         draw_side(drawing, tip, c, s, 1, head, thickness, color, clip);
         draw_side(drawing, tip, c, s, -1, head, thickness, color, clip);
     }

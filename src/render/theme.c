@@ -17,6 +17,7 @@ static const Theme light = {
     .impulse = 0x10161F,
     .velocity = 0xA3005C,
     .event = 0x8A94A3,
+    .ghost = 0x0072B2,
     .bomb = BOMB,
     .bodies =
         {
@@ -45,6 +46,7 @@ static const Theme dark = {
     .impulse = 0xF7F9FB,
     .velocity = 0xFF8AC4,
     .event = 0x77849A,
+    .ghost = 0x8CCBF0,
     .bomb = {0xE4573A, 0x3D0D03, 0xFFF1EA},
     .bodies =
         {

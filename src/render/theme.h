@@ -8,6 +8,7 @@ typedef struct Theme {
     uint32_t page, panel, frame, grid, grid_strong, ink, ink_soft, ground, ground_line;
     uint32_t impulse, velocity; /* arrows */
     uint32_t event;             /* marks in the timeline */
+    uint32_t ghost;             /* outlines of the first run over the others */
     BodyColors bomb;
     BodyColors bodies[LOOK_RUNS_MAX]; /* of each run */
     double ramp_near, ramp_far;       /* the ends of the colour scale: what is far stands out most */
