@@ -10,7 +10,7 @@
 static const double AVERAGED = 0.4;      /* s, that one averaging reaches over */
 static const double BOMB_AVERAGED = 0.2; /* the same where what is followed is fast */
 static const double BEFORE = 0.7;        /* s before the divergence that the way there is to begin */
-static const double STAYS = 2.0;         /* s that the camera stays there */
+static const double STAYS = 1.2;         /* s that the camera stays there */
 static const double CLOSER = 0.5;        /* of the whole view's size: the one that follows the bomb */
 static const double BODIES_SEEN = 6;     /* a close view is at least so many of its body's sides wide and high */
 static const double FARTHEST = 1e5;      /* m; what is further off is not followed */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/caption.h"
 
+#include "render/body.h"
 #include "render/panel.h"
 #include "render/pose.h"
 
@@ -109,39 +110,6 @@ void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     draw_slow(picture, moment, end, x, drawing);
 }
 
-static bool is_method(const char *text, const char *name) {
-    size_t length = strlen(name);
-    return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
-}
-
-/* Copies a method without the folders of its files: they belong to a machine and not to a picture. */
-static void shorten_method(char *text, size_t size, const char *method) {
-    size_t used = 0;
-    while (*method != '\0') {
-        size_t length = strcspn(method, ":=,");
-        const char *end = method + length, *start = method;
-        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
-            for (const char *c = method; c < end; c++)
-                if (*c == '/') start = c + 1;
-        if (*end != '\0') end++;
-        used += (size_t)snprintf(text + used, size - used, "%.*s", (int)(end - start), start);
-        method = end;
-    }
-}
-
-void caption_method(const Picture *picture, int run, char title[CAPTION_SIZE], char note[CAPTION_SIZE]) {
-    const char *method = picture->panels[run]->method, *name = NULL;
-    char text[TRAJECTORY_NAME_SIZE] = "";
-    shorten_method(text, sizeof text, method);
-    bool engine = is_method(method, "engine");
-    if (engine) name = "Physics engine";
-    if (is_method(method, "reference")) name = "Converged solution";
-    if (is_method(method, "pair-net")) name = "Neural network";
-    if (is_method(method, "scene-net")) name = "Network of the scene";
-    snprintf(title, CAPTION_SIZE, "%s", name != NULL ? name : text);
-    snprintf(note, CAPTION_SIZE, "%s%s", engine ? "sequential impulses, " : "", name != NULL ? text : "");
-}
-
 /* What the bodies do not show. */
 static void describe_state(const Picture *picture, int panel, Moment moment, char *text, size_t size) {
     bool ended = moment.frame >= picture->panels[picture_run(picture, panel)]->frames;
@@ -153,25 +121,12 @@ static void describe_state(const Picture *picture, int panel, Moment moment, cha
         snprintf(text, size, "ended");
 }
 
-/* What is cut short is the last of them: the method's settings. */
-static void join(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    if (part != NULL && part[0] != '\0') snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", part);
-}
-
-void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size) {
-    text[0] = '\0';
-    join(text, size, picture->notes[run]);
-    join(text, size, picture->look.costs[run]);
-    join(text, size, note);
-}
-
 /* Boxes that are coloured by their distance have their run's colour in the timeline only. */
 static int draw_swatch(const Picture *picture, int run, int x, int baseline, Drawing *drawing) {
     bool hollow = picture->look.compare == LOOK_OVERLAY && run > 0;
     if (picture_colors_distance(picture, run) && !hollow && (picture->look.show & LOOK_TIMELINE) == 0) return x;
     int pixels = picture->layout.title.pixels;
-    return panel_draw_swatch(picture, run, hollow, x, baseline, pixels, drawing) + pixels / 2;
+    return body_draw_swatch(picture, run, hollow, x, baseline, pixels, drawing) + pixels / 2;
 }
 
 static int draw_name(const Picture *picture, int run, const char *name, int left, int right, int baseline,

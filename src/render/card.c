@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/card.h"
 
+#include "render/body.h"
 #include "render/caption.h"
-#include "render/panel.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -66,7 +66,7 @@ static int add_method(const Card *card, int run, int baseline, int right, char n
     bool hollow = card->picture->look.compare == LOOK_OVERLAY && run > 0;
     caption_method(card->picture, run, title, note);
     int pixels = card->row.glyphs != NULL ? card->row.pixels : (int)(ROW * card->unit) + 4;
-    int x = panel_draw_swatch(card->picture, run, hollow, card->left, baseline, pixels, card->drawing);
+    int x = body_draw_swatch(card->picture, run, hollow, card->left, baseline, pixels, card->drawing);
     x += card->row.pixels / 2;
     return font_add_fitting(card->drawing, &card->row, title, x, baseline, right - x, card->picture->theme->ink);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/legend.h"
 
+#include "render/body.h"
 #include "render/caption.h"
 #include "render/marks.h"
-#include "render/panel.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ static void end_entry(Row *row) { row->x += row->font->pixels * 2; }
 
 static void add_outline(Row *row) {
     char text[CAPTION_SIZE], note[CAPTION_SIZE];
-    row->x = panel_draw_swatch(row->picture, 0, true, row->x, row->baseline, row->font->pixels, row->drawing);
+    row->x = body_draw_swatch(row->picture, 0, true, row->x, row->baseline, row->font->pixels, row->drawing);
     row->x += row->font->pixels / 2;
     caption_method(row->picture, 0, text, note);
     add_text(row, text);

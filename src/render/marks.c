@@ -20,11 +20,6 @@ ArrowStyle marks_arrow(const Picture *picture, uint32_t color) {
     return (ArrowStyle){marks_line(picture), color, picture->theme->panel};
 }
 
-static double distance(const Pose *a, const Pose *b) {
-    double x = a->x - b->x, y = a->y - b->y;
-    return sqrt(x * x + y * y);
-}
-
 static int trail_frames(const Trajectory *run) {
     double frames = rint(LASTS / (double)run->dt);
     return frames < TRAIL_FRAMES_MAX ? (int)frames : TRAIL_FRAMES_MAX;
@@ -43,7 +38,7 @@ static bool moved_far(const Trajectory *run, Moment moment, int body, int first)
     Pose now = pose_at(run, moment, body);
     for (int frame = first; frame < moment.frame; frame += TRAIL_EVERY) {
         Pose pose = pose_stored(run, frame, body);
-        if (distance(&pose, &now) > FAR) return true;
+        if (pose_distance(pose, now) > FAR) return true;
     }
     return false;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One panel: grid, bodies, axes. */
+/* One panel: grid, bodies, axes, marks. */
 #pragma once
 #include "render/picture.h"
 #include "render/stroke.h"
@@ -18,8 +18,3 @@ double panel_side(const Picture *picture);
 
 /* How many dynamic bodies that are there lie with their centre outside the panel. */
 int panel_count_unseen(const Picture *picture, int panel, Moment moment);
-
-/* A small box in the colours of the run's bodies, or as their outlines, standing on a line of text as high as `pixels`.
-   Returns its right edge. */
-int panel_draw_swatch(const Picture *picture, int run, bool hollow, int left, int baseline, int pixels,
-                      Drawing *drawing);

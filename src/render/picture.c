@@ -118,9 +118,7 @@ static double distance_between(const Trajectory *a, const Trajectory *b, Moment 
     double largest = 0;
     for (int body = 0; body < bodies; body++) {
         if (!trajectory_has(a, moment.frame, body) || !trajectory_has(b, moment.frame, body)) continue;
-        Pose p = pose_at(a, moment, body), q = pose_at(b, moment, body);
-        double x = p.x - q.x, y = p.y - q.y;
-        largest = fmax(largest, sqrt(x * x + y * y));
+        largest = fmax(largest, pose_distance(pose_at(a, moment, body), pose_at(b, moment, body)));
     }
     return largest;
 }

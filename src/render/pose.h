@@ -32,3 +32,9 @@ static inline Pose pose_at(const Trajectory *run, Moment moment, int body) {
     return (Pose){pose.x + moment.part * (next.x - pose.x), pose.y + moment.part * (next.y - pose.y),
                   pose.angle + moment.part * (next.angle - pose.angle)};
 }
+
+/* m. Not hypot: square roots are the same on every machine. */
+static inline double pose_distance(Pose a, Pose b) {
+    double x = a.x - b.x, y = a.y - b.y;
+    return sqrt(x * x + y * y);
+}
