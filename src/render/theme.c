@@ -18,7 +18,7 @@ static const Theme light = {
     .velocity = 0xA3005C,
     .event = 0x8A94A3,
     .ghost = 0x0072B2,
-    .bomb = BOMB,
+    .bomb = BOMB_COLORS,
     .bodies =
         {
             {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the physics, or whatever comes first */
