@@ -22,12 +22,11 @@ static inline Pose pose_stored(const Trajectory *run, int frame, int body) {
 }
 
 /* Between two frames a straight way, as the engine moves bodies: x += v dt. Angles do not wrap in a run, so neither do they
-   here. A body that comes or goes is where the first of the two frames has it. */
+   here. A body that comes is not there before the frame that has it, and one that goes stays where it was. */
 static inline Pose pose_at(const Trajectory *run, Moment moment, int body) {
     moment = pose_moment(run, moment);
     Pose pose = pose_stored(run, moment.frame, body);
-    if (!(moment.part > 0) || !trajectory_has(run, moment.frame, body) || !trajectory_has(run, moment.frame + 1, body))
-        return pose;
+    if (!(moment.part > 0) || !trajectory_has(run, moment.frame + 1, body)) return pose;
     Pose next = pose_stored(run, moment.frame + 1, body);
     return (Pose){pose.x + moment.part * (next.x - pose.x), pose.y + moment.part * (next.y - pose.y),
                   pose.angle + moment.part * (next.angle - pose.angle)};

@@ -56,12 +56,15 @@ static double x_at(const Picture *picture, double frame) {
 /* Above the curves, for the names of the events. */
 static int lane(const Picture *picture) { return picture->layout.axis.pixels * 3 / 2; }
 
-static double y_at(const Picture *picture, double metres) {
+static double y_of_decade(const Picture *picture, double decade) {
     const Rect *plot = &picture->layout.timeline;
     int highest = highest_decade(picture);
-    double decade = metres > 1e-6 ? log10(metres) : LOWEST_DECADE;
     double share = (fmin(decade, highest) - LOWEST_DECADE) / (highest - LOWEST_DECADE);
     return plot->bottom - (plot->bottom - plot->top - lane(picture)) * share;
+}
+
+static double y_at(const Picture *picture, double metres) {
+    return y_of_decade(picture, metres > 1e-6 ? log10(metres) : LOWEST_DECADE);
 }
 
 static double thickness(const Picture *picture) { return fmax(CURVE * picture->layout.height, LEAST_CURVE); }
@@ -95,15 +98,14 @@ static void draw_curve(const Picture *picture, int run, Drawing *drawing) {
     }
 }
 
-/* Every decade has a line, and every third one a name. */
+/* Every decade has a line, and every third one a name. No logarithm: half pixels must be rounded alike everywhere. */
 static void draw_decades(const Picture *picture, Drawing *drawing) {
     static const char *const names[] = {"1 " MICRO "m", "1 mm", "1 m", "1 km"};
     const Layout *layout = &picture->layout;
     const Rect *plot = &layout->timeline;
     int line = layout->hairline, highest = highest_decade(picture);
-    double power = 1e-6;
-    for (int decade = LOWEST_DECADE; decade <= highest; decade++, power *= 10) {
-        int y = (int)rint(y_at(picture, power)), named = (decade - LOWEST_DECADE) % 3 == 0;
+    for (int decade = LOWEST_DECADE; decade <= highest; decade++) {
+        int y = (int)rint(y_of_decade(picture, decade)), named = (decade - LOWEST_DECADE) % 3 == 0;
         if (decade > LOWEST_DECADE && decade < highest)
             drawing_add_rect(drawing, (Rect){plot->left, y, plot->right, y + line},
                              named ? picture->theme->grid_strong : picture->theme->grid);
