@@ -154,7 +154,7 @@ static void draw_methods(const Picture *picture, Moment moment, int left, int ri
         int room = run > 0 ? item_width(font, &item) + gap / 2 : 0;
         int x = draw_name(picture, run, title, start, end - room, baseline, drawing) + gap / 2;
         if (run > 0) draw_item(picture, font, &item, x, baseline, drawing);
-        draw_notes(picture, run, note, x + room, end, baseline, drawing);
+        if (end - x - room > 4 * font->pixels) draw_notes(picture, run, note, x + room, end, baseline, drawing);
     }
 }
 

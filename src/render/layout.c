@@ -51,9 +51,10 @@ static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, 
         layout->key_baseline = top - layout->title_rise;
         bottom = top - (text ? title : layout->left);
     }
-    if (rows.legend && text) {
-        layout->legend_baseline = bottom - pixels(0.012 * unit);
-        bottom -= pixels(0.046 * unit);
+    if (rows.legend > 0 && text) {
+        layout->legend_pitch = pixels(0.035 * unit);
+        layout->legend_baseline = bottom - pixels(0.012 * unit) - (rows.legend - 1) * layout->legend_pitch;
+        bottom -= pixels(0.046 * unit) + (rows.legend - 1) * layout->legend_pitch;
     }
     area.bottom = bottom - axis;
     return area;

@@ -9,13 +9,6 @@
 #include <stdio.h>
 
 static const double DECADE = 3; /* ems, of the colour scale */
-static const unsigned EXPLAINED =
-    LOOK_GHOSTS | LOOK_DISTANCE | LOOK_TRAILS | LOOK_CONTACTS | LOOK_IMPULSES | LOOK_VELOCITIES;
-
-bool legend_is_needed(const Picture *picture) {
-    return picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & EXPLAINED) != 0;
-}
-
 /* Where the next entry begins. */
 typedef struct Row {
     const Picture *picture;
@@ -24,12 +17,13 @@ typedef struct Row {
     int x, baseline;
     double middle; /* of small letters: where lines lie */
     Rect clip;
+    int rows; /* begun */
 } Row;
 
+typedef void AddEntry(Row *row);
+
 static void add_text(Row *row, const char *text) {
-    int room = row->picture->layout.right - row->x;
-    row->x =
-        font_add_fitting(row->drawing, row->font, text, row->x, row->baseline, room, row->picture->theme->ink_soft);
+    row->x = font_add(row->drawing, row->font, text, row->x, row->baseline, row->picture->theme->ink_soft);
 }
 
 static void end_entry(Row *row) { row->x += row->font->pixels * 2; }
@@ -102,25 +96,68 @@ static void add_arrow(Row *row, double pixels, uint32_t color, double value, con
     end_entry(row);
 }
 
-void legend_draw(const Picture *picture, Drawing *drawing) {
-    const Layout *layout = &picture->layout;
-    const Scales *scales = &picture->scales;
+static void add_impulse(Row *row) {
+    const Scales *scales = &row->picture->scales;
+    add_arrow(row, scales->named_impulse * scales->impulse, row->picture->theme->impulse, scales->named_impulse, "N s");
+}
+
+static void add_velocity(Row *row) {
+    const Scales *scales = &row->picture->scales;
+    add_arrow(row, scales->named_velocity * scales->velocity, row->picture->theme->velocity, scales->named_velocity,
+              "m/s");
+}
+
+static void add_heads(Row *row) {
+    add_text(row, "(two heads: longer than shown)");
+    end_entry(row);
+}
+
+static void begin_row(Row *row) {
+    const Layout *layout = &row->picture->layout;
+    row->x = layout->panels[0].left;
+    row->baseline = layout->legend_baseline + row->rows * layout->legend_pitch;
+    row->middle = row->baseline - row->font->pixels * 0.36;
+    row->rows++;
+}
+
+/* What turns out to reach too far is taken back, and comes first in the next row. */
+static void place(Row *row, AddEntry *add) {
+    if (row->rows == 0) begin_row(row);
+    Row before = *row;
+    Drawing *drawing = row->drawing;
+    size_t rects = drawing->rect_count, shapes = drawing->shape_count, glyphs = drawing->glyph_count;
+    add(row);
+    bool first = before.x == row->picture->layout.panels[0].left;
+    if (first || row->x - row->font->pixels * 2 <= row->picture->layout.right) return;
+    drawing->rect_count = rects, drawing->shape_count = shapes, drawing->glyph_count = glyphs;
+    *row = before;
+    begin_row(row);
+    add(row);
+}
+
+static int place_all(const Picture *picture, Drawing *drawing) {
     const RenderLook *look = &picture->look;
-    if (layout->legend_baseline == 0) return;
+    const Layout *layout = &picture->layout;
     Row row = {.picture = picture, .drawing = drawing, .font = &layout->axis};
-    row.x = layout->panels[0].left;
-    row.baseline = layout->legend_baseline;
-    row.middle = row.baseline - row.font->pixels * 0.36;
     row.clip = (Rect){0, 0, layout->width, layout->height};
     bool difference = look->compare == LOOK_DIFFERENCE;
-    if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) add_outline(&row);
-    if (difference || look->show & LOOK_DISTANCE) add_colors(&row);
-    if (look->show & LOOK_TRAILS) add_trail(&row);
-    if (look->show & LOOK_CONTACTS) add_dot(&row);
-    if (look->show & LOOK_IMPULSES)
-        add_arrow(&row, scales->named_impulse * scales->impulse, picture->theme->impulse, scales->named_impulse, "N s");
-    if (look->show & LOOK_VELOCITIES)
-        add_arrow(&row, scales->named_velocity * scales->velocity, picture->theme->velocity, scales->named_velocity,
-                  "m/s");
-    if (look->show & (LOOK_IMPULSES | LOOK_VELOCITIES)) add_text(&row, "(two heads: longer than shown)");
+    if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) place(&row, add_outline);
+    if (difference || look->show & LOOK_DISTANCE) place(&row, add_colors);
+    if (look->show & LOOK_TRAILS) place(&row, add_trail);
+    if (look->show & LOOK_CONTACTS) place(&row, add_dot);
+    if (look->show & LOOK_IMPULSES) place(&row, add_impulse);
+    if (look->show & LOOK_VELOCITIES) place(&row, add_velocity);
+    if (look->show & (LOOK_IMPULSES | LOOK_VELOCITIES)) place(&row, add_heads);
+    return row.rows;
+}
+
+int legend_rows(const Picture *picture) {
+    Drawing scratch = {0};
+    int rows = place_all(picture, &scratch);
+    drawing_free(&scratch);
+    return rows;
+}
+
+void legend_draw(const Picture *picture, Drawing *drawing) {
+    if (picture->layout.legend_baseline > 0) place_all(picture, drawing);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What outlines, colours, dots and arrows mean, in a row below the panels. */
+/* What outlines, colours, dots and arrows mean, in rows below the panels. */
 #pragma once
 #include "render/picture.h"
 
-bool legend_is_needed(const Picture *picture);
+/* How many rows it takes in the picture's width; 0: there is nothing to explain. */
+int legend_rows(const Picture *picture);
 void legend_draw(const Picture *picture, Drawing *drawing);

@@ -46,9 +46,9 @@ static int panels_of(LookCompare compare, int count) {
 }
 
 /* Panels, and a camera for their size. */
-static void arrange(Picture *picture, int width, int height) {
+static void arrange(Picture *picture, int width, int height, int legend) {
     picture->shown = panels_of(picture->look.compare, picture->count);
-    LayoutRows rows = {legend_is_needed(picture), (picture->look.show & LOOK_TIMELINE) != 0};
+    LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
     picture->layout = layout_make(width, height, picture->shown, rows);
     Rect first = picture->layout.panels[0];
     picture->camera = camera_fit(picture->panels[0], first.right - first.left, first.bottom - first.top);
@@ -62,7 +62,7 @@ bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, 
         picture->panels[i] = panels[i];
         if (panels[i]->frames > picture->frames) picture->frames = panels[i]->frames;
     }
-    arrange(picture, width, height);
+    arrange(picture, width, height, 0);
     find_largest(picture);
     return true;
 }
@@ -79,6 +79,17 @@ static bool plan_path(Picture *picture, Error *error) {
     return true;
 }
 
+/* How many rows the legend takes depends on the scales that it explains, and these on the room that it leaves: the first
+   guess is none. */
+static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
+    for (int pass = 0; pass < 2; pass++) {
+        arrange(picture, options->width, options->height, pass == 0 ? 0 : legend_rows(picture));
+        if (!scales_choose(&picture->scales, picture->panels[0], &picture->layout, picture->largest_apart, error))
+            return false;
+    }
+    return true;
+}
+
 bool picture_dress(Picture *picture, const RenderOptions *options, Error *error) {
     const RenderLook plain = {0};
     picture->title = options->title;
@@ -87,10 +98,8 @@ bool picture_dress(Picture *picture, const RenderOptions *options, Error *error)
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
     if (!look_check(&picture->look, picture->panels, picture->count, error)) return false;
-    arrange(picture, options->width, options->height);
     picture->events = events_find(picture->panels, picture->count);
-    return scales_choose(&picture->scales, picture->panels[0], &picture->layout, picture->largest_apart, error) &&
-           plan_path(picture, error) && timeline_plan(picture, error);
+    return arrange_rows(picture, options, error) && plan_path(picture, error) && timeline_plan(picture, error);
 }
 
 void picture_free(Picture *picture) {

@@ -183,7 +183,7 @@ static void draw_key(const Picture *picture, Drawing *drawing) {
         Pen pen = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
         double y = baseline - font->pixels * 0.36;
         int end = x + font->pixels * 5 / 2;
-        if (end + font->pixels > right) return;
+        if (end + 4 * font->pixels > right) return;
         stroke_dashed(drawing, (Point){x, y}, (Point){end, y}, &pen, &clip);
         caption_method(picture, run, title, note);
         x = end + font->pixels / 2;
