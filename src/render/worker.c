@@ -42,8 +42,19 @@ static bool is_there(const Worker *worker, int index, PictureHashes *hashes) {
     return same;
 }
 
+static bool prepare(Worker *worker, Error *error) {
+    const RenderOptions *options = worker->job->options;
+    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
+    if (worker->renderer == NULL) return false;
+    worker->image = image_create(options->width, options->height, error);
+    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
+    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
+}
+
 static bool draw_one(Worker *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
     const bool *changed;
+    /* Not before: there may be nothing to draw. */
+    if (worker->renderer == NULL && !prepare(worker, error)) return false;
     frame_texts_fill(&worker->texts, worker->job->picture, moment);
     if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
         !worker->sink.write(worker->sink.context, index, worker->image, changed, worker->texts.entries,
@@ -80,20 +91,11 @@ static bool draw_to_sink(Worker *worker, int pipe, Error *error) {
     return worker->sink.close(worker->sink.context, error) && drawn;
 }
 
-static bool prepare(Worker *worker, Error *error) {
-    const RenderOptions *options = worker->job->options;
-    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
-    if (worker->renderer == NULL) return false;
-    worker->image = image_create(options->width, options->height, error);
-    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
-    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
-}
-
 bool worker_run(const WorkerJob *job, int pipe) {
     WorkerReport end = {.index = -1};
     Worker worker = {.job = job};
     prepare_process();
-    bool ok = prepare(&worker, &end.error) && draw_to_sink(&worker, pipe, &end.error);
+    bool ok = draw_to_sink(&worker, pipe, &end.error);
     if (end.error.kind != ERROR_NONE) send(pipe, &end);
     image_destroy(worker.image);
     renderer_destroy(worker.renderer);
