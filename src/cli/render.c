@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
 #include "cli/options.h"
+#include "cli/render_look.h"
 #include "common/file.h"
 
 #include <stdio.h>
@@ -36,11 +37,13 @@ typedef struct Options {
     bool resume;
     DrawVideos videos;
     SetOptions set;
+    RenderLookOptions look;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
     Options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->look; break;
     case 'o': options->output = value; break;
     case SIZE: options->size = value; break;
     case FRAMES: options->frames = value; break;
@@ -70,6 +73,8 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return 0;
 }
 
+static const struct argp_child children[] = {{&render_look_argp, 0, NULL, 0}, {0}};
+
 static const struct argp argp = {
     option_table,
     parse,
@@ -77,7 +82,7 @@ static const struct argp argp = {
     "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
     "run by the engine and by the pair-net that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
-    NULL,
+    children,
     NULL,
     NULL};
 
@@ -114,7 +119,8 @@ static bool read_order(const Options *options, RenderOptions *render, Error *err
 static bool read_options(const Options *options, RenderOptions *render, Error *error) {
     *render = draw_panels_defaults(options->output);
     render->resume = options->resume;
-    return choose_context(options->context, &render->context, error) &&
+    return render_look_read(&options->look, &render->look, error) &&
+           choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
@@ -136,12 +142,13 @@ static void print_result(const Options *options, const RenderOptions *render, co
     for (int i = 0; i < options->videos.count; i++) fprintf(out, "video -> %s\n", options->videos.paths[i]);
 }
 
-static bool render_panels(const Options *options, const Panels *panels, const RenderOptions *render, Error *error) {
+static bool render_panels(Options *options, const Panels *panels, RenderOptions *render, Error *error) {
     int last = panels_last_frame(panels);
     RenderResult result;
     if (render->first > last || render->last > last)
         return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
-    if (!file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+    if (!render_look_apply(&options->look, &render->look, panels, error) ||
+        !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, &options->videos, &result, error))
         return false;
     print_result(options, render, &result);

@@ -40,4 +40,4 @@ typedef struct RenderLook {
 
 /* As options name them, in the order of the enums and of the bits; each list ends with NULL. */
 extern const char *const look_compare_names[], *const look_camera_names[], *const look_theme_names[],
-    *const look_show_names[];
+                                                                               *const look_show_names[];
