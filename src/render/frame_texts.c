@@ -40,22 +40,3 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
     add(texts, "State", texts->states);
     add(texts, "Software", "twinbox");
 }
-
-static bool has_texts(const char *path, const FrameTexts *texts) {
-    char value[FRAME_METHODS_SIZE];
-    Error ignored = {0};
-    for (int i = 0; i < texts->count; i++)
-        if (!image_read_text(path, texts->entries[i].key, value, sizeof value, &ignored) ||
-            strcmp(value, texts->entries[i].value) != 0)
-            return false;
-    return true;
-}
-
-bool frame_file_matches(const char *path, int width, int height, uint64_t hash, const FrameTexts *texts) {
-    Error ignored = {0};
-    if (!has_texts(path, texts)) return false;
-    Image *image = image_read_png(path, &ignored);
-    bool same = image != NULL && image->width == width && image->height == height && image_hash(image) == hash;
-    image_destroy(image);
-    return same;
-}

@@ -22,6 +22,3 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment);
 
 /* "1/4" */
 void frame_part_text(char *text, size_t size, Moment moment);
-
-/* The file is a whole PNG of this size with these pixels and texts. */
-bool frame_file_matches(const char *path, int width, int height, uint64_t hash, const FrameTexts *texts);

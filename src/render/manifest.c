@@ -98,7 +98,7 @@ static void put_head(JsonWriter *json, const Manifest *manifest) {
     json_begin_array(json, "pictures", JSON_LINES);
 }
 
-static void put_picture(JsonWriter *json, const Manifest *manifest, int index, uint64_t hash) {
+static void put_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
     static const char *const kinds[] = {"frame", "between", "title", "end"};
     const Picture *picture = manifest->picture;
     Moment moment = moments_at(manifest->plan, index);
@@ -115,7 +115,8 @@ static void put_picture(JsonWriter *json, const Manifest *manifest, int index, u
         json_put_hash(json, NULL,
                       trajectory_frame_hash(picture->panels[i], picture_panel_frame(picture, i, moment.frame)));
     json_end(json);
-    json_put_hash(json, "pixels", hash);
+    json_put_hash(json, "pixels", hashes.pixels);
+    json_put_hash(json, "file_hash", hashes.file);
     json_end(json);
 }
 
@@ -127,7 +128,7 @@ void manifest_print_head(FILE *out, const void *manifest) {
 void manifest_print_line(FILE *out, const void *context) {
     const ManifestLine *line = context;
     JsonWriter json = {.out = out};
-    put_picture(&json, line->manifest, line->index, line->hash);
+    put_picture(&json, line->manifest, line->index, line->hashes);
 }
 
 void manifest_print_journal(FILE *out, const void *context) {

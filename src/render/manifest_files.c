@@ -12,7 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LINE_MAX_SIZE = 512, HASH_DIGITS = 16 };
+enum { LINE_MAX_SIZE = 512 };
+
+/* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
+enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
 
 /* Every manifest begins so. */
 static const char beginning[] = "{\n  \"twinbox\": \"";
@@ -55,16 +58,17 @@ static int index_of(const char *line) {
     return index <= INT32_MAX ? (int)index : -1;
 }
 
-/* Takes the hash from the end of a line, where the line is the one that belongs there with this hash. */
+/* Takes the hashes from the end of a line, where the line is the one that belongs there with these hashes. */
 static void recall_line(Manifest *manifest, const char *line, size_t length) {
     int index = index_of(line);
-    if (index < manifest->first || index > manifest->last || length < HASH_DIGITS + 2) return;
-    uint64_t hash = strtoull(line + length - HASH_DIGITS - 2, NULL, 16);
+    if (index < manifest->first || index > manifest->last || length < PIXELS_FROM_END) return;
+    const char *end = line + length;
+    PictureHashes hashes = {strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
     size_t size;
-    char *wanted = file_print(manifest_print_line, &(ManifestLine){manifest, index, hash}, &size);
+    char *wanted = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
     /* The wanted one ends in a line end. */
     if (wanted != NULL && size == length + 1 && memcmp(wanted, line, length) == 0) {
-        manifest->hashes[index - manifest->first] = hash;
+        manifest->hashes[index - manifest->first] = hashes;
         manifest->known[index - manifest->first] = true;
     }
     free(wanted);
@@ -137,12 +141,13 @@ bool manifest_begin(Manifest *manifest, Error *error) {
     return manifest->out != NULL || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
 }
 
-bool manifest_add(Manifest *manifest, int index, uint64_t hash, Error *error) {
+bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *error) {
     int i = index - manifest->first;
-    if (manifest->known[i] && manifest->hashes[i] == hash) return true;
-    manifest->hashes[i] = hash;
+    const PictureHashes *old = &manifest->hashes[i];
+    if (manifest->known[i] && old->pixels == hashes.pixels && old->file == hashes.file) return true;
+    manifest->hashes[i] = hashes;
     manifest->known[i] = true;
-    manifest_print_line(manifest->out, &(ManifestLine){manifest, index, hash});
+    manifest_print_line(manifest->out, &(ManifestLine){manifest, index, hashes});
     return fflush(manifest->out) == 0 || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
 }
 

@@ -6,7 +6,7 @@
 typedef struct ManifestLine {
     const Manifest *manifest;
     int index;
-    uint64_t hash;
+    PictureHashes hashes;
 } ManifestLine;
 
 /* Up to the first picture. */

@@ -34,13 +34,18 @@ typedef struct RenderOptions {
     bool resume;                          /* keep what an earlier, equal call has drawn */
 } RenderOptions;
 
+/* Of a picture and of the file that it is in (XXH3 of its bytes). */
+typedef struct PictureHashes {
+    uint64_t pixels, file;
+} PictureHashes;
+
 /* What became of a sequence. */
 typedef struct RenderResult {
-    int first, last;  /* numbers of the files */
-    bool all;         /* these are all there are */
-    int kept;         /* of them, found whole from an earlier call */
-    char why[256];    /* to resume, and nothing could be: why; else empty */
-    uint64_t *hashes; /* [last - first + 1], image_hash of each; to be freed by the caller */
+    int first, last;       /* numbers of the files */
+    bool all;              /* these are all there are */
+    int kept;              /* of them, found whole from an earlier call */
+    char why[256];         /* to resume, and nothing could be: why; else empty */
+    PictureHashes *hashes; /* [last - first + 1]; to be freed by the caller */
 } RenderResult;
 
 /* Writes directory/frame_000000.png and on: the moments (moments.h) of the longest of 1 to 6 panels, or those of the range
@@ -49,8 +54,8 @@ typedef struct RenderResult {
    threads. Progress counts pictures; where it asks to stop, those begun are finished and the error is "stopped"
    (ERROR_INPUT). `result` may be NULL.
 
-   To resume: pictures of an earlier call, ended or killed, that are there and whole, with the pixels and the texts that
-   they had, stay; all others are drawn. Where that call was of other runs, options or another version, that is all. */
+   To resume: pictures of an earlier call, ended or killed, whose files have the bytes that they had then stay; all others
+   are drawn. Where that call was of other runs, options or another version, all are. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
                      RenderResult *result, const Progress *progress, Error *error);
 

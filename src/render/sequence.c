@@ -93,7 +93,7 @@ static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
     if (size == sizeof report && report.error.kind == ERROR_NONE) {
         sequence->done++;
         sequence->kept += report.kept;
-        return manifest_add(sequence->manifest, report.index, report.hash, error);
+        return manifest_add(sequence->manifest, report.index, report.hashes, error);
     }
     if (size == sizeof report) *error = report.error;
     stop_listening(sequence, worker);

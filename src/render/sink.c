@@ -2,6 +2,7 @@
 #include "render/sink.h"
 
 #include "common/file.h"
+#include "common/hash.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ bool sink_frame_path(char *path, size_t size, const char *directory, int index) 
 }
 
 static bool write_png(void *context, int index, const Image *image, const bool *changed, const ImageText *texts,
-                      int count, Error *error) {
+                      int count, uint64_t *hash, Error *error) {
     PngSink *sink = context;
     const uint8_t *data;
     size_t size;
@@ -33,6 +34,7 @@ static bool write_png(void *context, int index, const Image *image, const bool *
     if (!png_encode(sink->encoder, image, changed, texts, count, &data, &size, error) ||
         !file_write_soon(sink->path, data, size, error))
         return false;
+    *hash = hash_xxh3(data, size);
     if (sink->behind == 0) sink->first = index;
     sink->behind = index + 1;
     return true;

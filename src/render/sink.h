@@ -12,9 +12,9 @@ void sink_frame_name(char name[SINK_NAME_SIZE], int index);
 bool sink_frame_path(char *path, size_t size, const char *directory, int index);
 
 typedef struct FrameSink {
-    /* `changed`: as for png_encode(). */
+    /* `changed`: as for png_encode(). *hash: XXH3 of the file. */
     bool (*write)(void *context, int index, const Image *image, const bool *changed, const ImageText *texts, int count,
-                  Error *error);
+                  uint64_t *hash, Error *error);
     /* Ends the sink, whatever came before; true when all frames written are safe. */
     bool (*close)(void *context, Error *error);
     void *context;

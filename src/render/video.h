@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A PNG sequence -> video: H.264, VP9 and GIF by ffmpeg, or raw frames (y4m.h) for programs of the reader's own. */
 #pragma once
-#include "common/error.h"
-#include "common/progress.h"
-
-#include <stdint.h>
+#include "render/render.h"
 
 typedef struct VideoOptions {
-    const char *directory;  /* of frame_000000.png ... */
-    int first, last;        /* pictures, both included */
-    double frame_rate;      /* Hz */
-    const uint64_t *hashes; /* [last - first + 1], image_hash of each as drawn; NULL: whatever is there counts */
-    const char *path;       /* ends in .mp4, .webm or .gif */
+    const char *directory;       /* of frame_000000.png ... */
+    int first, last;             /* pictures, both included */
+    double frame_rate;           /* Hz */
+    const PictureHashes *hashes; /* [last - first + 1], as drawn; NULL: whatever is there counts */
+    const char *path;            /* ends in .mp4, .webm or .gif */
 } VideoOptions;
 
 /* True where a video may have that name and size: its folder is there, no folder has its name. ERROR_INPUT or ERROR_SYSTEM

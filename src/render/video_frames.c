@@ -27,7 +27,7 @@ static bool check(const VideoOptions *options, int index, const Image *image, in
     if (image->width != width || image->height != height)
         return error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", index, image->width,
                            image->height, width, height);
-    if (options->hashes != NULL && image_hash(image) != options->hashes[index - options->first])
+    if (options->hashes != NULL && image_hash(image) != options->hashes[index - options->first].pixels)
         return error_input(error, options->directory, "frame %d has other pixels than were drawn", index);
     return true;
 }

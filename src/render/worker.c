@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/worker.h"
 
+#include "common/file.h"
+#include "common/hash.h"
 #include "render/frame_texts.h"
 #include "render/renderer.h"
 #include "render/sink.h"
@@ -8,6 +10,9 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+/* Bytes: far more than the file of a picture takes. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
 /* What a worker draws with. */
 typedef struct Worker {
@@ -21,23 +26,41 @@ typedef struct Worker {
 
 static bool send(int pipe, const WorkerReport *report) { return write(pipe, report, sizeof *report) == sizeof *report; }
 
-static bool is_there(const Worker *worker, int index, uint64_t *hash) {
+/* The file of an earlier call, byte by byte. */
+static bool is_there(const Worker *worker, int index, PictureHashes *hashes) {
     const Manifest *manifest = worker->job->manifest;
-    const RenderOptions *options = worker->job->options;
     char path[PATH_MAX];
-    if (!manifest->known[index - manifest->first]) return false;
-    *hash = manifest->hashes[index - manifest->first];
-    return sink_frame_path(path, sizeof path, options->directory, index) &&
-           frame_file_matches(path, options->width, options->height, *hash, &worker->texts);
+    size_t size;
+    Error ignored = {0};
+    if (!manifest->known[index - manifest->first] ||
+        !sink_frame_path(path, sizeof path, worker->job->options->directory, index))
+        return false;
+    *hashes = manifest->hashes[index - manifest->first];
+    char *data = file_read(path, MAX_FILE_SIZE, &size, &ignored);
+    bool same = data != NULL && hash_xxh3(data, size) == hashes->file;
+    free(data);
+    return same;
 }
 
-static bool draw_one(Worker *worker, Moment moment, int index, uint64_t *hash, Error *error) {
+static bool prepare(Worker *worker, Error *error) {
+    const RenderOptions *options = worker->job->options;
+    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
+    if (worker->renderer == NULL) return false;
+    worker->image = image_create(options->width, options->height, error);
+    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
+    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
+}
+
+static bool draw_one(Worker *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
     const bool *changed;
+    /* Not before: there may be nothing to draw. */
+    if (worker->renderer == NULL && !prepare(worker, error)) return false;
+    frame_texts_fill(&worker->texts, worker->job->picture, moment);
     if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
         !worker->sink.write(worker->sink.context, index, worker->image, changed, worker->texts.entries,
-                            worker->texts.count, error))
+                            worker->texts.count, &hashes->file, error))
         return false;
-    *hash = image_hash_next(worker->image, changed, worker->rows);
+    hashes->pixels = image_hash_next(worker->image, changed, worker->rows);
     return true;
 }
 
@@ -45,10 +68,8 @@ static bool draw_all(Worker *worker, int pipe, Error *error) {
     const WorkerJob *job = worker->job;
     for (int index = job->first; index <= job->last; index++) {
         WorkerReport report = {.index = index};
-        Moment moment = moments_at(job->plan, index);
-        frame_texts_fill(&worker->texts, job->picture, moment);
-        report.kept = is_there(worker, index, &report.hash);
-        if (!report.kept && !draw_one(worker, moment, index, &report.hash, error)) return false;
+        report.kept = is_there(worker, index, &report.hashes);
+        if (!report.kept && !draw_one(worker, moments_at(job->plan, index), index, &report.hashes, error)) return false;
         if (!send(pipe, &report)) return false; /* the parent has gone, or wants no more */
     }
     return true;
@@ -70,20 +91,11 @@ static bool draw_to_sink(Worker *worker, int pipe, Error *error) {
     return worker->sink.close(worker->sink.context, error) && drawn;
 }
 
-static bool prepare(Worker *worker, Error *error) {
-    const RenderOptions *options = worker->job->options;
-    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
-    if (worker->renderer == NULL) return false;
-    worker->image = image_create(options->width, options->height, error);
-    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
-    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
-}
-
 bool worker_run(const WorkerJob *job, int pipe) {
     WorkerReport end = {.index = -1};
     Worker worker = {.job = job};
     prepare_process();
-    bool ok = prepare(&worker, &end.error) && draw_to_sink(&worker, pipe, &end.error);
+    bool ok = draw_to_sink(&worker, pipe, &end.error);
     if (end.error.kind != ERROR_NONE) send(pipe, &end);
     image_destroy(worker.image);
     renderer_destroy(worker.renderer);

@@ -19,7 +19,7 @@ typedef struct WorkerReport {
     Error error; /* ERROR_NONE: the picture is there */
     int index;
     bool kept; /* it was there before */
-    uint64_t hash;
+    PictureHashes hashes;
 } WorkerReport;
 
 _Static_assert(sizeof(WorkerReport) <= PIPE_BUF, "a report arrives whole");
