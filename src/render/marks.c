@@ -10,7 +10,8 @@ static const double LASTS = 2.0;                       /* s, that a trail goes b
 static const double FAR = 0.5;      /* m, that a body has to have moved in this time to have a trail */
 static const double OLDEST = 0.15;  /* of a trail's colour at its end */
 static const double SLOWEST = 0.05; /* m/s; what is slower has no arrow, or bodies at rest would bristle */
-enum { TRAIL_FRAMES_MAX = 600, TRAIL_EVERY = 2 };
+static const double EVEN = 0.4;     /* pixels, that a piece of a trail may be off */
+enum { TRAIL_FRAMES_MAX = 600, TRAIL_EVERY = 2, PIECE_FRAMES = 8 };
 
 double marks_dot(const Picture *picture) { return fmax(DOT * panel_side(picture), LEAST_DOT); }
 
@@ -43,6 +44,31 @@ static bool moved_far(const Trajectory *run, Moment moment, int body, int first)
     return false;
 }
 
+static Pose trail_pose(const Trajectory *run, Moment moment, int body, int frame) {
+    return frame >= moment.frame ? pose_at(run, moment, body) : pose_stored(run, frame, body);
+}
+
+/* How far (m) the points of a trail between two frames lie from the straight line that joins them. */
+static double bend(const Trajectory *run, Moment moment, int body, int first, int end) {
+    Pose a = trail_pose(run, moment, body, first), b = trail_pose(run, moment, body, end);
+    double length = pose_distance(a, b), most = 0;
+    for (int frame = first + TRAIL_EVERY; frame < end; frame += TRAIL_EVERY) {
+        Pose p = pose_stored(run, frame, body);
+        double off = fabs((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x));
+        most = fmax(most, length > 0 ? off / length : pose_distance(a, p));
+    }
+    return most;
+}
+
+/* Where the piece of a trail ends that begins in a frame: the fewer pieces, the less to draw. */
+static int piece_end(const Trajectory *run, Moment moment, int body, int first, double even) {
+    int end = first + TRAIL_EVERY;
+    while (end < moment.frame && end + TRAIL_EVERY <= first + PIECE_FRAMES &&
+           bend(run, moment, body, first, end + TRAIL_EVERY) < even)
+        end += TRAIL_EVERY;
+    return end;
+}
+
 static void draw_trail(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
     const Trajectory *trajectory = picture->panels[run];
     const Theme *theme = picture->theme;
@@ -50,17 +76,13 @@ static void draw_trail(const Picture *picture, int panel, int run, Moment moment
     int first = trail_start(trajectory, moment, body), length = trail_frames(trajectory);
     if (!moved_far(trajectory, moment, body, first)) return;
     uint32_t color = body == trajectory->bomb ? theme->bomb.fill : theme->bodies[run].fill;
-    Pose last = pose_stored(trajectory, first, body);
-    for (int frame = first; frame <= moment.frame;) {
-        int next = frame + TRAIL_EVERY;
-        bool ends = next > moment.frame;
-        Pose pose = ends ? pose_at(trajectory, moment, body) : pose_stored(trajectory, next, body);
+    for (int frame = first, end; frame <= moment.frame; frame = end) {
+        end = piece_end(trajectory, moment, body, frame, EVEN / picture->camera.scale);
+        Pose a = trail_pose(trajectory, moment, body, frame), b = trail_pose(trajectory, moment, body, end);
         double age = fmin(1, (moment.frame + moment.part - frame) / length);
-        Point from = panel_point(picture, panel, last.x, last.y), to = panel_point(picture, panel, pose.x, pose.y);
+        Point from = panel_point(picture, panel, a.x, a.y), to = panel_point(picture, panel, b.x, b.y);
         stroke_line(drawing, from, to, marks_line(picture), theme_mix(theme->panel, color, 1 - (1 - OLDEST) * age),
                     &picture->layout.panels[panel]);
-        last = pose;
-        frame = next;
     }
 }
 

@@ -10,7 +10,37 @@ static const double HALO = 1.0;       /* pixels to each side, and a third of the
 static const double APART = 0.85;     /* two heads, over their length */
 static const double HEAD_SINE = 0.5;  /* of half the angle between its sides: 30 degrees */
 static const double HEAD_COSINE = 0.8660254037844386;
-static const int MOST_DASHES = 10000; /* of one piece: a line of 8,192 pixels has fewer */
+static const double TILE = 16;            /* pixels, of a slanted line */
+static const double LONGEST_TILED = 8000; /* pixels; beyond it a shape is cut down, and its parts would differ */
+static const int MOST_DASHES = 10000;     /* of one piece: a line of 8,192 pixels has fewer */
+
+/* Between these rows or columns the whole pixels that the line can touch. */
+static Rect tile_of(Point from, Point to, double thickness, bool flat, double first, double last) {
+    double start = flat ? from.x : from.y, length = flat ? to.x - from.x : to.y - from.y;
+    double a = fmin(fmax((first - start) / length, 0), 1), b = fmin(fmax((last - start) / length, 0), 1);
+    double other = flat ? from.y : from.x, rise = flat ? to.y - from.y : to.x - from.x;
+    double low = fmin(other + a * rise, other + b * rise), high = fmax(other + a * rise, other + b * rise);
+    int before = (int)floor(low - 0.75 * thickness - 1), behind = (int)ceil(high + 0.75 * thickness + 1);
+    return flat ? (Rect){(int)first, before, (int)last, behind} : (Rect){before, (int)first, behind, (int)last};
+}
+
+static Rect common(Rect a, const Rect *b) {
+    return (Rect){a.left > b->left ? a.left : b->left, a.top > b->top ? a.top : b->top,
+                  a.right < b->right ? a.right : b->right, a.bottom < b->bottom ? a.bottom : b->bottom};
+}
+
+/* A long slanted line touches few of the pixels around it: it is drawn in tiles, which share no pixel. */
+static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point to, double thickness,
+                         const Rect *clip) {
+    bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);
+    double low = flat ? fmin(from.x, to.x) : fmin(from.y, to.y), high = flat ? fmax(from.x, to.x) : fmax(from.y, to.y);
+    double first = fmax(floor(low - thickness - 2), flat ? clip->left : clip->top);
+    double last = fmin(ceil(high + thickness + 2), flat ? clip->right : clip->bottom);
+    for (double at = first; at < last; at += TILE) {
+        Rect part = common(tile_of(from, to, thickness, flat, at, fmin(at + TILE, last)), clip);
+        if (part.left < part.right && part.top < part.bottom) drawing_add_shape(drawing, line, &part);
+    }
+}
 
 void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint32_t color, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
@@ -23,7 +53,10 @@ void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint3
                   .sine = length > 0 ? -dy / length : 0,
                   .radius = thickness / 2,
                   .fill = color};
-    drawing_add_shape(drawing, &line, clip);
+    if (fmin(fabs(dx), fabs(dy)) > TILE && length < LONGEST_TILED)
+        add_in_tiles(drawing, &line, from, to, thickness, clip);
+    else
+        drawing_add_shape(drawing, &line, clip);
 }
 
 void stroke_dot(Drawing *drawing, Point center, double radius, uint32_t fill, uint32_t rim, const Rect *clip) {

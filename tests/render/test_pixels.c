@@ -170,6 +170,23 @@ static void lines_have_their_length_and_thickness(void **state) {
     }
 }
 
+/* A slanted line is the box that it is, though it is drawn in tiles; with a clip as well. */
+static void long_lines_are_drawn_whole(void **state) {
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        double c = cos(0.26 * i), s = sin(0.26 * i), t = 2 + 0.3 * i;
+        const Rect clip = i % 2 == 0 ? everything : (Rect){20, 30, 70, 77};
+        Shape whole = turned(box(48.3, 47.1, 80 + t, t), -0.26 * i);
+        whole.radius = t / 2;
+        drawing_add_shape(&drawing, &whole, &clip);
+        uint64_t hash = image_hash(painted());
+        Point from = {48.3 - 40 * c, 47.1 - 40 * s}, to = {48.3 + 40 * c, 47.1 + 40 * s};
+        stroke_line(&drawing, from, to, t, WHITE, &clip);
+        assert_true(fmin(fabs(c), fabs(s)) < 0.25 || drawing.shape_count > 2);
+        assert_true(image_hash(painted()) == hash);
+    }
+}
+
 /* Dashes of 4 and gaps of 6 thicknesses, with round ends; in one piece, and in pieces that end anywhere. */
 static void dashes_go_on_from_piece_to_piece(void **state) {
     (void)state;
@@ -306,6 +323,7 @@ int main(void) {
         cmocka_unit_test(the_band_tells_quarter_turns),
         cmocka_unit_test(a_hollow_box_is_its_outline_alone),
         cmocka_unit_test(lines_have_their_length_and_thickness),
+        cmocka_unit_test(long_lines_are_drawn_whole),
         cmocka_unit_test(dashes_go_on_from_piece_to_piece),
         cmocka_unit_test(arrows_point_where_they_end),
         cmocka_unit_test(nothing_is_painted_outside_the_clip),
