@@ -62,10 +62,12 @@ static void put_look(JsonWriter *json, const RenderLook *look) {
     json_end(json);
 }
 
-/* In pictures; `slow` says between which frames, too. */
+/* Frames of the run, and how many pictures of all else. */
 static void put_order(JsonWriter *json, const Manifest *manifest) {
     const MomentPlan *plan = manifest->plan;
     json_begin_object(json, "order", JSON_LINES);
+    json_put_int(json, "first", plan->first);
+    json_put_int(json, "last", plan->last);
     json_put_int(json, "title_card", plan->title);
     json_begin_object(json, "slow", JSON_ONE_LINE);
     json_put_int(json, "times", plan->slow);
@@ -74,8 +76,6 @@ static void put_order(JsonWriter *json, const Manifest *manifest) {
     json_end(json);
     json_put_int(json, "hold", plan->hold);
     json_put_int(json, "end_card", plan->end);
-    json_put_int(json, "first", manifest->first);
-    json_put_int(json, "last", manifest->last);
     json_end(json);
 }
 

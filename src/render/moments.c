@@ -24,9 +24,13 @@ static double frames_of(double seconds, double dt) { return floor(seconds / dt +
 /* At least one: steps may be longer than what they are to show. */
 static double some_frames_of(double seconds, double dt) { return fmax(1, frames_of(seconds, dt)); }
 
-static void plan_slow(MomentPlan *plan, int impact, double dt) {
-    plan->slow_first = (int)fmax(0, impact - some_frames_of(slow_before, dt));
-    plan->slow_last = (int)fmin(plan->frames - 1, impact + some_frames_of(slow_after, dt));
+static void plan_slow(MomentPlan *plan, int impact, int slow, double dt) {
+    plan->slow_first = (int)fmax(plan->first, impact - some_frames_of(slow_before, dt));
+    plan->slow_last = (int)fmin(plan->last, impact + some_frames_of(slow_after, dt));
+    if (plan->slow_first >= plan->slow_last)
+        plan->slow_last = plan->slow_first = plan->first;
+    else
+        plan->slow = slow;
 }
 
 static bool check(const RenderOptions *options, Error *error) {
@@ -39,22 +43,18 @@ static bool check(const RenderOptions *options, Error *error) {
     return true;
 }
 
-bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                  Error *error) {
+bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, int first, int last,
+                  const RenderOptions *options, Error *error) {
     double dt = (double)panels[0]->dt, hold = frames_of(options->hold, dt), card = some_frames_of(card_seconds, dt);
-    *plan = (MomentPlan){.slow = 1};
+    *plan = (MomentPlan){.first = first, .last = last, .slow = 1, .slow_first = first, .slow_last = first};
     if (!check(options, error)) return false;
-    for (int i = 0; i < panel_count; i++)
-        if (panels[i]->frames > plan->frames) plan->frames = panels[i]->frames;
-    if (hold + 2 * card + (double)RENDER_SLOW_MAX * plan->frames > INT_MAX)
+    if (hold + 2 * card + (double)RENDER_SLOW_MAX * (last + 1.0) > INT_MAX)
         return error_input(error, "render", "more pictures than a sequence can have: steps of %g s are too short", dt);
     plan->title = options->title_card ? (int)card : 0;
     plan->end = options->end_card ? (int)card : 0;
     plan->hold = (int)hold;
     int impact = options->slow > 1 ? first_impact(panels, panel_count) : -1;
-    if (impact < 0) return true;
-    plan->slow = options->slow;
-    plan_slow(plan, impact, dt);
+    if (impact >= 0) plan_slow(plan, impact, options->slow, dt);
     return true;
 }
 
@@ -63,24 +63,19 @@ static int index_of(const MomentPlan *plan, int frame) {
     return plan->title + frame + (plan->slow - 1) * slow;
 }
 
-int moments_count(const MomentPlan *plan) { return index_of(plan, plan->frames - 1) + 1 + plan->hold + plan->end; }
+int moments_last(const MomentPlan *plan) { return index_of(plan, plan->last) + plan->hold + plan->end; }
 
 Moment moments_at(const MomentPlan *plan, int index) {
-    const int last = plan->frames - 1, first_slow = index_of(plan, plan->slow_first);
-    const int pictures = index_of(plan, plan->slow_last) - first_slow, slow = index - first_slow;
-    if (index < plan->title) return (Moment){MOMENT_TITLE, 0, 0, 1};
-    if (index > index_of(plan, last) + plan->hold) return (Moment){MOMENT_END, last, 0, 1};
+    const int first_slow = index_of(plan, plan->slow_first), slow = index - first_slow;
+    const int pictures = index_of(plan, plan->slow_last) - first_slow;
+    if (index < plan->first + plan->title) return (Moment){MOMENT_TITLE, plan->first, 0, 1};
+    if (index > index_of(plan, plan->last) + plan->hold) return (Moment){MOMENT_END, plan->last, 0, 1};
     if (slow < 0) return moment_stored(index - plan->title);
     if (slow >= pictures) {
         int frame = plan->slow_last + slow - pictures;
-        return moment_stored(frame < last ? frame : last);
+        return moment_stored(frame < plan->last ? frame : plan->last);
     }
     int frame = plan->slow_first + slow / plan->slow, part = slow % plan->slow;
     if (part == 0) return (Moment){MOMENT_STORED, frame, 0, plan->slow};
     return (Moment){MOMENT_BETWEEN, frame, (double)part / plan->slow, plan->slow};
-}
-
-void moments_range(const MomentPlan *plan, int first, int last, int *first_index, int *last_index) {
-    *first_index = first == 0 ? 0 : index_of(plan, first);
-    *last_index = last == plan->frames - 1 ? moments_count(plan) - 1 : index_of(plan, last);
 }

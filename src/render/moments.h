@@ -6,21 +6,19 @@
 #include "render/render.h"
 
 typedef struct MomentPlan {
-    int frames;                /* of the run: 0 .. frames - 1 */
+    int first, last;           /* frames of the run, both included */
     int slow;                  /* times slower between two frames; 1: nowhere */
     int slow_first, slow_last; /* these frames; equal where nothing is slow */
     int title, hold, end;      /* pictures of each */
 } MomentPlan;
 
-/* The impact is the first in any panel; where none has one, nothing is slow. ERROR_INPUT for options out of range. */
-bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                  Error *error);
+/* For these frames. The impact is the first in any panel; where none has one, nothing is slow. ERROR_INPUT for options out of
+   range. */
+bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, int first, int last,
+                  const RenderOptions *options, Error *error);
 
-int moments_count(const MomentPlan *plan);
+/* The number of the last picture. The first has that of the first frame, so that without options they are the same. */
+int moments_last(const MomentPlan *plan);
 
-/* The moment of a picture, 0 <= index < moments_count(). */
+/* The moment of a picture, plan->first <= index <= moments_last(). */
 Moment moments_at(const MomentPlan *plan, int index);
-
-/* The pictures of the frames `first` to `last`: what lies between these, and the card and the hold beside the run's own
-   first and last. */
-void moments_range(const MomentPlan *plan, int first, int last, int *first_index, int *last_index);

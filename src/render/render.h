@@ -48,8 +48,8 @@ typedef struct RenderResult {
     PictureHashes *hashes; /* [last - first + 1]; to be freed by the caller */
 } RenderResult;
 
-/* Writes directory/frame_000000.png and on: the moments (moments.h) of the longest of 1 to 6 panels, or those of the range
-   asked for; a shorter panel holds its last frame. Without slow motion, hold and cards file k is frame k. Beside them
+/* Writes directory/frame_000000.png and on: the moments (moments.h) of the longest of 1 to 6 panels, or of the frames asked
+   for, which begin with the number of the first; a shorter panel holds its last frame. Without slow motion, hold and cards file k is frame k. Beside them
    manifest.json (manifest.h) tells what was drawn. Processes of its own draw, so that the caller keeps its environment and
    threads. Progress counts pictures; where it asks to stop, those begun are finished and the error is "stopped"
    (ERROR_INPUT). `result` may be NULL.

@@ -155,11 +155,12 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
     MomentPlan plan;
     int first, last;
     if (!choose_range(options, picture, &first, &last, error) ||
-        !moments_plan(&plan, picture->panels, picture->count, options, error) ||
+        !moments_plan(&plan, picture->panels, picture->count, first, last, options, error) ||
         !picture_dress(picture, options, error) || !file_make_directory(options->directory, error))
         return false;
-    moments_range(&plan, first, last, &result->first, &result->last);
-    result->all = result->first == 0 && result->last == moments_count(&plan) - 1;
+    result->first = first;
+    result->last = moments_last(&plan);
+    result->all = first == 0 && last == picture->frames - 1;
     Manifest manifest;
     WorkerJob job = {.picture = picture, .options = options, .plan = &plan, .manifest = &manifest};
     bool ok = manifest_open(&manifest, picture, options, &plan, result->first, result->last, error) &&

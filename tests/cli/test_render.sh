@@ -135,6 +135,20 @@ print(sorted({picture["part"] for picture in pictures if picture["shows"] == "be
 PYTHON
 says "$wanted 120 120 91"
 says "['1/4', '2/4', '3/4']"
+run 0 render slow.npz -o short --size 96x64 --frames 50:52 --hold 0.1 --end "So far"
+says "129 frames -> short/frame_000050.png ... frame_000178.png"
+"$twinbox" render single.yaml -o grey --size 96x64 --frames 0:0 --video - 2>err </dev/null |
+    ffmpeg -v error -colorspace bt709 -i - back.png
+/usr/bin/python3 - >out <<'PYTHON'
+# The way that README tells gives the colours back.
+import subprocess
+def pixels(path):
+    command = ["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    return subprocess.run(command, check=True, capture_output=True).stdout
+there, back = pixels("grey/frame_000000.png"), pixels("back.png")
+print(len(there) == 96 * 64 * 3, max(abs(a - b) for a, b in zip(there, back, strict=True)) <= 2)
+PYTHON
+says "True True"
 "$twinbox" render slow.npz -o slow --size 96x64 --slow 4 --video - 2>err </dev/null | head -c 1000 >/dev/null
 equal "status where nobody reads" "${PIPESTATUS[0]}" 3
 complains "standard output: error: cannot write: Broken pipe"

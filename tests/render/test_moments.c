@@ -42,7 +42,7 @@ static MomentPlan plan_for(RenderOptions options) {
     MomentPlan plan;
     Error error = {0};
     const Trajectory *panels[] = {run};
-    assert_ok(moments_plan(&plan, panels, 1, &options, &error), error);
+    assert_ok(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &options, &error), error);
     return plan;
 }
 
@@ -63,7 +63,7 @@ static void without_options_a_picture_is_a_frame(void **state) {
     (void)state;
     for (int slow = 0; slow <= 1; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
-        assert_int_equal(moments_count(&plan), FRAMES);
+        assert_int_equal(moments_last(&plan) + 1, FRAMES);
         for (int i = 0; i < FRAMES; i++) {
             Moment moment = moments_at(&plan, i);
             assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.part == 0 && moment.slow == 1);
@@ -78,7 +78,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
     (void)state;
     for (int slow = 2; slow <= RENDER_SLOW_MAX; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
-        int count = moments_count(&plan), stored = 0;
+        int count = moments_last(&plan) + 1, stored = 0;
         assert_int_equal(count, FRAMES + (slow - 1) * (BEFORE + AFTER));
         for (int i = 0; i < count; i++) {
             Moment moment = moments_at(&plan, i);
@@ -107,9 +107,9 @@ static void slow_motion_ends_where_the_run_does(void **state) {
         MomentPlan plan;
         Error error = {0};
         const Trajectory *panels[] = {other};
-        assert_ok(moments_plan(&plan, panels, 1, &(RenderOptions){.slow = 4}, &error), error);
-        assert_int_equal(moments_count(&plan), cases[i].frames + 3 * cases[i].between);
-        assert_int_equal(moments_at(&plan, moments_count(&plan) - 1).frame, cases[i].frames - 1);
+        assert_ok(moments_plan(&plan, panels, 1, 0, cases[i].frames - 1, &(RenderOptions){.slow = 4}, &error), error);
+        assert_int_equal(moments_last(&plan) + 1, cases[i].frames + 3 * cases[i].between);
+        assert_int_equal(moments_at(&plan, moments_last(&plan)).frame, cases[i].frames - 1);
         trajectory_destroy(other);
     }
 }
@@ -120,9 +120,8 @@ static void the_first_impact_of_all_panels_counts(void **state) {
     MomentPlan plan;
     Error error = {0};
     const Trajectory *panels[] = {later, run};
-    assert_ok(moments_plan(&plan, panels, 2, &(RenderOptions){.slow = 2}, &error), error);
+    assert_ok(moments_plan(&plan, panels, 2, 0, FRAMES + 4, &(RenderOptions){.slow = 2}, &error), error);
     assert_int_equal(plan.slow_first, IMPACT - BEFORE);
-    assert_int_equal(plan.frames, FRAMES + 5);
     trajectory_destroy(later);
 }
 
@@ -135,7 +134,7 @@ static void cards_and_hold_stand_around_the_run(void **state) {
     enum { CARD = 120, HOLD = 90 }; /* 2 s and 1.5 s at 60 Hz */
     MomentPlan plan = plan_for((RenderOptions){.slow = 3, .hold = 1.5, .title_card = true, .end_card = true});
     MomentPlan bare = plan_for((RenderOptions){.slow = 3});
-    int run_count = moments_count(&bare), count = moments_count(&plan);
+    int run_count = moments_last(&bare) + 1, count = moments_last(&plan) + 1;
     assert_int_equal(count, CARD + run_count + HOLD + CARD);
     for (int i = 0; i < count; i++) {
         Moment moment = moments_at(&plan, i);
@@ -149,25 +148,33 @@ static void cards_and_hold_stand_around_the_run(void **state) {
             assert_true(moment.kind == MOMENT_END && moment.frame == FRAMES - 1);
     }
     MomentPlan title = plan_for((RenderOptions){.title_card = true});
-    assert_int_equal(moments_count(&title), CARD + FRAMES);
+    assert_int_equal(moments_last(&title) + 1, CARD + FRAMES);
     MomentPlan end = plan_for((RenderOptions){.end_card = true});
-    assert_int_equal(moments_count(&end), FRAMES + CARD);
+    assert_int_equal(moments_last(&end) + 1, FRAMES + CARD);
 }
 
-/* Neighbouring ranges share the picture of the frame where they meet, and no other. */
-static void ranges_make_up_the_whole(void **state) {
+/* A part has cards and hold of its own, and the run's own moments in between; its numbers begin with the first frame. */
+static void a_part_is_a_sequence_of_its_own(void **state) {
     (void)state;
-    MomentPlan plan = plan_for((RenderOptions){.slow = 5, .hold = 0.5, .title_card = true, .end_card = true});
-    for (int middle = 1; middle < FRAMES - 1; middle++) {
-        int first, last, next, end;
-        moments_range(&plan, 0, middle, &first, &last);
-        moments_range(&plan, middle, FRAMES - 1, &next, &end);
-        assert_int_equal(first, 0);
-        assert_int_equal(last, next);
-        assert_int_equal(end, moments_count(&plan) - 1);
-        Moment moment = moments_at(&plan, last);
-        assert_true(moment.kind == MOMENT_STORED && moment.frame == middle);
-    }
+    MomentPlan bare = plan_for((RenderOptions){.slow = 5});
+    RenderOptions options = {.slow = 5, .hold = 0.5, .title_card = true, .end_card = true};
+    const Trajectory *panels[] = {run};
+    for (int first = 0; first < FRAMES; first += 11)
+        for (int last = first; last < FRAMES; last += 13) {
+            MomentPlan plan;
+            Error error = {0};
+            assert_ok(moments_plan(&plan, panels, 1, first, last, &options, &error), error);
+            int whole = 0, i = first;
+            while (time_of(moments_at(&bare, whole)) < first) whole++;
+            for (; moments_at(&plan, i).kind == MOMENT_TITLE; i++) assert_int_equal(moments_at(&plan, i).frame, first);
+            assert_int_equal(i - first, plan.title);
+            for (; time_of(moments_at(&bare, whole)) < last; i++, whole++)
+                assert_same_moment(moments_at(&plan, i), moments_at(&bare, whole));
+            for (int held = 0; held <= plan.hold; held++, i++)
+                assert_same_moment(moments_at(&plan, i), moment_stored(last));
+            for (; i <= moments_last(&plan); i++)
+                assert_same_moment(moments_at(&plan, i), (Moment){MOMENT_END, last, 0, 1});
+        }
 }
 
 static void what_is_out_of_range_is_refused(void **state) {
@@ -184,15 +191,15 @@ static void what_is_out_of_range_is_refused(void **state) {
     MomentPlan plan;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         Error error = {0};
-        assert_false(moments_plan(&plan, panels, 1, &wrong[i].options, &error));
+        assert_false(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &wrong[i].options, &error));
         assert_error(error, ERROR_INPUT, wrong[i].text);
     }
     Error error = {0};
     run->dt = 1e-9F;
-    assert_false(moments_plan(&plan, panels, 1, &(RenderOptions){.hold = 60}, &error));
+    assert_false(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error));
     assert_error(error, ERROR_INPUT, "more pictures than a sequence can have");
     run->dt = 10;
-    assert_true(moments_plan(&plan, panels, 1, &(RenderOptions){.slow = 2, .title_card = true}, &error));
+    assert_true(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.slow = 2, .title_card = true}, &error));
     assert_true(plan.title == 1 && plan.slow_first == IMPACT - 1 && plan.slow_last == IMPACT + 1);
     run->dt = 1.0F / 60;
 }
@@ -205,7 +212,7 @@ int main(void) {
         cmocka_unit_test(slow_motion_ends_where_the_run_does),
         cmocka_unit_test(the_first_impact_of_all_panels_counts),
         cmocka_unit_test(cards_and_hold_stand_around_the_run),
-        cmocka_unit_test(ranges_make_up_the_whole),
+        cmocka_unit_test(a_part_is_a_sequence_of_its_own),
         cmocka_unit_test(what_is_out_of_range_is_refused),
     };
     return cmocka_run_group_tests(tests, make, destroy);
