@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pictures of a report, in memory. */
+#include "common/hash.h"
+#include "image/difference_picture.h"
+#include "image/flip.h"
+#include "image/png_encoder.h"
+#include "report/regression_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char report_kind_letters[REPORT_KINDS + 1] = "eadf";
+enum { DIFFERENCE = SIDES, HEAT };
+
+/* The file as it was compared, not what has come in its place since. */
+static bool load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
+    const char *path = frame->at[side]->path;
+    picture->data = image_load_png(path, &picture->size, error);
+    if (picture->data == NULL) return false;
+    return hash_xxh3(picture->data, picture->size) == frame->files[side].hash ||
+           error_input(error, path, "has changed since it was compared");
+}
+
+static bool encode(const Image *image, ReportPicture *picture, Error *error) {
+    const uint8_t *data;
+    PngEncoder *encoder = image == NULL ? NULL : png_encoder_create(image->width, image->height, PNG_SMALL, error);
+    bool ok = encoder != NULL && png_encode(encoder, image, NULL, NULL, 0, &data, &picture->size, error);
+    if (ok && (picture->data = malloc(picture->size)) == NULL) ok = error_memory(error, "report");
+    if (ok) memcpy(picture->data, data, picture->size);
+    png_encoder_destroy(encoder);
+    return ok;
+}
+
+static bool draw_heat(const Image *expected, const Image *actual, ReportPicture *picture, Error *error) {
+    double mean;
+    float *map = malloc((size_t)expected->width * (size_t)expected->height * sizeof *map);
+    if (map == NULL) return error_memory(error, "report");
+    Image *heat = NULL;
+    if (flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, map, &mean, error))
+        heat = heat_picture(map, expected->width, expected->height, error);
+    bool ok = heat != NULL && encode(heat, picture, error);
+    image_destroy(heat);
+    free(map);
+    return ok;
+}
+
+static bool draw(const Regression *regression, const RegressionFrame *frame, const Image *expected, Image *actual,
+                 ReportPicture pictures[REPORT_KINDS], Error *error) {
+    uint8_t *masked = NULL;
+    const Mask *mask = regression->options.mask;
+    if (mask != NULL && mask->count > 0 &&
+        (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
+        return false;
+    Image *difference = difference_picture(expected, actual, masked, error);
+    image_cover(expected, actual, masked);
+    bool ok = difference != NULL && encode(difference, &pictures[DIFFERENCE], error) &&
+              draw_heat(expected, actual, &pictures[HEAT], error);
+    image_destroy(difference);
+    free(masked);
+    return ok;
+}
+
+/* Those of frames whose pixels differ in pictures of one size. */
+static bool draw_differences(const Regression *regression, const RegressionFrame *frame,
+                             ReportPicture pictures[REPORT_KINDS], Error *error) {
+    Image *images[SIDES] = {NULL, NULL};
+    if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
+    for (int side = 0; side < SIDES; side++)
+        images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
+                                        regression->options.max_pixels, error);
+    bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
+              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, error);
+    for (int side = 0; side < SIDES; side++) image_destroy(images[side]);
+    return ok;
+}
+
+static void drop(ReportPicture pictures[REPORT_KINDS]) {
+    for (int kind = 0; kind < REPORT_KINDS; kind++) {
+        free(pictures[kind].data);
+        pictures[kind] = (ReportPicture){NULL, 0};
+    }
+}
+
+/* Adds a frame's pictures as long as they fit; *left is 0 once some did not. */
+static bool add_frame(ReportPictures *pictures, Regression *regression, int i, size_t *left, Error *error) {
+    RegressionFrame *frame = &regression->frames[i];
+    ReportPicture *made = pictures->frames[i];
+    size_t size = 0;
+    bool ok = true;
+    for (int side = 0; side < SIDES; side++) size += frame->files[side].size;
+    bool fits = size < *left;
+    for (int side = 0; fits && ok && side < SIDES; side++)
+        ok = frame->at[side] == NULL || load(frame, side, &made[side], error);
+    ok = ok && (!fits || draw_differences(regression, frame, made, error));
+    size = 0;
+    for (int kind = 0; kind < REPORT_KINDS; kind++) size += (made[kind].size + 2) / 3 * 4;
+    frame->shown = ok && fits && size <= *left;
+    *left = frame->shown ? *left - size : 0;
+    pictures->left_out += !frame->shown;
+    if (!frame->shown) drop(made);
+    return ok;
+}
+
+bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes, Error *error) {
+    *pictures = (ReportPictures){.count = regression->count};
+    pictures->frames = calloc((size_t)regression->count + 1, sizeof *pictures->frames);
+    if (pictures->frames == NULL) return error_memory(error, "report");
+    bool ok = true;
+    for (int failed = 1; failed >= 0; failed--)
+        for (int i = 0; ok && i < regression->count; i++) {
+            const RegressionFrame *frame = &regression->frames[i];
+            if (failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN)
+                ok = add_frame(pictures, regression, i, &max_bytes, error);
+        }
+    if (!ok) report_pictures_free(pictures);
+    return ok;
+}
+
+void report_pictures_free(ReportPictures *pictures) {
+    for (int i = 0; pictures->frames != NULL && i < pictures->count; i++) drop(pictures->frames[i]);
+    free(pictures->frames);
+}
