@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pictures of a report, in memory. */
 #include "common/hash.h"
+#include "common/parallel.h"
 #include "image/difference_picture.h"
 #include "image/flip.h"
 #include "image/png_encoder.h"
@@ -81,37 +82,62 @@ static void drop(ReportPicture pictures[REPORT_KINDS]) {
     }
 }
 
-/* Adds a frame's pictures as long as they fit; *left is 0 once some did not. */
-static bool add_frame(ReportPictures *pictures, Regression *regression, int i, size_t *left, Error *error) {
-    RegressionFrame *frame = &regression->frames[i];
+enum { BATCH = 16 };
+
+/* Frames whose pictures are made at once, by all threads. */
+typedef struct Batch {
+    ReportPictures *pictures;
+    const Regression *regression;
+    int count, frames[BATCH];
+} Batch;
+
+static bool make_frame(void *context, int i, Error *error) {
+    const Batch *batch = context;
+    const RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
+    ReportPicture *made = batch->pictures->frames[batch->frames[i]];
+    for (int side = 0; side < SIDES; side++)
+        if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
+    return draw_differences(batch->regression, frame, made, error);
+}
+
+/* Keeps a frame's pictures if they fit; *left is 0 once some did not. */
+static void keep_frame(ReportPictures *pictures, RegressionFrame *frame, int i, size_t *left) {
     ReportPicture *made = pictures->frames[i];
     size_t size = 0;
-    bool ok = true;
-    for (int side = 0; side < SIDES; side++) size += frame->files[side].size;
-    bool fits = size < *left;
-    for (int side = 0; fits && ok && side < SIDES; side++)
-        ok = frame->at[side] == NULL || load(frame, side, &made[side], error);
-    ok = ok && (!fits || draw_differences(regression, frame, made, error));
-    size = 0;
     for (int kind = 0; kind < REPORT_KINDS; kind++) size += (made[kind].size + 2) / 3 * 4;
-    frame->shown = ok && fits && size <= *left;
+    frame->shown = size > 0 && size <= *left;
     *left = frame->shown ? *left - size : 0;
     pictures->left_out += !frame->shown;
     if (!frame->shown) drop(made);
-    return ok;
+}
+
+static bool make_batch(Batch *batch, Regression *regression, size_t *left, Error *error) {
+    const ParallelWork work = {make_frame, batch};
+    if (*left > 0 && !parallel_for(&work, batch->count, "report", NULL, error)) return false;
+    for (int k = 0; k < batch->count; k++)
+        keep_frame(batch->pictures, &regression->frames[batch->frames[k]], batch->frames[k], left);
+    batch->count = 0;
+    return true;
+}
+
+/* Failures first, then what is within tolerance. */
+static bool is_wanted(const RegressionFrame *frame, bool failed) {
+    return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
 }
 
 bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes, Error *error) {
     *pictures = (ReportPictures){.count = regression->count};
     pictures->frames = calloc((size_t)regression->count + 1, sizeof *pictures->frames);
     if (pictures->frames == NULL) return error_memory(error, "report");
+    Batch batch = {.pictures = pictures, .regression = regression};
     bool ok = true;
     for (int failed = 1; failed >= 0; failed--)
         for (int i = 0; ok && i < regression->count; i++) {
-            const RegressionFrame *frame = &regression->frames[i];
-            if (failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN)
-                ok = add_frame(pictures, regression, i, &max_bytes, error);
+            if (!is_wanted(&regression->frames[i], failed)) continue;
+            batch.frames[batch.count++] = i;
+            if (batch.count == BATCH) ok = make_batch(&batch, regression, &max_bytes, error);
         }
+    ok = ok && make_batch(&batch, regression, &max_bytes, error);
     if (!ok) report_pictures_free(pictures);
     return ok;
 }

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { WIDTH = 1200, HEIGHT = 168, LEFT = 50, RIGHT = 1190, ROW = 52, FLIP_TOP = 22, LARGEST_TOP = 106 };
+enum { WIDTH = 1200, HEIGHT = 124, LEFT = 50, RIGHT = 1190, ROW = 34, FLIP_TOP = 22, LARGEST_TOP = 84 };
 
 typedef double (*Figure)(const RegressionFrame *frame);
 

@@ -51,7 +51,8 @@ RegressionText frame_words(const RegressionFrame *frame) {
     case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
     case PIXELS_DIFFER:
-        add(&words, "", "%" PRId64 " pixels (%.3g%%), the largest by %d, the first at (%d, %d)", difference->pixels,
+        add(&words, "", "%" PRId64 " %s (%.3g%%), the largest by %d, the first at (%d, %d)", difference->pixels,
+            difference->pixels == 1 ? "pixel" : "pixels",
             100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
             difference->first_y);
     }

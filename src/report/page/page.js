@@ -73,7 +73,8 @@
     const split = get("split"), circle = get("ring");
     split.hidden = mode !== "swipe";
     split.style.left = blend + "%";
-    circle.hidden = !ring || !box;
+    /* A ring around nearly everything points at nothing. */
+    circle.hidden = !ring || !box || (box[2] - box[0]) * (box[3] - box[1]) > 0.5 * width * height;
     if (!box) return;
     const margin = 6, left = box[0] * scale - margin, above = box[1] * scale - margin;
     circle.style.left = left + "px";
