@@ -107,7 +107,7 @@ static bool tell_refusals(const Regression *regression, Error *error) {
     snprintf(error->message, sizeof error->message, "%s", regression->frames[first].refusal);
     size_t used = strlen(error->message);
     if (count > 1)
-        snprintf(error->message + used, sizeof error->message - used, "\n(and %d further frames cannot be compared)",
+        snprintf(error->message + used, sizeof error->message - used, "\n(further frames that cannot be compared: %d)",
                  count - 1);
     return false;
 }

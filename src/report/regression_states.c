@@ -59,12 +59,13 @@ static bool list_runs(Regression *regression, Error *error) {
 /* Which frames differ; where one run has ended, its last. */
 static bool mark_frames(RegressionRun *run, const Trajectory *a, const Trajectory *b, Error *error) {
     int common = a->frames < b->frames ? a->frames : b->frames;
-    bool same_worlds = a->bodies == b->bodies && (run->difference.frame >= 0 || a->frames != b->frames);
+    char what[sizeof run->difference.what];
+    bool other_worlds = trajectory_different_worlds(a, b, what, sizeof what);
     run->frames = a->frames > b->frames ? a->frames : b->frames;
     run->differs = malloc((size_t)run->frames * sizeof *run->differs);
     if (run->differs == NULL) return error_memory(error, run->name);
     for (int frame = 0; frame < run->frames; frame++) {
-        run->differs[frame] = !same_worlds || frame >= common;
+        run->differs[frame] = other_worlds || frame >= common;
         for (int body = 0; body < a->bodies && !run->differs[frame]; body++)
             run->differs[frame] = !trajectory_same_state(a, b, frame, body);
     }
