@@ -49,7 +49,6 @@ cat >probe.html <<'PROBE'
     await press("b");
     note("blinked", get("blink-what").textContent, ...[...document.querySelectorAll("#sheet img")].map(i => getComputedStyle(i).opacity));
     for (const key of ["1", "2", "3", "4"]) { await press(key); note("key " + key, pressed(), ...images()); }
-    const ring = get("ring"), hidden = () => getComputedStyle(ring).display;
     await press("5");
     await press("m");
     note("mark", get("ring").hidden, get("ring-button").getAttribute("aria-pressed"));
