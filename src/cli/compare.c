@@ -188,12 +188,14 @@ static void print_difference(const Regression *regression) {
 
 static void print_result(const Regression *regression) {
     int within = regression->by_verdict[PIXELS_WITHIN];
-    if (!regression_passed(regression))
+    if (!regression_passed(regression)) {
         print_difference(regression);
-    else if (within > 0)
-        printf("passed: %d frames, %d of them not equal, but within tolerance\n", regression->count, within);
-    else
-        printf("equal: %d frames\n", regression->count);
+        return;
+    }
+    printf("%s: %d frames", within > 0 ? "passed" : "equal", regression->count);
+    if (within > 0) printf(", %d of them not equal, but within tolerance", within);
+    if (regression->run_count > 0) printf(", %d trajectories", regression->run_count);
+    printf("\n");
 }
 
 static bool compare_pictures(const Options *options, const RegressionOptions *compared, int megabytes, bool *passed,

@@ -5,8 +5,8 @@
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
 run 0 simulate "$scenes/single.yaml" --frames 8 --bomb-x 1 -o b.npz
-run 0 render a.npz -o expected --size 160x90 --frames 0:4
-run 0 render b.npz -o actual --size 160x90 --frames 1:5
+run 0 render a.npz -o expected --size 80x64 --frames 0:4
+run 0 render b.npz -o actual --size 80x64 --frames 1:5
 cp -r expected expected.kept
 
 restart() {

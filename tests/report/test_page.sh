@@ -5,8 +5,8 @@
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
 run 0 simulate "$scenes/single.yaml" --frames 8 --bomb-x 1 -o b.npz
-run 0 render a.npz -o "expected</script>" --size 160x90 --frames 0:4
-run 0 render b.npz -o actual --size 160x90 --frames 1:5
+run 0 render a.npz -o "expected</script>" --size 80x64 --frames 0:4
+run 0 render b.npz -o actual --size 80x64 --frames 1:5
 cp "expected</script>/frame_000003.png" actual/frame_000003.png
 rm actual/*.npz
 run 1 compare "expected</script>" actual --report report
@@ -21,7 +21,9 @@ cat >probe.html <<'PROBE'
 <script>
 (async () => {
   const get = id => document.getElementById(id), seen = [];
-  const wait = () => new Promise(done => setTimeout(done, 60));
+  const wait = async () => {
+    do await new Promise(done => setTimeout(done, 20)); while (get("stage").getAttribute("aria-busy") !== "false");
+  };
   const press = async (key, target) => {
     (target || document.body).dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, cancelable: true}));
     await wait();
@@ -99,21 +101,21 @@ if command -v chromium >/dev/null; then
     browse
     says "title: twinbox compare: physics changed, 1 frame missing, 1 frame extra"
     says "rows: 5"
-    says "start: frame_000000.png | missing | 1 of 5 | mode-expected | expected:160"
-    says "right: frame_000001.png | physics changed | 2 of 5 | mode-swipe | expected:160 | actual:160"
+    says "start: frame_000000.png | missing | 1 of 5 | mode-expected | expected:80"
+    says "right: frame_000001.png | physics changed | 2 of 5 | mode-swipe | expected:80 | actual:80"
     says "row: frame_000001.pngphysics changed"
     says "swipe: inset(0px 0px 0px 50%)"
     says "swipe more: inset(0px 0px 0px 55%) | 55"
     says "onion: mode-onion | 0.55"
     says "blink: mode-blink | Now: expected | Go on"
     says "blinked: Now: actual | 0 | 1"
-    says "key 1: mode-expected | expected:160"
-    says "key 2: mode-actual | actual:160"
-    says "key 3: mode-difference | difference:160"
-    says "key 4: mode-flip | FLIP:160"
+    says "key 1: mode-expected | expected:80"
+    says "key 2: mode-actual | actual:80"
+    says "key 3: mode-difference | difference:80"
+    says "key 4: mode-flip | FLIP:80"
     says "mark: true | false"
-    says "zoom: 1 | 160px"
-    says "end: frame_000005.png | extra | 5 of 5 | mode-actual | actual:160"
+    says "zoom: 1 | 80px"
+    says "end: frame_000005.png | extra | 5 of 5 | mode-actual | actual:80"
     says "cannot: true | true"
     says "beyond: frame_000005.png | extra | 5 of 5"
     says "all: 6 | true | frame_000000.png | missing | 1 of 6"

@@ -9,7 +9,7 @@
   const plot = document.querySelector("#plot svg"), cursor = document.querySelector("#plot .cursor");
 
   let all = false, listed = [], at = -1, mode = "swipe", wanted = "swipe", zoom = "fit", blend = 50;
-  let ring = true, running = !reduced.matches, second = false, timer = 0;
+  let ring = true, running = !reduced.matches, second = false, timer = 0, turns = 0;
 
   const frame = () => data.frames[listed[at]];
   const stored = (index, kind) => get("p" + index + kind);
@@ -31,17 +31,17 @@
   function say(text) { get("nothing").textContent = text; get("nothing").hidden = text === ""; get("sheet").hidden = text !== ""; }
 
   async function show() {
-    const sheet = get("sheet"), index = listed[at];
-    const kinds = KINDS[mode] ? [KINDS[mode]] : ["e", "a"];
-    if (!usable(mode)) { sheet.replaceChildren(); return; }
-    const images = kinds.map(picture);
+    const sheet = get("sheet"), turn = ++turns, ready = usable(mode);
+    const images = !ready ? [] : (KINDS[mode] ? [KINDS[mode]] : ["e", "a"]).map(picture);
+    get("stage").setAttribute("aria-busy", "true");
     await Promise.all(images.map(image => image.decode().catch(() => {})));
-    if (listed[at] !== index || (KINDS[mode] ? [KINDS[mode]] : ["e", "a"]).join() !== kinds.join()) return;
+    if (turn !== turns) return; /* another picture was asked for meanwhile */
     const split = document.createElement("div"), circle = document.createElement("div");
     split.id = "split";
     circle.id = "ring";
-    sheet.replaceChildren(...images, split, circle);
+    sheet.replaceChildren(...(ready ? [...images, split, circle] : []));
     lay_out(true);
+    get("stage").setAttribute("aria-busy", "false");
   }
 
   function scale_for(width, height) {
@@ -127,7 +127,7 @@
 
   function choose(mode_name) {
     if (at < 0 || !usable(mode_name)) return;
-    const same = !KINDS[mode_name] && !KINDS[mode] && get("sheet").firstChild;
+    const same = !KINDS[mode_name] && !KINDS[mode] && get("stage").getAttribute("aria-busy") === "false";
     mode = wanted = mode_name;
     second = false;
     controls();
@@ -183,6 +183,9 @@
     else {
       get("name").textContent = get("frame-verdict").textContent = get("figures").textContent = get("place").textContent = "";
       say("No frame failed. Show all frames to see the others.");
+      turns++;
+      get("sheet").replaceChildren();
+      get("stage").setAttribute("aria-busy", "false");
       controls();
     }
   }
