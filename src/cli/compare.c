@@ -150,7 +150,6 @@ static bool read_options(const Options *options, RegressionOptions *compared, in
         (options->max_pixels == NULL || option_int("--max-pixels", options->max_pixels, 1, INT_MAX, &pixels, error)) &&
         (options->report_size == NULL || option_int("--report-size", options->report_size, 1, 1000, megabytes, error));
     compared->max_pixels = pixels;
-    compared->flip = options->report != NULL;
     return ok;
 }
 
@@ -209,7 +208,9 @@ static bool compare_pictures(const Options *options, const RegressionOptions *co
     *passed = regression_passed(&regression);
     print_result(&regression);
     if (options->report != NULL) {
-        ok = regression_report_write(&regression, options->report, (size_t)megabytes << 20, error);
+        progress_bar_begin(&bar, "report");
+        ok = regression_report_write(&regression, options->report, (size_t)megabytes << 20, &bar.progress, error);
+        progress_bar_end(&bar);
         if (ok) printf("report -> %s/report.html\n", options->report);
     }
     regression_free(&regression);

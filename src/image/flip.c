@@ -148,8 +148,14 @@ static float feature_change(const Part *part, int first, size_t i) {
     return fabsf(strength_a - strength_b);
 }
 
+static bool looks_equal(const Part *part, size_t i) {
+    const FlipPlane *a = part->planes[0], *b = part->planes[1];
+    return a[0].values[i] == b[0].values[i] && a[1].values[i] == b[1].values[i] && a[2].values[i] == b[2].values[i];
+}
+
 /* Equation 6 of one pixel. */
 static float pixel_flip(const Part *part, size_t i, float largest) {
+    if (looks_equal(part, i)) return 0;
     float color = color_error(hyab(blurred(part, 0, i), blurred(part, 1, i)), largest);
     if (color <= 0) return 0; /* where 0 to the power of 0 would be 1 */
     float change = fmaxf(feature_change(part, 0, i), feature_change(part, 2, i));

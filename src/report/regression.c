@@ -3,7 +3,6 @@
 
 #include "common/hash.h"
 #include "common/parallel.h"
-#include "image/flip.h"
 #include "report/regression_states.h"
 
 #include <math.h>
@@ -15,8 +14,8 @@ static bool within(const RegressionOptions *options, const ImageDifference *diff
            (double)difference->pixels <= options->max_share * (double)difference->counted;
 }
 
-static bool judge_pixels(const RegressionOptions *options, RegressionFrame *frame, const Image *expected, Image *actual,
-                         Error *error) {
+static bool judge_pixels(const RegressionOptions *options, RegressionFrame *frame, const Image *expected,
+                         const Image *actual, Error *error) {
     uint8_t *masked = NULL;
     bool has_mask = options->mask != NULL && options->mask->count > 0;
     if (has_mask && (masked = mask_make(options->mask, expected->width, expected->height, frame->at[EXPECTED]->path,
@@ -28,13 +27,8 @@ static bool judge_pixels(const RegressionOptions *options, RegressionFrame *fram
                     : difference->equal           ? PIXELS_EQUAL
                     : within(options, difference) ? PIXELS_WITHIN
                                                   : PIXELS_DIFFER;
-    bool ok = true;
-    if (options->flip && difference->same_size) {
-        image_cover(expected, actual, masked);
-        ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &frame->flip, error);
-    }
     free(masked);
-    return ok;
+    return true;
 }
 
 static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
@@ -71,7 +65,6 @@ static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t 
     regression_judge_states(regression, frame, data);
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     bool same_bytes = a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0;
-    frame->flip = options->flip && same_bytes ? 0 : NAN;
     if (!same_bytes) return decode_and_judge(options, frame, data, error);
     frame->pixels = PIXELS_EQUAL;
     frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
@@ -117,7 +110,8 @@ bool frame_failed(const RegressionFrame *frame) {
 }
 
 static void count_first(int *count, int *first, int i) {
-    if ((*count)++ == 0) *first = i;
+    (*count)++;
+    if (*first < 0) *first = i;
 }
 
 static void count_frame(Regression *regression, int i) {
@@ -126,8 +120,40 @@ static void count_frame(Regression *regression, int i) {
     regression->by_verdict[frame->pixels]++;
     if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
     if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
+    regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
     if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
     regression->unknown += pictures && frame->states == STATES_UNKNOWN;
+}
+
+static bool same_sequence(const RegressionFrame *a, const RegressionFrame *b) {
+    const SequenceFrame *x = a->at[EXPECTED], *y = b->at[EXPECTED];
+    return x->stem == y->stem && memcmp(x->name, y->name, (size_t)x->stem) == 0;
+}
+
+/* See StateVerdict. The frames of one sequence, [count]. */
+static void settle_sequence(RegressionFrame *const *frames, int count) {
+    bool physics = false, same_framing = false;
+    for (int i = 0; i < count; i++) {
+        physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
+        same_framing = same_framing || (frames[i]->states == STATES_EQUAL && frames[i]->pixels == PIXELS_EQUAL);
+    }
+    for (int i = 0; physics && !same_framing && i < count; i++)
+        if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;
+}
+
+/* Frames without a partner say nothing, and their names may be of another stem. */
+static bool settle(Regression *regression, Error *error) {
+    RegressionFrame **paired = malloc(((size_t)regression->count + 1) * sizeof *paired);
+    if (paired == NULL) return error_memory(error, "frames");
+    int count = 0;
+    for (int i = 0; i < regression->count; i++)
+        if (regression->frames[i].pixels < PIXELS_MISSING) paired[count++] = &regression->frames[i];
+    for (int first = 0, end = 0; first < count; first = end) {
+        while (end < count && same_sequence(paired[first], paired[end])) end++;
+        settle_sequence(paired + first, end - first);
+    }
+    free(paired);
+    return true;
 }
 
 static void count(Regression *regression) {
@@ -172,7 +198,7 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
               (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
               take_pairs(regression, error) && regression_find_runs(regression, error) &&
               refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
-              tell_refusals(regression, error);
+              tell_refusals(regression, error) && settle(regression, error);
     if (ok)
         count(regression);
     else

@@ -14,7 +14,6 @@ typedef struct RegressionOptions {
     double max_share;   /* of the pixels that are not masked, 0..1: frames that keep to both pass */
     const Mask *mask;
     int64_t max_pixels; /* of a picture; larger ones are refused before anything is inflated */
-    bool flip;          /* measured, too (image/flip.h) */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -28,7 +27,9 @@ typedef enum PixelVerdict {
     PIXELS_EXTRA    /* there is no expected one */
 } PixelVerdict;
 
-typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER } StateVerdict;
+/* What is drawn of one frame may hang on the whole run: the camera, a scale. So where the run differs elsewhere, and no frame
+   of the sequence has equal states and equal pixels, the renderer is not blamed for a frame of equal states. */
+typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
 
 /* What a file was when it was read. */
 typedef struct RegressionFile {
@@ -44,9 +45,10 @@ typedef struct RegressionFrame {
     StateVerdict states;
     int panel; /* the first whose text "State" differs, from 1; else 0 */
     ImageDifference difference;
-    double flip;   /* NAN where it was not measured */
-    bool shown;    /* in the report */
-    char *refusal; /* why a picture could not be read; ends the whole */
+    double flip;      /* measured by the report (image/flip.h); else NAN */
+    bool run_differs; /* a trajectory of its scene does, in whatever frame */
+    bool shown;       /* in the report */
+    char *refusal;    /* why a picture could not be read; ends the whole */
 } RegressionFrame;
 
 /* A trajectory that lies in both folders. */

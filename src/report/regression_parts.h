@@ -20,7 +20,8 @@ typedef struct ReportPictures {
 } ReportPictures;
 
 /* Fills pictures, and `shown` of the frames. On failure nothing is to be freed. */
-bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes, Error *error);
+bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes,
+                            const Progress *progress, Error *error);
 void report_pictures_free(ReportPictures *pictures);
 
 typedef struct Report {

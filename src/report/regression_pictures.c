@@ -32,45 +32,50 @@ static bool encode(const Image *image, ReportPicture *picture, Error *error) {
     return ok;
 }
 
-static bool draw_heat(const Image *expected, const Image *actual, ReportPicture *picture, Error *error) {
-    double mean;
-    float *map = malloc((size_t)expected->width * (size_t)expected->height * sizeof *map);
-    if (map == NULL) return error_memory(error, "report");
+/* Measures FLIP; its picture only where there is room for it. */
+static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
+                    Error *error) {
+    float *map = NULL;
     Image *heat = NULL;
-    if (flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, map, &mean, error))
+    if (picture != NULL && (map = malloc((size_t)expected->width * (size_t)expected->height * sizeof *map)) == NULL)
+        return error_memory(error, "report");
+    bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, map, &frame->flip, error);
+    if (ok && map != NULL) {
         heat = heat_picture(map, expected->width, expected->height, error);
-    bool ok = heat != NULL && encode(heat, picture, error);
+        ok = heat != NULL && encode(heat, picture, error);
+    }
     image_destroy(heat);
     free(map);
     return ok;
 }
 
-static bool draw(const Regression *regression, const RegressionFrame *frame, const Image *expected, Image *actual,
-                 ReportPicture pictures[REPORT_KINDS], Error *error) {
+/* Without room, pictures is only what was read. */
+static bool draw(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                 ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
     uint8_t *masked = NULL;
     const Mask *mask = regression->options.mask;
     if (mask != NULL && mask->count > 0 &&
         (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
         return false;
-    Image *difference = difference_picture(expected, actual, masked, error);
+    Image *difference = room ? difference_picture(expected, actual, masked, error) : NULL;
     image_cover(expected, actual, masked);
-    bool ok = difference != NULL && encode(difference, &pictures[DIFFERENCE], error) &&
-              draw_heat(expected, actual, &pictures[HEAT], error);
+    bool ok = (!room || (difference != NULL && encode(difference, &pictures[DIFFERENCE], error))) &&
+              measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     image_destroy(difference);
     free(masked);
     return ok;
 }
 
 /* Those of frames whose pixels differ in pictures of one size. */
-static bool draw_differences(const Regression *regression, const RegressionFrame *frame,
-                             ReportPicture pictures[REPORT_KINDS], Error *error) {
+static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
+                             bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
     if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
     for (int side = 0; side < SIDES; side++)
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
                                         regression->options.max_pixels, error);
     bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
-              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, error);
+              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
     for (int side = 0; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }
@@ -87,17 +92,19 @@ enum { BATCH = 16 };
 /* Frames whose pictures are made at once, by all threads. */
 typedef struct Batch {
     ReportPictures *pictures;
-    const Regression *regression;
+    Regression *regression;
+    bool room;
+    int wanted, done; /* frames of all batches */
     int count, frames[BATCH];
 } Batch;
 
 static bool make_frame(void *context, int i, Error *error) {
     const Batch *batch = context;
-    const RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
+    RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
     ReportPicture *made = batch->pictures->frames[batch->frames[i]];
     for (int side = 0; side < SIDES; side++)
         if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
-    return draw_differences(batch->regression, frame, made, error);
+    return draw_differences(batch->regression, frame, made, batch->room, error);
 }
 
 /* Keeps a frame's pictures if they fit; *left is 0 once some did not. */
@@ -111,12 +118,16 @@ static void keep_frame(ReportPictures *pictures, RegressionFrame *frame, int i, 
     if (!frame->shown) drop(made);
 }
 
-static bool make_batch(Batch *batch, Regression *regression, size_t *left, Error *error) {
+static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Error *error) {
     const ParallelWork work = {make_frame, batch};
-    if (*left > 0 && !parallel_for(&work, batch->count, "report", NULL, error)) return false;
+    batch->room = *left > 0;
+    bool ok = parallel_for(&work, batch->count, "report", NULL, error);
     for (int k = 0; k < batch->count; k++)
-        keep_frame(batch->pictures, &regression->frames[batch->frames[k]], batch->frames[k], left);
+        keep_frame(batch->pictures, &batch->regression->frames[batch->frames[k]], batch->frames[k], left);
+    if (!ok) return false;
+    batch->done += batch->count;
     batch->count = 0;
+    if (!progress_report(progress, batch->done, batch->wanted)) return error_input(error, "report", "stopped");
     return true;
 }
 
@@ -125,19 +136,25 @@ static bool is_wanted(const RegressionFrame *frame, bool failed) {
     return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
 }
 
-bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes, Error *error) {
+bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes,
+                            const Progress *progress, Error *error) {
     *pictures = (ReportPictures){.count = regression->count};
     pictures->frames = calloc((size_t)regression->count + 1, sizeof *pictures->frames);
     if (pictures->frames == NULL) return error_memory(error, "report");
     Batch batch = {.pictures = pictures, .regression = regression};
     bool ok = true;
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels == PIXELS_EQUAL) frame->flip = 0;
+        batch.wanted += is_wanted(frame, true) || is_wanted(frame, false);
+    }
     for (int failed = 1; failed >= 0; failed--)
         for (int i = 0; ok && i < regression->count; i++) {
             if (!is_wanted(&regression->frames[i], failed)) continue;
             batch.frames[batch.count++] = i;
-            if (batch.count == BATCH) ok = make_batch(&batch, regression, &max_bytes, error);
+            if (batch.count == BATCH) ok = make_batch(&batch, &max_bytes, progress, error);
         }
-    ok = ok && make_batch(&batch, regression, &max_bytes, error);
+    ok = ok && make_batch(&batch, &max_bytes, progress, error);
     if (!ok) report_pictures_free(pictures);
     return ok;
 }

@@ -12,10 +12,12 @@ static const struct {
     void (*put)(FILE *file, const void *report);
 } parts[] = {{"report.html", report_put_page}, {"junit.xml", report_put_junit}, {"results.json", report_put_json}};
 
-bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, Error *error) {
+bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
+                             Error *error) {
     ReportPictures pictures;
     char path[PATH_MAX];
-    if (!file_make_directory(folder, error) || !report_pictures_gather(&pictures, regression, max_bytes, error))
+    if (!file_make_directory(folder, error) ||
+        !report_pictures_gather(&pictures, regression, max_bytes, progress, error))
         return false;
     const Report report = {regression, &pictures, folder};
     bool ok = true;

@@ -8,6 +8,8 @@
 enum { REPORT_MEGABYTES = 64 };
 
 /* Writes the three into a folder, made where it is missing. Of frames that failed, and then of those within tolerance, the
-   first whose pictures fit into max_bytes are shown; the others say that they are not, and cannot be approved. ERROR_INPUT
+   first whose pictures fit into max_bytes are shown; the others say that they are not, and cannot be approved. FLIP is measured
+   of all. ERROR_INPUT
    where a file is no longer what was compared. The same comparison gives the same bytes. */
-bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, Error *error);
+bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
+                             Error *error);

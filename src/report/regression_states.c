@@ -140,15 +140,17 @@ static int first_panel(const char *a, const char *b) {
     return panel;
 }
 
-/* Any run of the picture's scene; of any scene where the picture does not tell. */
-static bool runs_differ(const Regression *regression, const Texts *texts, int64_t frame) {
+/* Any run of the picture's scene; of any scene where the picture does not tell. *somewhere: in whatever frame. */
+static bool runs_differ(const Regression *regression, const Texts *texts, int64_t frame, bool *somewhere) {
+    bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
         if (run->differs == NULL || (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0)) continue;
         int64_t at = frame < run->frames ? frame : run->frames - 1;
-        if (run->differs[at < 0 ? 0 : at]) return true;
+        here = here || run->differs[at < 0 ? 0 : at];
+        *somewhere = true;
     }
-    return false;
+    return here;
 }
 
 void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]) {
@@ -159,7 +161,8 @@ void regression_judge_states(const Regression *regression, RegressionFrame *fram
     if (other) frame->panel = first_panel(a, b);
     const char *number = texts[EXPECTED].frame;
     int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->at[EXPECTED]->number;
-    if (other || runs_differ(regression, &texts[EXPECTED], at))
+    bool differs = runs_differ(regression, &texts[EXPECTED], at, &frame->run_differs);
+    if (other || differs)
         frame->states = STATES_DIFFER;
     else
         frame->states = told || regression->run_count > 0 ? STATES_EQUAL : STATES_UNKNOWN;

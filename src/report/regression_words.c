@@ -57,6 +57,8 @@ RegressionText frame_words(const RegressionFrame *frame) {
             difference->first_y);
     }
     if (frame->panel > 0) add(&words, ", ", "other states in panel %d", frame->panel);
+    if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
+        add(&words, ", ", "equal states here, but not in the whole run, which sets camera and scales");
     return words;
 }
 

@@ -244,23 +244,24 @@ static void other_runs_beside_the_frames(void **state) {
     regression_free(&regression);
 }
 
-/* FLIP is measured where it is asked for: 0 for equal files, none for a frame that has no partner. */
-static void figures_of_frames(void **state) {
+/* What a run does later moves the camera of its first frames, without any fault of the renderer. */
+static void a_camera_that_follows_the_run(void **state) {
     (void)state;
-    Error error = {0};
-    Regression regression;
-    const RegressionOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .flip = true};
-    Image *image = drawn(1);
-    for (int i = 0; i < 400; i++) memset(image->pixels + 4 * (i % 20 + (i / 20) * WIDTH), 0, 3);
-    replace_pixels(1, image);
-    assert_int_equal(remove(frame_path(actual, 2)), 0);
-    assert_ok(regression_run(&regression, expected, actual, &options, NULL, &error), error);
-    const RegressionFrame *frames = regression.frames;
-    assert_true(frames[0].flip == 0);
-    assert_true(frames[1].flip > 0 && frames[1].flip < 0.01);
-    assert_true(isnan(frames[2].flip) && frames[2].pixels == PIXELS_MISSING);
-    assert_int_equal(regression.by_verdict[PIXELS_EQUAL], 4);
-    image_destroy(image);
+    run->camera_size = vec2(0, 0);
+    render_into(expected);
+    run_position(run, 5, FIRST_BOX)->y += 30;
+    render_into(actual);
+    Regression regression = compared();
+    assert_int_equal(regression.by_verdict[PIXELS_DIFFER], FRAMES);
+    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
+    assert_int_equal(regression.runs[0].difference.frame, 5);
+    regression_free(&regression);
+    remove_runs();
+    regression = compared();
+    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
+    assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000005.png, panel 1");
     regression_free(&regression);
 }
 
@@ -274,7 +275,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_last_bit_of_one_body, make, remove_folders),
         cmocka_unit_test_setup_teardown(both_at_once, make, remove_folders),
         cmocka_unit_test_setup_teardown(other_runs_beside_the_frames, make, remove_folders),
-        cmocka_unit_test_setup_teardown(figures_of_frames, make, remove_folders),
+        cmocka_unit_test_setup_teardown(a_camera_that_follows_the_run, make, remove_folders),
     };
     return cmocka_run_group_tests(tests, draw_expected, NULL);
 }
