@@ -64,7 +64,7 @@ static const struct argp argp = {
     "and "
     "number. Whether the renderer changed or the physics is told by the trajectories that lie in both folders, and by "
     "the states that our pictures name. Exit status 0: equal, 1: different, 2: what cannot be compared.\v"
-    "Example: twinbox compare golden/frames out/frames --report out/report",
+    "Example: twinbox compare golden/frames out/golden/frames --report out/report",
     NULL,
     NULL,
     NULL};
