@@ -35,14 +35,14 @@ static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *
                              Error *error) {
     Image *images[SIDES] = {NULL, NULL};
     bool ok = true;
-    for (int side = 0; ok && side < SIDES; side++) {
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         RegressionFile *file = &frame->files[side];
         images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, options->max_pixels, error);
         ok = images[side] != NULL;
         if (ok) file->width = images[side]->width, file->height = images[side]->height;
     }
     ok = ok && judge_pixels(options, frame, images[EXPECTED], images[ACTUAL], error);
-    for (int side = 0; side < SIDES; side++) image_destroy(images[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }
 
@@ -60,7 +60,7 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
 
 static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     const RegressionOptions *options = &regression->options;
-    for (int side = 0; side < SIDES; side++)
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
     regression_judge_states(regression, frame, data);
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
@@ -78,14 +78,14 @@ static bool compare_frame(void *context, int i, Error *error) {
     Error refusal = {0};
     uint8_t *data[SIDES] = {NULL, NULL};
     bool ok = true;
-    for (int side = 0; ok && side < SIDES; side++) {
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         if (frame->at[side] == NULL) continue;
         RegressionFile *file = &frame->files[side];
         ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, &refusal)) != NULL;
         if (ok) file->hash = hash_xxh3(data[side], file->size);
     }
     ok = ok && judge(regression, frame, data, &refusal);
-    for (int side = 0; side < SIDES; side++) free(data[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
     if (!ok && refusal.kind == ERROR_INPUT && (frame->refusal = strdup(refusal.message)) != NULL) return true;
     if (!ok) *error = refusal;
     return ok;
@@ -182,7 +182,7 @@ static bool take_pairs(Regression *regression, Error *error) {
 
 /* A folder with nothing in it is a mistake rather than a difference. */
 static bool refuse_empty(const Regression *regression, Error *error) {
-    for (int side = 0; side < SIDES; side++) {
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
         if (sequence->count == 0 && regression->run_count == 0)
             return error_input(error, sequence->folder, "no PNG files (such as frame_000000.png) in this folder");
@@ -214,6 +214,6 @@ void regression_free(Regression *regression) {
     for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].refusal);
     free(regression->frames);
     free(regression->runs);
-    for (int side = 0; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};
 }

@@ -31,7 +31,8 @@ static void put_flag(FILE *file, const char *key, bool value) {
 static void put_frame(FILE *file, const RegressionFrame *frame) {
     const ImageDifference *d = &frame->difference;
     const char *names[SIDES];
-    for (int side = 0; side < SIDES; side++) names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
     fputs("  {", file);
     put_pair(file, "name", frame_name(frame));
     put_pair(file, "verdict", frame_verdict(frame));

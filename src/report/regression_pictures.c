@@ -71,12 +71,12 @@ static bool draw_differences(const Regression *regression, RegressionFrame *fram
                              bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
     if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
-    for (int side = 0; side < SIDES; side++)
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
                                         regression->options.max_pixels, error);
     bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
               draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
-    for (int side = 0; side < SIDES; side++) image_destroy(images[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }
 
@@ -102,7 +102,7 @@ static bool make_frame(void *context, int i, Error *error) {
     const Batch *batch = context;
     RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
     ReportPicture *made = batch->pictures->frames[batch->frames[i]];
-    for (int side = 0; side < SIDES; side++)
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
     return draw_differences(batch->regression, frame, made, batch->room, error);
 }

@@ -28,7 +28,7 @@ static bool is_run(const Regression *regression, const char *name) {
     char path[SIDES][PATH_MAX];
     size_t length = strlen(name);
     if (name[0] == '.' || length < 5 || strcmp(name + length - 4, ".npz") != 0 || !name_is_text(name)) return false;
-    for (int side = 0; side < SIDES; side++) run_path(regression, side, name, path[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) run_path(regression, side, name, path[side]);
     return is_file(path[EXPECTED]) && is_file(path[ACTUAL]);
 }
 
@@ -75,7 +75,8 @@ static bool mark_frames(RegressionRun *run, const Trajectory *a, const Trajector
 static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *foreign, Error *error) {
     Error failures[SIDES] = {{0}, {0}};
     Trajectory *sides[SIDES];
-    for (int side = 0; side < SIDES; side++) sides[side] = trajectory_read(paths[side], &failures[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        sides[side] = trajectory_read(paths[side], &failures[side]);
     bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL;
     *foreign = sides[EXPECTED] == NULL && sides[ACTUAL] == NULL;
     if (ok) {
@@ -84,13 +85,13 @@ static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *f
         ok = run->difference.equal || mark_frames(run, sides[EXPECTED], sides[ACTUAL], error);
     } else if (!*foreign)
         *error = failures[sides[EXPECTED] == NULL ? EXPECTED : ACTUAL];
-    for (int side = 0; side < SIDES; side++) trajectory_destroy(sides[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(sides[side]);
     return ok || *foreign;
 }
 
 static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
     char paths[SIDES][PATH_MAX];
-    for (int side = 0; side < SIDES; side++) {
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         run_path(regression, side, run->name, paths[side]);
         RegressionFile *file = &run->files[side];
         char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
@@ -155,7 +156,8 @@ static bool runs_differ(const Regression *regression, const Texts *texts, int64_
 
 void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]) {
     Texts texts[SIDES];
-    for (int side = 0; side < SIDES; side++) read_texts(&texts[side], data[side], frame->files[side].size);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        read_texts(&texts[side], data[side], frame->files[side].size);
     const char *a = texts[EXPECTED].state, *b = texts[ACTUAL].state;
     bool told = a[0] != '\0' && b[0] != '\0', other = told && strcmp(a, b) != 0;
     if (other) frame->panel = first_panel(a, b);

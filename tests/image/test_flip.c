@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "image/flip.h"
+#include "image/flip_filter.h"
 
 #include <math.h>
 
@@ -136,7 +137,10 @@ static void the_map_is_local_and_its_mean_the_mean(void **state) {
     assert_near(mean, sum / (SIDE * SIDE), 1e-9);
 }
 
-/* Far from the edges a part of the picture has what it has in a larger one. */
+/* Nowhere plain: what a filter reads beyond its part shows. */
+static uint32_t busy_grey(int x) { return (uint32_t)(x * 37 % 200) * 0x010101; }
+
+/* Far from the edges a part of the picture has what it has in a larger one, of which all is computed. */
 static void what_lies_around_does_not_count(void **state) {
     (void)state;
     static float small[SIDE * SIDE], large[SIDE * SIDE * 4];
@@ -144,16 +148,72 @@ static void what_lies_around_does_not_count(void **state) {
     double mean;
     Image *wide_a = image_create(2 * SIDE, 2 * SIDE, &error), *wide_b = image_create(2 * SIDE, 2 * SIDE, &error);
     assert_ok(wide_a != NULL && wide_b != NULL, error);
-    for (int x = 0; x < 2 * SIDE; x++) paint(wide_a, x, x + 1, 0x808080), paint(wide_b, x, x + 1, 0x808080);
+    for (int x = 0; x < 2 * SIDE; x++) paint(wide_a, x, x + 1, busy_grey(x)), paint(wide_b, x, x + 1, busy_grey(x));
+    for (int x = 0; x < SIDE; x++) paint(a, x, x + 1, busy_grey(x)), paint(b, x, x + 1, busy_grey(x));
     paint(wide_b, 30, 34, 0xFF8000);
-    paint(a, 0, SIDE, 0x808080);
-    paint(b, 0, SIDE, 0x808080);
+    paint(wide_b, 0, 1, 0xFFFFFF);
+    paint(wide_b, 2 * SIDE - 1, 2 * SIDE, 0xFFFFFF);
     paint(b, 30, 34, 0xFF8000);
     flip(small);
     assert_ok(flip_compare(wide_a, wide_b, FLIP_PIXELS_PER_DEGREE, large, &mean, &error), error);
-    for (int x = 0; x < SIDE; x++) assert_near(small[20 * SIDE + x], large[20 * 2 * SIDE + x], 1e-6);
+    for (int x = 15; x < 50; x++) assert_near(small[20 * SIDE + x], large[20 * 2 * SIDE + x], 1e-6);
     image_destroy(wide_a);
     image_destroy(wide_b);
+}
+
+static double sum_of(const FlipKernel *kernel, bool above) {
+    double sum = 0;
+    for (int i = 0; i <= 2 * kernel->radius; i++)
+        if ((kernel->weights[i] > 0) == above) sum += (double)kernel->weights[i];
+    return sum;
+}
+
+/* Half a feature of 0.082 degrees is the deviation: 2.75 pixels. The first derivative turns at 0, the second there. */
+static void kernels_are_derivatives_of_a_gaussian(void **state) {
+    (void)state;
+    FlipFeatures features;
+    flip_make_features(&features, FLIP_PIXELS_PER_DEGREE);
+    int radius = features.edge.radius;
+    assert_int_equal(radius, 9);
+    assert_near(sum_of(&features.across, true), 1, 1e-6);
+    for (int above = 0; above < 2; above++) {
+        assert_near(sum_of(&features.edge, above), above ? 1 : -1, 1e-6);
+        assert_near(sum_of(&features.point, above), above ? 1 : -1, 1e-6);
+    }
+    for (int k = 1; k <= radius; k++) {
+        assert_true(features.edge.weights[radius + k] == -features.edge.weights[radius - k]);
+        assert_true(features.edge.weights[radius + k] < 0);
+        assert_true(features.point.weights[radius + k] == features.point.weights[radius - k]);
+        assert_true((features.point.weights[radius + k] > 0) == (k > 2));
+    }
+}
+
+/* The kernels sum to 1, so a plain plane stays as it is, and a step of one is an edge of one. */
+static void filters_are_scaled_by_what_they_find(void **state) {
+    (void)state;
+    enum { WIDTH = 40, HEIGHT = 30 };
+    static float from[WIDTH * HEIGHT], scratch[WIDTH * HEIGHT], to[WIDTH * HEIGHT], padded[WIDTH + 2 * FLIP_RADIUS_MAX];
+    FlipPlane in = {WIDTH, HEIGHT, from}, between = {WIDTH, HEIGHT, scratch}, out = {WIDTH, HEIGHT, to};
+    FlipFeatures features;
+    flip_make_features(&features, FLIP_PIXELS_PER_DEGREE);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) from[i] = 1;
+    for (int channel = 0; channel < 3; channel++) {
+        FlipBlur blur;
+        double sum = 0;
+        flip_make_blur(&blur, (FlipChannel)channel, FLIP_PIXELS_PER_DEGREE);
+        for (int i = 0; i < blur.count; i++) {
+            flip_filter(&in, &blur.kernels[i], &blur.kernels[i], &between, padded, &out);
+            sum += (double)(blur.share[i] * to[0]);
+        }
+        assert_near(sum, 1, 1e-5);
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++) from[i] = i % WIDTH < 20 ? 0 : 1;
+    flip_filter(&in, &features.edge, &features.across, &between, padded, &out);
+    double largest = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) largest = fmax(largest, fabs((double)to[i]));
+    assert_near(largest, 1, 0.15); /* the step lies beside a pixel's middle */
+    flip_filter(&in, &features.across, &features.edge, &between, padded, &out);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_near(to[i], 0, 1e-6);
 }
 
 static void pictures_of_one_pixel_are_pictures(void **state) {
@@ -175,6 +235,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(fine_stripes_vanish_with_distance, make, destroy),
         cmocka_unit_test_setup_teardown(the_map_is_local_and_its_mean_the_mean, make, destroy),
         cmocka_unit_test_setup_teardown(what_lies_around_does_not_count, make, destroy),
+        cmocka_unit_test(kernels_are_derivatives_of_a_gaussian),
+        cmocka_unit_test(filters_are_scaled_by_what_they_find),
         cmocka_unit_test(pictures_of_one_pixel_are_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
