@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/compare_print.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "report/regression_report.h"
@@ -14,9 +15,8 @@ enum { FUZZY = 256, MASK, MAX_PIXELS, REPORT, REPORT_SIZE };
 
 static const struct argp_option option_table[] = {
     {"fuzzy", FUZZY, "MAX,SHARE", 0,
-     "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE of the pixels does (0 "
-     "to "
-     "1)",
+     "Pass frames in which no channel differs by more than MAX (0 to 255), and at most this SHARE (0 to 1) of the "
+     "pixels",
      0},
     {"mask", MASK, "FILE.png|X,Y,W,H", 0,
      "Pixels that do not count: where the picture is neither black nor transparent, or a rectangle (may be repeated)",
@@ -153,50 +153,6 @@ static bool read_options(const Options *options, RegressionOptions *compared, in
     return ok;
 }
 
-/* The names of frames with this verdict. */
-static void print_names(const Regression *regression, PixelVerdict verdict, const char *folder) {
-    enum { NAMED = 10 };
-    int count = regression->by_verdict[verdict], named = 0;
-    if (count == 0) return;
-    printf("only in %s: %d %s:", folder, count, count == 1 ? "frame" : "frames");
-    for (int i = 0; i < regression->count && named < NAMED; i++)
-        if (regression->frames[i].pixels == verdict) {
-            printf(" %s", frame_name(&regression->frames[i]));
-            named++;
-        }
-    printf(count > NAMED ? " ...\n" : "\n");
-}
-
-static void print_difference(const Regression *regression) {
-    const int *by = regression->by_verdict;
-    print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
-    print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
-    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
-    int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
-    const RegressionFrame *frames = regression->frames;
-    for (int i = 0; different > 0 && i < regression->count; i++)
-        if (frames[i].pixels == PIXELS_DIFFER || frames[i].pixels == PIXELS_RESIZED) {
-            printf("first difference: %s: %s\n", frame_name(&frames[i]), frame_words(&frames[i]).text);
-            break;
-        }
-    if (different > 0) printf("%d of %d frames differ\n", different, compared);
-    RegressionText begin = regression_begin(regression);
-    if (begin.text[0] != '\0') printf("%s\n", begin.text);
-    printf("verdict: %s\n", regression_verdict(regression).text);
-}
-
-static void print_result(const Regression *regression) {
-    int within = regression->by_verdict[PIXELS_WITHIN];
-    if (!regression_passed(regression)) {
-        print_difference(regression);
-        return;
-    }
-    printf("%s: %d frames", within > 0 ? "passed" : "equal", regression->count);
-    if (within > 0) printf(", %d of them not equal, but within tolerance", within);
-    if (regression->run_count > 0) printf(", %d trajectories", regression->run_count);
-    printf("\n");
-}
-
 static bool compare_pictures(const Options *options, const RegressionOptions *compared, int megabytes, bool *passed,
                              Error *error) {
     Regression regression;
@@ -206,7 +162,7 @@ static bool compare_pictures(const Options *options, const RegressionOptions *co
     progress_bar_end(&bar);
     if (!ok) return false;
     *passed = regression_passed(&regression);
-    print_result(&regression);
+    compare_print(&regression);
     if (options->report != NULL) {
         progress_bar_begin(&bar, "report");
         ok = regression_report_write(&regression, options->report, (size_t)megabytes << 20, &bar.progress, error);

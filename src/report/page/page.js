@@ -24,6 +24,8 @@
     const image = new Image();
     image.alt = {e: "expected", a: "actual", d: "difference", f: "FLIP"}[kind] + " picture of " + frame().name;
     image.draggable = false;
+    image.decoding = "sync"; /* or a new picture would flash up empty */
+    image.loaded = new Promise(done => { image.onload = image.onerror = done; });
     image.src = "data:image/png;base64," + stored(listed[at], kind).textContent;
     return image;
   }
@@ -34,7 +36,7 @@
     const sheet = get("sheet"), turn = ++turns, ready = usable(mode);
     const images = !ready ? [] : (KINDS[mode] ? [KINDS[mode]] : ["e", "a"]).map(picture);
     get("stage").setAttribute("aria-busy", "true");
-    await Promise.all(images.map(image => image.decode().catch(() => {})));
+    await Promise.all(images.map(image => image.loaded));
     if (turn !== turns) return; /* another picture was asked for meanwhile */
     const split = document.createElement("div"), circle = document.createElement("div");
     split.id = "split";
