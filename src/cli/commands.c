@@ -4,6 +4,7 @@
 const Command commands[] = {{"simulate", "run a scene by one method and store the trajectory", command_simulate},
                             {"render", "draw runs side by side into a PNG sequence and a video", command_render},
                             {"compare", "tell where two trajectories or PNG sequences part", command_compare},
+                            {"approve", "accept what a report of compare has shown", command_approve},
                             {"diverge", "tell why two trajectories part, and how fast", command_diverge},
                             {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
                             {"train", "train the paper's network on a dataset", command_train},
