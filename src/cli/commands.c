@@ -5,6 +5,7 @@ const Command commands[] = {{"simulate", "run a scene by one method and store th
                             {"render", "draw runs side by side into a PNG sequence and a video", command_render},
                             {"compare", "tell where two trajectories or PNG sequences part", command_compare},
                             {"diverge", "tell why two trajectories part, and how fast", command_diverge},
+                            {"figure", "draw a figure for a paper from runs", command_figure},
                             {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
                             {"train", "train the paper's network on a dataset", command_train},
                             {"chart", "chart speed against accuracy for every method", command_chart},

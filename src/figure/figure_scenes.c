@@ -107,7 +107,7 @@ static double bomb_speed(const Trajectory *run) {
 }
 
 static void put_words(Sketch *sketch, const View *view, const char *title, const Scene *scene, const Trajectory *run) {
-    const TextStyle heading = {8.5, TEXT_LEFT, INK, 0}, words = {7.5, TEXT_LEFT, INK_SOFT, 0};
+    const TextStyle heading = {8.5, TEXT_LEFT, INK, 0, false}, words = {7.5, TEXT_LEFT, INK_SOFT, 0, false};
     int boxes = count_boxes(scene);
     sketch_text(sketch, (Point){view->low.x, height - 2.8}, &heading, "%s: %d %s", title, boxes,
                 boxes == 1 ? "box" : "boxes");

@@ -27,7 +27,7 @@ static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], 
         p = q;
         q = swap;
     }
-    const TextStyle style = {7.5, TEXT_CENTER, colour, atan2(q.y - p.y, q.x - p.x) * 180 / M_PI};
+    const TextStyle style = {7.5, TEXT_CENTER, colour, atan2(q.y - p.y, q.x - p.x) * 180 / M_PI, false};
     const Point at = {p.x + share * (q.x - p.x) + 2.4 * (double)off.x, p.y + share * (q.y - p.y) + 2.4 * (double)off.y};
     sketch_text(sketch, at, &style, "%s", words);
 }
@@ -67,7 +67,7 @@ static void put_points(Sketch *sketch, const View *view, const Collision *collis
         sketch_dot(sketch, deep, 1.1, &dot);
         sketch_dot(sketch, on_face, 0.9, &ring);
         bool left = deep.x < (view->low.x + view->high.x) / 2;
-        const TextStyle words = {8.5, left ? TEXT_LEFT : TEXT_RIGHT, ACCENT, 0};
+        const TextStyle words = {8.5, left ? TEXT_LEFT : TEXT_RIGHT, ACCENT, 0, false};
         sketch_text(sketch, (Point){deep.x + (left ? -1 : -2.5), deep.y - 4}, &words, "%s mm",
                     show_decimals(1000 * (double)point->separation, 0).text);
     }
@@ -77,7 +77,7 @@ static void put_points(Sketch *sketch, const View *view, const Collision *collis
 static void put_normal(Sketch *sketch, const View *view, Vec2 foot, Vec2 front, Vec2 normal) {
     const Point from = view_place(view, foot), to = view_place(view, vec2_add(foot, vec2_scale(0.35f, front)));
     sketch_arrow(sketch, from, to, HEAD_AT_END, ACCENT, 3);
-    const TextStyle words = {8.5, TEXT_CENTER, ACCENT, 0};
+    const TextStyle words = {8.5, TEXT_CENTER, ACCENT, 0, false};
     sketch_text(sketch, (Point){to.x, to.y + 3}, &words, "normal (%s, %s)", show_decimals((double)normal.x, 3).text,
                 show_decimals((double)normal.y, 3).text);
 }
@@ -95,7 +95,7 @@ void put_contact(Sketch *sketch, View view, const Collision *collision) {
     put_points(sketch, &view, collision, front);
     put_normal(sketch, &view, middle, front, manifold->normal);
     for (int i = 0; i < 2; i++) {
-        const TextStyle name = {8.5, TEXT_CENTER, ink_of(collision, i), 0};
+        const TextStyle name = {8.5, TEXT_CENTER, ink_of(collision, i), 0, false};
         Vec2 at = vec2_add(middle, vec2_scale(i == reference ? -0.45f : 0.55f, front));
         sketch_text(sketch, view_place(&view, at), &name, "%s", name_of(collision, i));
     }

@@ -54,7 +54,7 @@ static void put_guides(Sketch *sketch, const Gauge *gauge, const double ends[2])
 static void put_depth(Sketch *sketch, const Gauge *gauge, double place, const Collision *collision, int i) {
     const AxisOverlap *overlap = &collision->overlaps[i];
     bool least = i == collision->least, beside = fabsf(gauge->out.x) > fabsf(gauge->out.y);
-    TextStyle words = {least ? 9 : 7.5, TEXT_CENTER, INK, 0};
+    TextStyle words = {least ? 9 : 7.5, TEXT_CENTER, INK, 0, false};
     if (beside) words.align = gauge->out.x > 0 ? TEXT_LEFT : TEXT_RIGHT;
     if (!beside) words.degrees = atan((double)(gauge->along.y / gauge->along.x)) * 180 / M_PI;
     Point at = gauge_point(gauge, place, 6.2);
@@ -89,7 +89,7 @@ void put_overlaps(Sketch *sketch, View view, const Collision *collision) {
     put_collision(sketch, &view, collision);
     for (int i = 0; i < SEPARATING_AXES; i++) put_gauge(sketch, &view, collision, i);
     for (int i = 0; i < 2; i++) {
-        const TextStyle words = {8.5, TEXT_CENTER, ink_of(collision, i), 0};
+        const TextStyle words = {8.5, TEXT_CENTER, ink_of(collision, i), 0, false};
         sketch_text(sketch, view_place(&view, collision->boxes[i].position), &words, "%s", name_of(collision, i));
     }
     sketch_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, 0.5 * view.scale, "0.5 m");

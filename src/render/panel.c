@@ -81,7 +81,7 @@ static void draw_body(const Picture *picture, int panel, int frame, int body, Dr
     if (bomb) draw_target(&shape, TARGET * fmin(width, height), clip, drawing);
 }
 
-static void draw_bodies(const Picture *picture, int panel, int frame, bool fixed, Drawing *drawing) {
+void panel_draw_bodies(const Picture *picture, int panel, int frame, bool fixed, Drawing *drawing) {
     const Trajectory *trajectory = picture->panels[panel];
     for (int body = 0; body < trajectory->bodies; body++)
         if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
@@ -100,14 +100,14 @@ void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *dra
     const Rect *rect = &picture->layout.panels[panel];
     drawing_add_rect(drawing, *rect, PANEL);
     grid_draw_lines(picture, panel, drawing);
-    draw_bodies(picture, panel, frame, true, drawing);
+    panel_draw_bodies(picture, panel, frame, true, drawing);
     draw_frame(rect, picture->layout.hairline, drawing);
     grid_draw_axes(picture, panel, drawing);
 }
 
 void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing) {
     int bomb = picture->panels[panel]->bomb;
-    draw_bodies(picture, panel, frame, false, drawing);
+    panel_draw_bodies(picture, panel, frame, false, drawing);
     if (bomb >= 0) draw_body(picture, panel, picture_panel_frame(picture, panel, frame), bomb, drawing);
 }
 

@@ -9,6 +9,9 @@ void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *dra
 /* The bodies that move, and the bomb before them. */
 void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing);
 
+/* The bodies alone, those that move or those that do not; without the bomb. */
+void panel_draw_bodies(const Picture *picture, int panel, int frame, bool fixed, Drawing *drawing);
+
 /* How many dynamic bodies that are there lie with their centre outside the panel. */
 int panel_count_unseen(const Picture *picture, int panel, int frame);
 

@@ -11,6 +11,3 @@ void document_write_markdown(const Document *document, FILE *file);
 /* One HTML5 page that needs nothing else: style and figures are in it. The first heading is its title; those of level
    2 make its table of contents. */
 void document_write_html(const Document *document, FILE *file);
-
-/* Bytes as base64 (RFC 4648). */
-void base64_put(FILE *file, const void *data, size_t size);
