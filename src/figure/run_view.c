@@ -81,6 +81,12 @@ WorldWindow run_window(const Trajectory *run, const int *frames, int count) {
                          ends[3] - ends[1] + 2 * margin};
 }
 
+void run_window_widen(WorldWindow *window, double shape) {
+    double more = fmax(shape * window->height - window->width, 0);
+    window->left -= more / 2;
+    window->width += more;
+}
+
 int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window) {
     int count = 0;
     for (int body = 0; body < run->bodies; body++) {

@@ -19,6 +19,9 @@ typedef struct WorldWindow {
 /* What the scene asks to see, or all that moves in these frames of the run, with a margin. */
 WorldWindow run_window(const Trajectory *run, const int *frames, int count);
 
+/* Adds as much on either side as a shape (width over height) needs that is wider. */
+void run_window_widen(WorldWindow *window, double shape);
+
 /* How many bodies that move are there with their centre outside. */
 int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window);
 
