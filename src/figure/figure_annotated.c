@@ -54,14 +54,12 @@ static bool is_shown(const TrajectoryContact *contact) {
 
 /* The frame that the bomb's first touch of a box came from; without one that of the largest impulse; -1: no contacts. */
 static int find_moment(const Trajectory *run) {
-    int frame = -1;
+    int touch = run_first_touch(run), frame = -1;
+    if (touch > 0) return touch - 1;
     double largest = -1;
     for (int step = 1; step < run->frames; step++)
         for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            const TrajectoryContact *contact = &run->contacts[i];
-            bool bomb = contact->a == run->bomb || contact->b == run->bomb;
-            if (bomb && !run->fixed[contact->a] && !run->fixed[contact->b]) return step - 1;
-            double size = size_of(impulse_of(contact));
+            double size = size_of(impulse_of(&run->contacts[i]));
             if (size > largest) largest = size, frame = step - 1;
         }
     return frame;

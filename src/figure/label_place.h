@@ -17,7 +17,7 @@ enum { LABEL_MAX_BOXES = 1024, LABEL_MAX_SEGMENTS = 2048 };
 typedef struct LabelField {
     PageBox frame; /* labels stay inside */
     int box_count, segment_count;
-    PageBox boxes[LABEL_MAX_BOXES];           /* marks and labels: never covered */
+    PageBox boxes[LABEL_MAX_BOXES];       /* marks and labels: never covered */
     Segment segments[LABEL_MAX_SEGMENTS]; /* lines: crossed only by a label that must be there */
 } LabelField;
 
