@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, NULL};
+static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
