@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, NULL};
+static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
