@@ -233,12 +233,6 @@ static bool put_panel(Annotated *figure, Sketch *sketch, int panel, Error *error
     return done;
 }
 
-/* A round number of at most `most`. */
-static double round_down(double most) {
-    const double power = pow(10, floor(log10(most))), share = most / power;
-    return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
-}
-
 /* What the marks mean, in one line that goes on in a second where it is too long. */
 static void put_legend(const Annotated *figure, Sketch *sketch) {
     const FigureSpec *spec = figure->spec;

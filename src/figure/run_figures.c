@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, NULL};
+static const FigureKind *const kinds[] = {
+    &figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, &figure_pair, NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 

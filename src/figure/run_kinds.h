@@ -3,4 +3,4 @@
 #pragma once
 #include "figure/run_figures.h"
 
-extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network;
+extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network, figure_pair;

@@ -155,14 +155,7 @@ View run_cells_view(const RunCells *cells, Point low) {
 }
 
 void run_cells_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
-    const double most = cells->window.width / 4, power = pow(10, floor(log10(most))), share = most / power;
-    const double length = power * (share >= 5 ? 5 : share >= 2 ? 2 : 1), up = 0.2 * points * MM_PER_POINT;
-    const Pen pen = pen_line(INK, 1.6, NULL);
-    const Point right = {left.x + length * cells->scale, left.y};
-    sketch_line(sketch, left, right, &pen);
-    sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
-    sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
-    sketch_text(sketch, (Point){right.x + 1.2, left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%g m", length);
+    sketch_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
 }
 
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }

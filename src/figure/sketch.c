@@ -2,6 +2,7 @@
 #include "figure/sketch.h"
 
 #include "common/array.h"
+#include "figure/type.h"
 #include "render/style.h"
 
 #include <math.h>
@@ -174,11 +175,18 @@ ShownDecimals show_decimals(double value, int decimals) {
     return shown;
 }
 
-void sketch_bar(Sketch *sketch, Point left, double length, const char *words) {
-    const Point right = {left.x + length, left.y};
+void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points) {
+    const double up = 0.3 * points * MM_PER_POINT;
+    const Point right = {left.x + scale * amount, left.y};
     const Pen pen = pen_line(INK, 1.6, NULL);
     sketch_line(sketch, left, right, &pen);
-    sketch_line(sketch, (Point){left.x, left.y - 0.8}, (Point){left.x, left.y + 0.8}, &pen);
-    sketch_line(sketch, (Point){right.x, right.y - 0.8}, (Point){right.x, right.y + 0.8}, &pen);
-    sketch_text(sketch, (Point){right.x + 1.5, left.y}, &(TextStyle){7.5, TEXT_LEFT, INK, 0, false}, "%s", words);
+    sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
+    sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
+    sketch_text(sketch, (Point){right.x + 1.4, left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%g %s", amount,
+                unit);
+}
+
+double round_down(double most) {
+    const double power = pow(10, floor(log10(most))), share = most / power;
+    return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
 }

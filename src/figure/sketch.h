@@ -123,5 +123,8 @@ typedef struct ShownDecimals {
 } ShownDecimals;
 ShownDecimals show_decimals(double value, int decimals);
 
-/* A bar to measure by, and what it stands for. */
-void sketch_bar(Sketch *sketch, Point left, double length, const char *words);
+/* A bar to measure by, for an amount at a scale in mm a unit, and what it stands for: "5 m". */
+void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
+
+/* The largest of 1, 2 and 5 times a power of ten that is not above `most`, which is above 0. */
+double round_down(double most);
