@@ -14,7 +14,8 @@ static const struct argp_option option_table[] = {
     {"at", AT, "T,T,...", 0, "Moments to show, in seconds from the run's start, rising", 0},
     {"moments", MOMENTS, "N", 0, "So many moments instead, as far from each other, from the first to the last", 0},
     {"scene", SCENE, "FILE", 0, "divergence: the first run's scene, for the band of chaos", 0},
-    {"bodies", BODIES, "A,B", 0, "narrow-phase: the pair (default: the bomb's, or the one pressed hardest)", 0},
+    {"bodies", BODIES, "A,B", 0, "narrow-phase: the pair (default: of the bomb's first touch, or the first to touch)",
+     0},
     {"width", WIDTH, "column|page|MM", 0, "85 mm, 174 mm (default) or 40 to 400", 1},
     {"dpi", DPI, "N", 0, "Dots an inch, of scenes and of PNG (default: 300; 50 to 1200)", 1},
     {"font-size", FONT_SIZE, "PT", 0, "Points of type (default: 8; 5 to 14)", 1},
@@ -57,17 +58,22 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return 0;
 }
 
-static const struct argp argp = {option_table,
-                                 parse,
-                                 "KIND RUN...",
-                                 "Draw a figure for a paper from stored runs (.npz): scenes as pixels, words and lines "
-                                 "as vectors in SVG and PDF. The "
-                                 "same runs give the same bytes.\n\n"
-                                 "  strip         moments (columns) of up to six runs (rows)\v"
-                                 "Example: twinbox figure strip engine.npz net.npz --at 0.5,0.6,0.8 -o strip.pdf",
-                                 NULL,
-                                 NULL,
-                                 NULL};
+enum { HELP_SIZE = 4096 };
+
+/* All kinds, and how each is asked for. */
+static void write_help(char help[HELP_SIZE]) {
+    const FigureKind *const *kinds = figure_kinds();
+    int used =
+        snprintf(help, HELP_SIZE,
+                 "Draw a figure for a paper from stored runs (.npz): scenes as pixels, words and lines as vectors in "
+                 "SVG and PDF. The same runs give the same bytes.\n");
+    for (int i = 0; kinds[i] != NULL; i++)
+        used += snprintf(help + used, (size_t)(HELP_SIZE - used), "\n  %-13s %s", kinds[i]->name, kinds[i]->summary);
+    for (int i = 0; kinds[i] != NULL; i++)
+        used += snprintf(help + used, (size_t)(HELP_SIZE - used), "%s twinbox figure %s",
+                         i == 0 ? "\vExample:" : "\n        ", kinds[i]->example);
+    snprintf(help + used, (size_t)(HELP_SIZE - used), "\n");
+}
 
 static bool read_width(const char *text, double *width, Error *error) {
     float number;
@@ -172,6 +178,9 @@ static bool draw(const FigureKind *kind, const FigureSpec *spec, const Options *
 
 int command_figure(int argc, char **argv, Error *error) {
     Options options = {0};
+    char help[HELP_SIZE];
+    write_help(help);
+    const struct argp argp = {option_table, parse, "KIND RUN...", help, NULL, NULL, NULL};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     const FigureKind *kind = figure_kind(options.kind, error);
     FigureSpec spec;

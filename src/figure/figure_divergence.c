@@ -133,7 +133,8 @@ static void put_band(const Divergence *d, Sketch *sketch, const Plot *plot, Poin
     for (int i = count - 1; i >= 0; i--)
         points[count + (count - 1 - i)] =
             plot_place(plot, (first + i) * (double)d->spec->runs[0]->dt, d->low[first + i]);
-    sketch_shape(sketch, points, 2 * count, &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
+    /* Its line shows where it has no height: as long as nothing has grown. */
+    sketch_shape(sketch, points, 2 * count, &(Pen){band_colour, 1, band_colour, 2.2, NULL});
 }
 
 static bool parts(const double *distance, int frames) {
@@ -219,6 +220,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_divergence = {
     .name = "divergence",
     .summary = "distance from the first run over time, and how chance parts it",
+    .example = "divergence a.npz b.npz --scene stack.yaml -o apart.svg",
     .least_runs = 2,
     .most_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,

@@ -163,6 +163,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_pair = {
     .name = "narrow-phase",
     .summary = "how two boxes of a run touch: overlaps, normal, points",
+    .example = "narrow-phase engine.npz --bodies 2,11 -o pair.svg",
     .least_runs = 1,
     .most_runs = 1,
     .takes_times = true,

@@ -20,6 +20,10 @@ typedef struct Strip {
     double start;           /* where the first cell begins */
 } Strip;
 
+static double strip_height(const Strip *strip) {
+    return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + gap) - gap;
+}
+
 static bool lay_out(Strip *strip, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points);
@@ -34,6 +38,7 @@ static bool lay_out(Strip *strip, Error *error) {
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
     const WorldWindow window = run_window(spec->runs[0], strip->frames, strip->count);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
+    if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
     const double used = strip->left + edge + strip->count * strip->cells.width + (strip->count - 1) * gap;
     strip->start = (spec->width - used) / 2 + strip->left;
     return true;
@@ -83,9 +88,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
     bool done = run_check_worlds(spec, error) &&
                 run_frames(spec, DEFAULT_MOMENTS, 0, strip.frames, &strip.count, error) && lay_out(&strip, error);
-    if (done)
-        sketch_begin(sketch, spec->width,
-                     strip.top + strip.foot + spec->run_count * strip.cells.height + (spec->run_count - 1) * gap);
+    if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)
         for (int column = 0; done && column < strip.count; column++)
             done = put_cell(&strip, sketch, row, column, error);
@@ -97,6 +100,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_strip = {
     .name = "strip",
     .summary = "moments of runs: a row for each run, a column for each moment",
+    .example = "strip engine.npz net.npz --at 0.5,0.6,0.8 -o strip.pdf",
     .least_runs = 1,
     .most_runs = FIGURE_RUNS_MAX,
     .takes_times = true,

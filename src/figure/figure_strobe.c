@@ -150,6 +150,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_strobe = {
     .name = "strobe",
     .summary = "many moments of a run in one picture, fading",
+    .example = "strobe engine.npz --at 0.3,0.4,0.5,0.6 -o strobe.png",
     .least_runs = 1,
     .most_runs = 1,
     .takes_times = true,

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { LINES = 16 }; /* scan lines a pixel; along a line the share is exact */
 
@@ -51,29 +50,37 @@ static void sort_crossings(Crossing *crossings, size_t count) {
     }
 }
 
-static void add_span(double *cover, int width, double from, double to) {
-    from = fmin(fmax(from, 0), width), to = fmin(fmax(to, 0), width);
+/* How much of each pixel of a row is inside, in scan lines; beyond [low, high) it is 0. */
+typedef struct CoverRow {
+    double *cover; /* [width + 1] */
+    int width, low, high;
+} CoverRow;
+
+static void add_span(CoverRow *row, double from, double to) {
+    from = fmin(fmax(from, 0), row->width), to = fmin(fmax(to, 0), row->width);
     if (!(from < to)) return;
-    int first = (int)from, last = (int)to;
+    const int first = (int)from, last = (int)to;
+    if (first < row->low) row->low = first;
+    if (last >= row->high) row->high = last + 1;
     if (first == last) {
-        cover[first] += to - from;
+        row->cover[first] += to - from;
         return;
     }
-    cover[first] += first + 1 - from;
-    for (int x = first + 1; x < last; x++) cover[x] += 1;
-    if (last < width) cover[last] += to - last;
+    row->cover[first] += first + 1 - from;
+    for (int x = first + 1; x < last; x++) row->cover[x] += 1;
+    row->cover[last] += to - last;
 }
 
 /* Edges by their upper end; those before `next` have begun. */
 typedef struct Scan {
-    const Raster *raster;
-    size_t next, open_count, *open;
+    const RasterEdge *edges;
+    size_t count, next, open_count, *open;
     Crossing *crossings;
 } Scan;
 
-static void scan_line(Scan *scan, double y, double *cover, int width) {
-    const RasterEdge *edges = scan->raster->edges;
-    while (scan->next < scan->raster->count && edges[scan->next].y0 <= y) scan->open[scan->open_count++] = scan->next++;
+static void scan_line(Scan *scan, double y, CoverRow *row) {
+    const RasterEdge *edges = scan->edges;
+    while (scan->next < scan->count && edges[scan->next].y0 <= y) scan->open[scan->open_count++] = scan->next++;
     size_t kept = 0;
     for (size_t i = 0; i < scan->open_count; i++) {
         const RasterEdge *edge = &edges[scan->open[i]];
@@ -86,36 +93,38 @@ static void scan_line(Scan *scan, double y, double *cover, int width) {
     sort_crossings(scan->crossings, kept);
     int winding = 0;
     for (size_t i = 0; i < kept; i++) {
-        if (winding != 0) add_span(cover, width, scan->crossings[i - 1].x, scan->crossings[i].x);
+        if (winding != 0) add_span(row, scan->crossings[i - 1].x, scan->crossings[i].x);
         winding += scan->crossings[i].winding;
     }
 }
 
-static void blend_row(double *cover, uint32_t colour, double opacity, uint8_t *row, int width) {
+/* Colours a row of pixels, and leaves the cover empty. */
+static void blend_row(CoverRow *row, uint32_t colour, double opacity, uint8_t *pixels) {
     const uint8_t channels[3] = {(uint8_t)(colour >> 16), (uint8_t)(colour >> 8), (uint8_t)colour};
-    for (int x = 0; x < width; x++) {
-        int alpha = (int)(fmin(cover[x] / LINES, 1) * opacity * 255 + 0.5);
-        if (alpha > 0) pixel_over(row + 4 * (size_t)x, channels, alpha);
+    for (int x = row->low; x < row->high; x++) {
+        int alpha = (int)(fmin(row->cover[x] / LINES, 1) * opacity * 255 + 0.5);
+        if (alpha > 0 && x < row->width) pixel_over(pixels + 4 * (size_t)x, channels, alpha);
+        row->cover[x] = 0;
     }
+    row->low = row->width, row->high = 0;
 }
 
 void raster_fill(Raster *raster, uint32_t colour, double opacity, Image *page) {
-    size_t count = raster->count;
+    const size_t count = raster->count;
+    raster->count = 0;
     if (count == 0) return;
     qsort(raster->edges, count, sizeof *raster->edges, by_top);
     double low = 0;
     for (size_t i = 0; i < count; i++) low = fmax(low, raster->edges[i].y1);
-    int first = (int)fmin(fmax(raster->edges[0].y0, 0), page->height), last = (int)fmin(low + 1, page->height);
-    Scan scan = {raster, 0, 0, malloc(count * sizeof *scan.open), malloc(count * sizeof *scan.crossings)};
-    double *cover = malloc(((size_t)page->width + 1) * sizeof *cover);
-    raster->failed |= scan.open == NULL || scan.crossings == NULL || cover == NULL;
+    const int first = (int)fmin(fmax(raster->edges[0].y0, 0), page->height), last = (int)fmin(low + 1, page->height);
+    Scan scan = {raster->edges, count, 0, 0, malloc(count * sizeof *scan.open), malloc(count * sizeof *scan.crossings)};
+    CoverRow row = {calloc((size_t)page->width + 1, sizeof *row.cover), page->width, page->width, 0};
+    raster->failed |= scan.open == NULL || scan.crossings == NULL || row.cover == NULL;
     for (int y = first; !raster->failed && y < last; y++) {
-        memset(cover, 0, ((size_t)page->width + 1) * sizeof *cover);
-        for (int i = 0; i < LINES; i++) scan_line(&scan, y + (i + 0.5) / LINES, cover, page->width);
-        blend_row(cover, colour, opacity, page->pixels + (size_t)y * (size_t)page->width * 4, page->width);
+        for (int i = 0; i < LINES; i++) scan_line(&scan, y + (i + 0.5) / LINES, &row);
+        blend_row(&row, colour, opacity, page->pixels + (size_t)y * (size_t)page->width * 4);
     }
     free(scan.open);
     free(scan.crossings);
-    free(cover);
-    raster->count = 0;
+    free(row.cover);
 }

@@ -34,6 +34,7 @@ typedef struct FigureSpec {
 
 typedef struct FigureKind {
     const char *name, *summary;
+    const char *example;       /* what follows `twinbox figure` */
     int least_runs, most_runs; /* 0, 0: a network's file instead */
     bool takes_times, takes_moments, takes_scene, takes_bodies;
     /* Draws into a sketch that it begins; on failure (ERROR_INPUT for what cannot be shown) it is to be freed, too. */

@@ -119,6 +119,7 @@ bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, d
     cells->height = cells->rows / dots;
     cells->scale = scale;
     cells->camera = (Camera){dots * scale, -dots * scale * window->left, cells->rows + dots * scale * window->bottom};
+    if (!sketch_check_pixels(cells->width, cells->height, dpi, error)) return false;
     cells->still = still_create(cells->columns, cells->rows, error);
     return cells->still != NULL;
 }
