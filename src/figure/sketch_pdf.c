@@ -1,112 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A sketch as PDF 1.5 (ISO 32000-1): one page with the font in it, and neither date nor number of its own. Words are text
    that can be searched and copied. */
-#include "figure/plot_font.h"
+#include "figure/pdf_objects.h"
 #include "figure/sketch_formats.h"
 #include "figure/type.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
-
-/* Numbers of the objects; pictures follow, each with its alpha behind it. */
-enum { CATALOG = 1, PAGES, PAGE, CONTENT, FONT, CID_FONT, DESCRIPTOR, FONT_FILE, TO_UNICODE, FIRST_IMAGE };
-
-/* Of Inter, in thousandths of an em: what viewers need only where the font in the file fails. */
-enum { FONT_ASCENT = 969, FONT_DESCENT = -241, FONT_CAPS = 727 };
-
-typedef struct Pdf {
-    FILE *file;
-    const Sketch *sketch;
-    size_t *offsets; /* of the objects, by number */
-    int count;       /* of them, number 0 included */
-} Pdf;
-
-static void begin_object(Pdf *pdf, int number) {
-    pdf->offsets[number] = (size_t)ftell(pdf->file);
-    fprintf(pdf->file, "%d 0 obj\n", number);
-}
-
-/* `keys`: of its dictionary, beside length and filter. */
-static bool put_stream(Pdf *pdf, int number, const char *keys, const void *data, size_t size) {
-    uLongf packed_size = compressBound((uLong)size);
-    Bytef *packed = malloc(packed_size);
-    bool done = packed != NULL && compress2(packed, &packed_size, data, (uLong)size, 9) == Z_OK;
-    if (done) {
-        begin_object(pdf, number);
-        fprintf(pdf->file, "<<%s/Length %lu/Filter/FlateDecode>>\nstream\n", keys, (unsigned long)packed_size);
-        fwrite(packed, 1, packed_size, pdf->file);
-        fprintf(pdf->file, "\nendstream\nendobj\n");
-    }
-    free(packed);
-    return done;
-}
-
-static unsigned read_big_endian(const unsigned char *bytes, int count) {
-    unsigned value = 0;
-    for (int i = 0; i < count; i++) value = value << 8 | bytes[i];
-    return value;
-}
-
-/* The table of an OpenType file that holds the outlines; PDF wants it alone. */
-static const unsigned char *find_outlines(size_t *size) {
-    unsigned tables = read_big_endian(plot_font + 4, 2);
-    for (unsigned i = 0; i < tables; i++) {
-        const unsigned char *entry = plot_font + 12 + 16 * i;
-        if (memcmp(entry, "CFF ", 4) != 0) continue;
-        *size = read_big_endian(entry + 12, 4);
-        return plot_font + read_big_endian(entry + 8, 4);
-    }
-    return NULL;
-}
-
-/* Which character each glyph stands for, so that text can be copied. */
-static bool put_to_unicode(Pdf *pdf) {
-    enum { AT_ONCE = 100 }; /* that a list may have */
-    char *text = NULL;
-    size_t size = 0;
-    FILE *map = open_memstream(&text, &size);
-    if (map == NULL) return false;
-    fprintf(map, "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CMapName /Inter def\n"
-                 "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");
-    for (int i = 0; i < type_glyph_count; i++) {
-        int left = type_glyph_count - i;
-        if (i % AT_ONCE == 0) fprintf(map, "%d beginbfchar\n", left < AT_ONCE ? left : AT_ONCE);
-        fprintf(map, "<%04X> <%04X>\n", type_glyphs[i].index, type_glyphs[i].code);
-        if (i % AT_ONCE == AT_ONCE - 1 || left == 1) fprintf(map, "endbfchar\n");
-    }
-    fprintf(map, "endcmap\nend\nend\n");
-    bool whole = !ferror(map);
-    whole = fclose(map) == 0 && whole && put_stream(pdf, TO_UNICODE, "", text, size);
-    free(text);
-    return whole;
-}
-
-static bool put_font(Pdf *pdf) {
-    size_t size;
-    const unsigned char *outlines = find_outlines(&size);
-    begin_object(pdf, FONT);
-    fprintf(pdf->file,
-            "<</Type/Font/Subtype/Type0/BaseFont/TWNBOX+Inter/Encoding/Identity-H/DescendantFonts[%d 0 R]"
-            "/ToUnicode %d 0 R>>\nendobj\n",
-            CID_FONT, TO_UNICODE);
-    begin_object(pdf, CID_FONT);
-    fprintf(pdf->file,
-            "<</Type/Font/Subtype/CIDFontType0/BaseFont/TWNBOX+Inter/CIDSystemInfo<</Registry(Adobe)"
-            "/Ordering(Identity)/Supplement 0>>/FontDescriptor %d 0 R/W[",
-            DESCRIPTOR);
-    for (int i = 0; i < type_glyph_count; i++)
-        fprintf(pdf->file, "%u[%.3f]", type_glyphs[i].index, 1000.0 * type_glyphs[i].advance / type_units);
-    fprintf(pdf->file, "]>>\nendobj\n");
-    begin_object(pdf, DESCRIPTOR);
-    fprintf(pdf->file,
-            "<</Type/FontDescriptor/FontName/TWNBOX+Inter/Flags 4/FontBBox[-1000 -400 2000 1200]/ItalicAngle 0"
-            "/Ascent %d/Descent %d/CapHeight %d/StemV 80/FontFile3 %d 0 R>>\nendobj\n",
-            FONT_ASCENT, FONT_DESCENT, FONT_CAPS, FONT_FILE);
-    return outlines != NULL && put_stream(pdf, FONT_FILE, "/Subtype/CIDFontType0C", outlines, size) &&
-           put_to_unicode(pdf);
-}
 
 static void put_colour(FILE *content, uint32_t colour, bool line) {
     fprintf(content, "%.4f %.4f %.4f %s\n", (colour >> 16 & 255) / 255.0, (colour >> 8 & 255) / 255.0,
@@ -189,7 +90,7 @@ static bool put_content(Pdf *pdf, const SketchOutput *output, const size_t *orde
     if (content == NULL) return false;
     put_marks(content, pdf->sketch, output, order);
     bool whole = !ferror(content);
-    whole = fclose(content) == 0 && whole && put_stream(pdf, CONTENT, "", text, size);
+    whole = fclose(content) == 0 && whole && pdf_put_stream(pdf, CONTENT, "", text, size);
     free(text);
     return whole;
 }
@@ -204,7 +105,7 @@ static bool put_channels(Pdf *pdf, int number, const Image *image, int first, in
         memcpy(data + i * (size_t)channels, image->pixels + 4 * i + first, (size_t)channels);
     snprintf(all_keys, sizeof all_keys, "/Type/XObject/Subtype/Image/Width %d/Height %d/BitsPerComponent 8%s",
              image->width, image->height, keys);
-    bool done = put_stream(pdf, number, all_keys, data, pixels * (size_t)channels);
+    bool done = pdf_put_stream(pdf, number, all_keys, data, pixels * (size_t)channels);
     free(data);
     return done;
 }
@@ -227,11 +128,11 @@ static bool put_images(Pdf *pdf, const size_t *order) {
 static void put_page(Pdf *pdf, int images) {
     const double points = 1 / MM_PER_POINT;
     FILE *file = pdf->file;
-    begin_object(pdf, CATALOG);
+    pdf_begin_object(pdf, CATALOG);
     fprintf(file, "<</Type/Catalog/Pages %d 0 R>>\nendobj\n", PAGES);
-    begin_object(pdf, PAGES);
+    pdf_begin_object(pdf, PAGES);
     fprintf(file, "<</Type/Pages/Kids[%d 0 R]/Count 1>>\nendobj\n", PAGE);
-    begin_object(pdf, PAGE);
+    pdf_begin_object(pdf, PAGE);
     fprintf(file,
             "<</Type/Page/Parent %d 0 R/MediaBox[0 0 %.3f %.3f]/Contents %d 0 R/Group<</S/Transparency"
             "/CS/DeviceRGB>>/Resources<</Font<</F %d 0 R>>/ExtGState<<",
@@ -263,7 +164,7 @@ static bool put_all(Pdf *pdf, const SketchOutput *output, int images) {
     fprintf(pdf->file, "%%PDF-1.5\n%%\xE2\xE3\xCF\xD3\n");
     if (whole) {
         put_page(pdf, images);
-        whole = put_content(pdf, output, order) && put_font(pdf) && put_images(pdf, order);
+        whole = put_content(pdf, output, order) && pdf_put_font(pdf) && put_images(pdf, order);
     }
     if (whole) put_end(pdf);
     free(order);

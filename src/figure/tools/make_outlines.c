@@ -74,7 +74,7 @@ static void print(FILE *output, int units) {
 
 int main(int argc, char **argv) {
     FT_Library library;
-    FT_Face face;
+    FT_Face face = NULL;
     if (argc != 3) quit("usage: make_outlines FONT.otf OUTPUT.c");
     FILE *output = fopen(argv[2], "w");
     if (output == NULL) quit("cannot write the output");
