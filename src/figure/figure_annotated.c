@@ -43,7 +43,7 @@ static bool choose_moment(Annotated *figure, Error *error) {
     FigureSpec asked = *spec;
     int count, moment = find_moment(spec->runs[0]), contacts = 0;
     if (spec->time_count > 1) return error_input(error, "--at", "this kind shows one moment, not %d", spec->time_count);
-    if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts");
+    if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
     if (spec->time_count == 0) {
         asked.time_count = 1;
         asked.times[0] = moment * (double)spec->runs[0]->dt;
@@ -53,13 +53,14 @@ static bool choose_moment(Annotated *figure, Error *error) {
     figure->frame = frames[0];
     for (int i = 0; i < spec->run_count; i++) {
         const int64_t *start = spec->runs[i]->contact_start + figure->frame + 1;
-        contacts += start[1] > start[0];
-        for (int64_t k = start[0]; k < start[1]; k++)
-            if (contact_has_numbers(&spec->runs[i]->contacts[k]))
-                figure->look.largest = fmax(figure->look.largest, impulse_size(&spec->runs[i]->contacts[k]));
+        for (int64_t k = start[0]; k < start[1]; k++) {
+            if (!contact_has_numbers(&spec->runs[i]->contacts[k])) continue;
+            contacts++;
+            figure->look.largest = fmax(figure->look.largest, impulse_size(&spec->runs[i]->contacts[k]));
+        }
     }
-    return contacts > 0 ||
-           error_input(error, spec->paths[0], "has no contacts in the step from %g s on", asked.times[0]);
+    return contacts > 0 || error_input(error, spec->paths[0],
+                                       "has no contacts with an impulse in the step from %g s on", asked.times[0]);
 }
 
 static double ring_radius(const Trajectory *run, double scale) {

@@ -133,7 +133,7 @@ static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matri
 
 bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
     Matrix matrices[MATRICES_MOST];
-    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MOST][16];
+    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MOST][24];
     for (int i = 0; i < network->layers; i++) {
         snprintf(names[i], sizeof names[i], "layer %d", i + 1);
         matrices[i] = (Matrix){names[i],

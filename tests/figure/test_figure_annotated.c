@@ -112,7 +112,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     (void)state;
     Trajectory *without = run_make("engine", 5), *run = run_with_contacts();
     FigureSpec spec = spec_of(&without, 1);
-    expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts");
+    expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");
     spec = spec_of(&run, 1);
     spec.time_count = 2, spec.times[1] = 0.1;
     expect_kind_refused("annotated", &spec, "this kind shows one moment, not 2");
@@ -122,7 +122,8 @@ static void what_cannot_be_shown_is_refused(void **state) {
     spec.times[0] = 1 / 60.0;
     run->contact_start[2] = run->contact_start[3];
     run->contact_start[1] = run->contact_start[2];
-    expect_kind_refused("annotated", &spec, "a.npz: error: has no contacts in the step from 0.0166667 s on");
+    expect_kind_refused("annotated", &spec,
+                        "a.npz: error: has no contacts with an impulse in the step from 0.0166667 s on");
     trajectory_destroy(without);
     trajectory_destroy(run);
 }

@@ -12,8 +12,7 @@
 /* The second box of a run goes away by a factor of ten each tenth of a second, from the first frame on. */
 static Trajectory *run_apart(void) {
     Trajectory *run = run_make("pair-net", 61);
-    for (int frame = 0; frame < 61; frame++)
-        run_position(run, frame, SECOND_BOX)->y += powf(10, (float)frame / 6 - 6);
+    for (int frame = 0; frame < 61; frame++) run_position(run, frame, SECOND_BOX)->y += powf(10, (float)frame / 6 - 6);
     return run;
 }
 

@@ -110,6 +110,27 @@ static void wide_layers_are_matrices(void **state) {
     sketch_free(&sketch);
 }
 
+/* 37 weights share a pixel: the first, the largest, shows, not the last. */
+static void of_weights_in_a_pixel_the_largest_shows(void **state) {
+    (void)state;
+    Error error = {0};
+    Network *network = network_create(1, (const int[]){4096, 1}, &error);
+    for (int i = 0; i < 4096; i++) network->weights[0][i] = 0.25f;
+    network->weights[0][0] = -1;
+    const char *path = temporary_path("wide.npz");
+    assert_ok(network_write(network, path, &error), error);
+    network_destroy(network);
+    FigureSpec spec = spec_for(path);
+    spec.dpi = 50;
+    Sketch sketch;
+    draw_kind(&sketch, "network", &spec);
+    const Image *image = nth_mark(&sketch, MARK_IMAGE, 0)->image;
+    const uint8_t first[] = {0xE6, 0x9F, 0x00, 255};
+    assert_in_range(image->width, 60, 120);
+    assert_memory_equal(image->pixels, first, 4);
+    sketch_free(&sketch);
+}
+
 static void the_networks_that_ship_are_shown(void **state) {
     (void)state;
     static const struct {
@@ -158,6 +179,7 @@ int main(void) {
         cmocka_unit_test(inputs_without_names_have_numbers),
         cmocka_unit_test(colours_tell_sign_and_size),
         cmocka_unit_test(wide_layers_are_matrices),
+        cmocka_unit_test(of_weights_in_a_pixel_the_largest_shows),
         cmocka_unit_test(the_networks_that_ship_are_shown),
         cmocka_unit_test(damaged_files_are_refused),
     };
