@@ -26,17 +26,35 @@ void image_destroy(Image *image) {
     free(image);
 }
 
-static void put_little_endian(uint8_t *bytes, uint64_t value, int count) {
+/* Continues a hash over the bytes of a number, the lowest first on every machine. */
+static uint64_t add_number(uint64_t hash, uint64_t value, int count) {
+    uint8_t bytes[8];
     for (int i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
+    return hash_fnv1a64(hash, bytes, (size_t)count);
+}
+
+static uint64_t hash_shape(const Image *image) {
+    return add_number(add_number(FNV1A64_START, (uint64_t)image->width, 4), (uint64_t)image->height, 4);
+}
+
+static uint64_t hash_row(const Image *image, int y) {
+    size_t size = (size_t)image->width * 4;
+    return hash_xxh3(image->pixels + (size_t)y * size, size);
 }
 
 uint64_t image_hash(const Image *image) {
-    uint64_t pixels = hash_xxh3(image->pixels, (size_t)image->width * (size_t)image->height * 4);
-    uint8_t whole[16];
-    put_little_endian(whole, (uint64_t)image->width, 4);
-    put_little_endian(whole + 4, (uint64_t)image->height, 4);
-    put_little_endian(whole + 8, pixels, 8);
-    return hash_xxh3(whole, sizeof whole);
+    uint64_t hash = hash_shape(image);
+    for (int y = 0; y < image->height; y++) hash = add_number(hash, hash_row(image, y), 8);
+    return hash;
+}
+
+uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows) {
+    uint64_t hash = hash_shape(image);
+    for (int y = 0; y < image->height; y++) {
+        if (changed == NULL || changed[y]) rows[y] = hash_row(image, y);
+        hash = add_number(hash, rows[y], 8);
+    }
+    return hash;
 }
 
 static int largest_channel_difference(const uint8_t *a, const uint8_t *b) {

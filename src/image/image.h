@@ -33,8 +33,13 @@ Image *image_read_png(const char *path, Error *error);
    there is none, or it takes size bytes or more. */
 bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error);
 
-/* XXH3 over width, height and the pixels: equal for equal pictures, however the file was compressed. */
+/* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, however the file was
+   compressed. */
 uint64_t image_hash(const Image *image);
+
+/* The same for a picture of a sequence: rows[height] holds the hashes of the rows of the one before. `changed`, of one
+   flag a row, tells which are others now; NULL for all. */
+uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows);
 
 /* Of two pictures of different size only same_size is filled. */
 typedef struct ImageDifference {

@@ -2,9 +2,9 @@
 /* The renderer's frames are opaque: drawn once on black and once on white, the difference is what nothing covers. */
 #include "render/still.h"
 
+#include "render/body.h"
 #include "render/canvas.h"
 #include "render/context.h"
-#include "render/panel.h"
 
 #include <stdlib.h>
 
@@ -48,13 +48,24 @@ void still_destroy(Still *still) {
     free(still);
 }
 
-/* A picture of one panel, of the number that has the colours, and without margins. */
+/* A picture of the panel that has the colours, alone and without margins. */
 static Picture plan(const Still *still, const StillShot *shot) {
-    Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera};
-    for (int i = 0; i <= shot->colours; i++)
+    Picture picture = {.count = shot->colours + 1, .frames = shot->run->frames, .camera = shot->camera};
+    for (int i = 0; i <= shot->colours; i++) {
         picture.layout.panels[i] = (Rect){0, 0, still->on_white->width, still->on_white->height};
-    picture.panels[shot->colours] = shot->run;
+        picture.panels[i] = shot->run;
+    }
+    picture.theme = theme_get(LOOK_LIGHT);
     return picture;
+}
+
+static void draw_bodies(const Picture *picture, const StillShot *shot, Drawing *drawing) {
+    const Moment moment = moment_stored(shot->frame);
+    const int run = shot->colours;
+    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(picture, run, run, moment, true, drawing);
+    if ((shot->parts & STILL_MOVING) == 0) return;
+    body_draw_all(picture, run, run, moment, false, drawing);
+    if (shot->run->bomb >= 0) body_draw(picture, run, run, moment, shot->run->bomb, drawing);
 }
 
 /* Of a pixel on black and on white. */
@@ -71,8 +82,7 @@ bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error)
     const Picture picture = plan(still, shot);
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);
-    if ((shot->parts & STILL_FIXED) != 0) panel_draw_bodies(&picture, shot->colours, shot->frame, true, drawing);
-    if ((shot->parts & STILL_MOVING) != 0) panel_draw_moving(&picture, shot->colours, shot->frame, drawing);
+    draw_bodies(&picture, shot, drawing);
     if (!context_make_current(&still->context, error) ||
         !canvas_paint(still->canvas, drawing, 0x000000, NULL, image, error) ||
         !canvas_paint(still->canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
