@@ -6,6 +6,7 @@ const Command commands[] = {{"simulate", "run a scene by one method and store th
                             {"compare", "tell where two trajectories or PNG sequences part", command_compare},
                             {"approve", "accept what a report of compare has shown", command_approve},
                             {"diverge", "tell why two trajectories part, and how fast", command_diverge},
+                            {"figure", "draw a figure for a paper from runs", command_figure},
                             {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
                             {"train", "train the paper's network on a dataset", command_train},
                             {"chart", "chart speed against accuracy for every method", command_chart},

@@ -7,6 +7,7 @@ int command_render(int argc, char **argv, Error *error);
 int command_compare(int argc, char **argv, Error *error);
 int command_approve(int argc, char **argv, Error *error);
 int command_diverge(int argc, char **argv, Error *error);
+int command_figure(int argc, char **argv, Error *error);
 int command_dataset(int argc, char **argv, Error *error);
 int command_train(int argc, char **argv, Error *error);
 int command_chart(int argc, char **argv, Error *error);

@@ -14,6 +14,3 @@ void document_write_html(const Document *document, FILE *file);
 
 /* Text as HTML, also within quotes. */
 void html_put(FILE *file, const char *text);
-
-/* Bytes as base64 (RFC 4648). */
-void base64_put(FILE *file, const void *data, size_t size);

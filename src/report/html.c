@@ -2,6 +2,8 @@
 /* A document in HTML5, for phones, screens and paper. */
 #include "report/document_write.h"
 
+#include "common/base64.h"
+
 static const char style[] =
     "body{margin:0;background:#fff;color:#1a1a1a;font:16px/1.5 system-ui,-apple-system,\"Segoe UI\",sans-serif}\n"
     "main{max-width:54rem;margin:0 auto;padding:1rem}\n"
