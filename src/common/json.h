@@ -74,7 +74,8 @@ void json_begin_object(JsonWriter *writer, const char *key, JsonLayout layout);
 void json_begin_array(JsonWriter *writer, const char *key, JsonLayout layout);
 void json_end(JsonWriter *writer);
 
-/* Bytes that are no UTF-8 become U+FFFD; NULL becomes null. */
+/* Bytes that are no UTF-8 become U+FFFD; NULL becomes null. What has a meaning in HTML is escaped, so that it may stand in
+   a script. */
 void json_put_text(JsonWriter *writer, const char *key, const char *text);
 void json_put_int(JsonWriter *writer, const char *key, int64_t value);
 

@@ -19,7 +19,7 @@ static void put_quoted(FILE *out, const char *text) {
             length = 1;
         } else if (character == '"' || character == '\\') {
             fprintf(out, "\\%c", (char)character);
-        } else if (character < 0x20 || character == 0x7f) {
+        } else if (character < 0x20 || character == 0x7f || character == '<' || character == '>' || character == '&') {
             fprintf(out, "\\u%04" PRIx32, character);
         } else {
             fwrite(text + at, 1, length, out);

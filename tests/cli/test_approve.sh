@@ -7,6 +7,7 @@ run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
 run 0 simulate "$scenes/single.yaml" --frames 8 --bomb-x 1 -o b.npz
 run 0 render a.npz -o expected --size 80x64 --frames 0:4
 run 0 render b.npz -o actual --size 80x64 --frames 1:5
+rm expected/manifest.json actual/manifest.json # notes of render, not pictures
 cp -r expected expected.kept
 
 restart() {
