@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws the pictures of golden/gallery again, one of every style, the dark ones by EGL: the pixels must be equal. A picture
-   that is not is written to actual_NAME.png in the working directory of the test. With a folder as its argument the program
-   writes the pictures there: `golden/renew` makes the gallery so. */
+   that is not is written to actual_NAME.png in the working directory of the test. Given a folder like
+   golden/ the program writes the pictures into its gallery/, of the runs that are there: `golden/renew` does. */
 #include "testing.h"
 
 #include "image/png_encoder.h"
@@ -10,7 +10,7 @@
 
 #include <limits.h>
 
-static const char GALLERY[] = SOURCE_DIR "/golden/gallery";
+static const char *golden = SOURCE_DIR "/golden"; /* with gallery/ and trajectories/ */
 enum { WIDTH = 960, HEIGHT = 540, NAME_SIZE = 64 };
 
 static const char *const near_pair[] = {"trajectories/stack-engine", "gallery/stack-momentum", NULL};
@@ -73,7 +73,7 @@ static Runs read_runs(const char *const *names) {
     for (; names[runs.count] != NULL; runs.count++) {
         char path[PATH_MAX];
         Error error = {0};
-        snprintf(path, sizeof path, "%s/golden/%s.npz", SOURCE_DIR, names[runs.count]);
+        snprintf(path, sizeof path, "%s/%s.npz", golden, names[runs.count]);
         runs.panels[runs.count] = runs.owned[runs.count] = trajectory_read(path, &error);
         assert_ok(runs.owned[runs.count] != NULL, error);
     }
@@ -123,7 +123,7 @@ static void the_gallery_is_drawn_again(void **state) {
             char name[NAME_SIZE], path[PATH_MAX];
             Error error = {0};
             name_entry(name, i, dark);
-            snprintf(path, sizeof path, "%s/%s.png", GALLERY, name);
+            snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
             Image *expected = image_read_png(path, &error);
             assert_ok(expected != NULL, error);
             different += !is_equal(expected, i, dark, dark ? RENDER_CONTEXT_EGL : RENDER_CONTEXT_OSMESA);
@@ -132,13 +132,13 @@ static void the_gallery_is_drawn_again(void **state) {
     assert_int_equal(different, 0);
 }
 
-static void write_all(const char *folder) {
+static void write_all(void) {
     for (int i = 0; i < ENTRIES; i++)
         for (int dark = 0; dark <= (entries[i].dark ? 1 : 0); dark++) {
             char name[NAME_SIZE], path[PATH_MAX];
             Error error = {0};
             name_entry(name, i, dark);
-            snprintf(path, sizeof path, "%s/%s.png", folder, name);
+            snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
             Image *image = draw(i, dark, RENDER_CONTEXT_AUTO);
             if (!image_write_png(image, path, NULL, 0, &error)) print_error("%s\n", error.message);
             image_destroy(image);
@@ -147,7 +147,8 @@ static void write_all(const char *folder) {
 
 int main(int argc, char **argv) {
     if (argc > 1) {
-        write_all(argv[1]);
+        golden = argv[1];
+        write_all();
         return 0;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_gallery_is_drawn_again)};
