@@ -6,7 +6,8 @@
 flat in ivec2 corner;      // the pixel from which the positions below count
 flat in ivec4 shape_axis;  // direction of the local x axis (x, y; y down); local position of the corner's centre
 flat in ivec4 shape_form;  // half width, half height, corner radius, width of the outline
-flat in ivec4 shape_paint; // fill, outline, band along the local top, as 0xRRGGBB; thickness of the band
+flat in ivec4 shape_paint; // fill, outline, band along the local top, as 0xRRGGBB; thickness of the band;
+                           // bit 24 of the fill: the outline alone
 
 out vec4 color;
 
@@ -51,6 +52,8 @@ void main() {
     ivec2 at = shape_axis.zw + ivec2(axis.x * pixel.x + axis.y * pixel.y, axis.y * pixel.x - axis.x * pixel.y);
     int distance = box_distance(at, shape_form.xy, shape_form.z);
     ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_form.y - shape_paint.w - at.y));
-    ivec3 painted = blend(unpack(shape_paint.y), inner, coverage(distance + shape_form.w));
-    color = vec4(vec3(painted), float(coverage(distance) * (255 / LEVELS))) / 255.0;
+    int inside = coverage(distance + shape_form.w);
+    ivec3 painted = blend(unpack(shape_paint.y), inner, inside);
+    int level = coverage(distance) - (shape_paint.x >> 24) * inside;
+    color = vec4(vec3(painted), float(level * (255 / LEVELS))) / 255.0;
 }

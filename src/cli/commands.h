@@ -5,7 +5,9 @@
 int command_simulate(int argc, char **argv, Error *error);
 int command_render(int argc, char **argv, Error *error);
 int command_compare(int argc, char **argv, Error *error);
+int command_approve(int argc, char **argv, Error *error);
 int command_diverge(int argc, char **argv, Error *error);
+int command_figure(int argc, char **argv, Error *error);
 int command_dataset(int argc, char **argv, Error *error);
 int command_train(int argc, char **argv, Error *error);
 int command_chart(int argc, char **argv, Error *error);

@@ -1,38 +1,70 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/compare_print.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "image/sequence.h"
+#include "report/regression_report.h"
 #include "trajectory/trajectory.h"
 
-#include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
+
+enum { FUZZY = 256, MASK, MAX_PIXELS, REPORT, REPORT_SIZE };
+
+static const struct argp_option option_table[] = {
+    {"fuzzy", FUZZY, "MAX,SHARE", 0,
+     "Pass frames in which no channel differs by more than MAX (0 to 255), and at most this SHARE (0 to 1) of the "
+     "pixels",
+     0},
+    {"mask", MASK, "FILE.png|X,Y,W,H", 0,
+     "Pixels that do not count: where the picture is neither black nor transparent, or a rectangle (may be repeated)",
+     0},
+    {"max-pixels", MAX_PIXELS, "N", 0, "Refuse larger pictures before they are unpacked (default: 100000000)", 0},
+    {"report", REPORT, "DIR", 0, "Write report.html, junit.xml and results.json there", 0},
+    {"report-size", REPORT_SIZE, "MB", 0, "What the pictures in the report may take (default: 64)", 0},
+    {0}};
 
 typedef struct Options {
-    const char *paths[2];
-    int count;
+    const char *paths[2], *fuzzy, *masks[MASK_PARTS], *max_pixels, *report, *report_size;
+    int count, mask_count;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
     Options *options = state->input;
-    if (key == ARGP_KEY_ARG) {
+    switch (key) {
+    case FUZZY: options->fuzzy = value; break;
+    case MASK:
+        if (options->mask_count == MASK_PARTS) argp_error(state, "at most %d masks", MASK_PARTS);
+        options->masks[options->mask_count++] = value;
+        break;
+    case MAX_PIXELS: options->max_pixels = value; break;
+    case REPORT: options->report = value; break;
+    case REPORT_SIZE: options->report_size = value; break;
+    case ARGP_KEY_ARG:
         if (options->count == 2) argp_error(state, "two things are compared, not more ('%s')", value);
         options->paths[options->count++] = value;
-        return 0;
+        break;
+    case ARGP_KEY_END:
+        if (options->count < 2) argp_error(state, "two things to compare are needed");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
     }
-    if (key == ARGP_KEY_END && options->count < 2) argp_error(state, "two things to compare are needed");
-    return ARGP_ERR_UNKNOWN;
+    return 0;
 }
 
 static const struct argp argp = {
-    NULL,
+    option_table,
     parse,
-    "A B",
+    "EXPECTED ACTUAL",
     "Tell where two trajectories (.npz) or two PNG sequences (folders, or single files) part. Trajectories are equal "
-    "when every bit of every pose and velocity is; pictures when every decoded pixel is, frame number by frame "
-    "number. Exit status 0: equal, 1: different.\v"
-    "Example: twinbox compare golden/trajectories/stack-engine.npz out/stack/stack-engine.npz",
+    "when "
+    "every bit of every pose and velocity is; pictures when every decoded pixel is, frame by frame of the same stem "
+    "and "
+    "number. Whether the renderer changed or the physics is told by the trajectories that lie in both folders, and by "
+    "the states that our pictures name. Exit status 0: equal, 1: different, 2: what cannot be compared.\v"
+    "Example: twinbox compare golden/frames out/golden/frames --report out/report",
     NULL,
     NULL,
     NULL};
@@ -55,9 +87,9 @@ static void print_trajectory_difference(const Trajectory *a, const TrajectoryDif
            difference->max_distance);
 }
 
-static int compare_trajectories(const Options *options, Error *error) {
-    Trajectory *a = trajectory_read(options->paths[0], error);
-    Trajectory *b = a != NULL ? trajectory_read(options->paths[1], error) : NULL;
+static int compare_trajectories(const char *const paths[2], Error *error) {
+    Trajectory *a = trajectory_read(paths[0], error);
+    Trajectory *b = a != NULL ? trajectory_read(paths[1], error) : NULL;
     TrajectoryDifference difference = {0};
     if (b != NULL) {
         trajectory_compare(a, b, &difference);
@@ -68,51 +100,99 @@ static int compare_trajectories(const Options *options, Error *error) {
     return difference.equal ? STATUS_SAME : STATUS_DIFFERENT;
 }
 
-static void print_missing(const char *path, int count, int64_t first) {
-    if (count > 0) printf("only in %s: %d frames, from %" PRId64 " on\n", path, count, first);
+/* "X,Y,W,H"; false for anything else. */
+static bool parse_rectangle(const char *text, int numbers[4]) {
+    char part[16];
+    for (int i = 0; i < 4; i++) {
+        size_t length = strcspn(text, ",");
+        int64_t value;
+        if (length >= sizeof part || (text[length] == ',') != (i < 3)) return false;
+        memcpy(part, text, length);
+        part[length] = '\0';
+        if (!parse_int(part, i < 2 ? -1000000 : 1, 1000000, &value)) return false;
+        numbers[i] = (int)value;
+        text += length + 1;
+    }
+    return true;
 }
 
-static bool print_sequence_difference(const Options *options, const SequenceDifference *difference) {
-    print_missing(options->paths[0], difference->only_a, difference->first_only_a);
-    print_missing(options->paths[1], difference->only_b, difference->first_only_b);
-    const ImageDifference *first = &difference->at_first;
-    if (difference->first >= 0 && !first->same_size)
-        printf("first difference: frame %" PRId64 ": %d x %d and %d x %d pixels\n", difference->first,
-               difference->width_a, difference->height_a, difference->width_b, difference->height_b);
-    else if (difference->first >= 0)
-        printf("first difference: frame %" PRId64 ": %" PRId64 " pixels, the largest by %d, the first at (%d, %d)\n",
-               difference->first, first->pixels, first->largest, first->first_x, first->first_y);
-    if (difference->different > 0) printf("%d of %d frames differ\n", difference->different, difference->compared);
-    bool equal = difference->different + difference->only_a + difference->only_b == 0;
-    if (equal) printf("equal: %d frames\n", difference->compared);
-    return equal;
+static bool read_masks(const Options *options, Mask *mask, Error *error) {
+    for (int i = 0; i < options->mask_count; i++) {
+        int numbers[4];
+        const char *text = options->masks[i], *ending = strrchr(text, '.');
+        if (parse_rectangle(text, numbers)) {
+            if (!mask_add_rectangle(mask, numbers[0], numbers[1], numbers[2], numbers[3], error)) return false;
+        } else if (ending == NULL || strcasecmp(ending, ".png") != 0)
+            return error_input(error, "--mask", "'%s' is neither a PNG file nor X,Y,W,H with W and H from 1", text);
+        else if (!mask_add_picture(mask, text, error))
+            return false;
+    }
+    return true;
+}
+
+static bool read_fuzzy(const char *text, RegressionOptions *options, Error *error) {
+    const char *comma = strchr(text, ',');
+    char largest[8] = "";
+    int64_t value;
+    if (comma != NULL && comma - text < (int)sizeof largest) memcpy(largest, text, (size_t)(comma - text));
+    if (!parse_int(largest, 0, 255, &value) || !parse_double(comma + 1, &options->max_share) ||
+        options->max_share < 0 || options->max_share > 1)
+        return error_input(error, "--fuzzy", "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE from 0 to 1",
+                           text);
+    options->max_difference = (int)value;
+    return true;
+}
+
+static bool read_options(const Options *options, RegressionOptions *compared, int *megabytes, Error *error) {
+    int pixels = IMAGE_MAX_PIXELS;
+    bool ok =
+        (options->fuzzy == NULL || read_fuzzy(options->fuzzy, compared, error)) &&
+        (options->max_pixels == NULL || option_int("--max-pixels", options->max_pixels, 1, INT_MAX, &pixels, error)) &&
+        (options->report_size == NULL || option_int("--report-size", options->report_size, 1, 1000, megabytes, error));
+    compared->max_pixels = pixels;
+    return ok;
+}
+
+static bool compare_pictures(const Options *options, const RegressionOptions *compared, int megabytes, bool *passed,
+                             Error *error) {
+    Regression regression;
+    ProgressBar bar;
+    progress_bar_begin(&bar, "comparing");
+    bool ok = regression_run(&regression, options->paths[0], options->paths[1], compared, &bar.progress, error);
+    progress_bar_end(&bar);
+    if (!ok) return false;
+    *passed = regression_passed(&regression);
+    compare_print(&regression);
+    if (options->report != NULL) {
+        progress_bar_begin(&bar, "report");
+        ok = regression_report_write(&regression, options->report, (size_t)megabytes << 20, &bar.progress, error);
+        progress_bar_end(&bar);
+        if (ok) printf("report -> %s/report.html\n", options->report);
+    }
+    regression_free(&regression);
+    return ok;
 }
 
 static int compare_sequences(const Options *options, Error *error) {
-    ImageSequence *a = image_sequence_open(options->paths[0], error);
-    ImageSequence *b = a != NULL ? image_sequence_open(options->paths[1], error) : NULL;
-    bool equal = false;
-    if (b != NULL) {
-        ProgressBar bar;
-        progress_bar_begin(&bar, "comparing");
-        SequenceDifference difference;
-        bool ok = image_sequence_compare(a, b, &difference, &bar.progress, error);
-        progress_bar_end(&bar);
-        equal = ok && print_sequence_difference(options, &difference);
-    }
-    image_sequence_close(a);
-    image_sequence_close(b);
-    return equal ? STATUS_SAME : STATUS_DIFFERENT;
+    Mask mask = {.count = 0};
+    RegressionOptions compared = {.mask = &mask};
+    int megabytes = REPORT_MEGABYTES;
+    bool passed = false;
+    bool ok = read_options(options, &compared, &megabytes, error) && read_masks(options, &mask, error) &&
+              compare_pictures(options, &compared, megabytes, &passed, error);
+    mask_free(&mask);
+    return ok && passed ? STATUS_SAME : STATUS_DIFFERENT;
 }
 
 int command_compare(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     bool first = is_trajectory(options.paths[0]), second = is_trajectory(options.paths[1]);
-    if (first != second) {
+    if (first != second)
         error_input(error, options.paths[first ? 1 : 0], "is no trajectory (.npz), but %s is",
                     options.paths[first ? 0 : 1]);
-        return STATUS_DIFFERENT;
-    }
-    return first ? compare_trajectories(&options, error) : compare_sequences(&options, error);
+    else if (first && (options.report != NULL || options.fuzzy != NULL || options.mask_count > 0))
+        error_input(error, options.paths[0], "--report, --fuzzy and --mask are for pictures");
+    if (error->kind != ERROR_NONE) return STATUS_DIFFERENT;
+    return first ? compare_trajectories(options.paths, error) : compare_sequences(&options, error);
 }

@@ -2,9 +2,13 @@
 #include "cli/draw_panels.h"
 
 #include "cli/progress_bar.h"
+#include "render/sink.h"
 #include "render/video.h"
 
-#include <stdio.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 RenderOptions draw_panels_defaults(const char *directory) {
@@ -26,41 +30,75 @@ int panels_last_frame(const Panels *panels) {
     return frames - 1;
 }
 
-static bool draw(const Panels *panels, const RenderOptions *render, Error *error) {
+static bool is_output(const char *path) { return strcmp(path, "-") == 0; }
+
+bool draw_videos_use_output(const DrawVideos *videos) {
+    for (int i = 0; i < videos->count; i++)
+        if (is_output(videos->paths[i])) return true;
+    return false;
+}
+
+bool draw_videos_check(const DrawVideos *videos, int width, int height, Error *error) {
+    bool files = false;
+    for (int i = 0; i < videos->count; i++) {
+        const char *path = videos->paths[i];
+        for (int k = 0; k < i; k++)
+            if (strcmp(path, videos->paths[k]) == 0) return error_input(error, "--video", "'%s' twice", path);
+        if (is_output(path) && isatty(STDOUT_FILENO))
+            return error_input(error, "--video", "'-' writes a video to standard output, which is a terminal");
+        if (is_output(path)) continue;
+        if (!video_check(path, width, height, error)) return false;
+        files = true;
+    }
+    return !files || video_check_programs(error);
+}
+
+static bool draw(const Panels *panels, const RenderOptions *render, RenderResult *result, Error *error) {
     ProgressBar bar;
     progress_bar_begin(&bar, "drawing");
-    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, &bar.progress, error);
+    bool ok =
+        render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, &bar.progress, error);
     progress_bar_end(&bar);
     return ok;
 }
 
-static bool encode(const char *path, const Panels *panels, const RenderOptions *render, Error *error) {
-    if (path == NULL) return true;
+/* A reader that has gone is an error to tell, not the end of the program. */
+static bool write_output(VideoOptions *video, const Progress *progress, Error *error) {
+    video->path = "standard output";
+    void (*before)(int) = signal(SIGPIPE, SIG_IGN);
+    bool ok = video_write_y4m(video, STDOUT_FILENO, progress, error);
+    signal(SIGPIPE, before);
+    return ok;
+}
+
+static bool encode(const char *path, const Panels *panels, const RenderOptions *render, const RenderResult *result,
+                   Error *error) {
     VideoOptions video = {.directory = render->directory,
-                          .first = render->first,
-                          .last = render->last,
+                          .first = result->first,
+                          .last = result->last,
                           .frame_rate = 1 / (double)panels->runs[0]->dt,
+                          .hashes = result->hashes,
                           .path = path};
     ProgressBar bar;
-    progress_bar_begin(&bar, "encoding");
-    bool ok = video_encode(&video, &bar.progress, error);
+    progress_bar_begin(&bar, is_output(path) ? "writing" : "encoding");
+    bool ok = is_output(path) ? write_output(&video, &bar.progress, error) : video_encode(&video, &bar.progress, error);
     progress_bar_end(&bar);
     return ok;
 }
 
 /* Frames of an earlier, longer run would pass for this one's. */
-static void remove_stale_frames(const RenderOptions *render) {
-    char path[4096];
-    for (int frame = render->last + 1;; frame++) {
-        if (snprintf(path, sizeof path, "%s/frame_%06d.png", render->directory, frame) >= (int)sizeof path) return;
+static void remove_stale_frames(const RenderOptions *render, int last) {
+    char path[PATH_MAX];
+    for (int frame = last + 1; sink_frame_path(path, sizeof path, render->directory, frame); frame++)
         if (unlink(path) != 0) return;
-    }
 }
 
-bool draw_panels(const Panels *panels, RenderOptions *render, const char *video, Error *error) {
-    int last = panels_last_frame(panels);
-    if (render->last < 0) render->last = last;
-    if (!draw(panels, render, error)) return false;
-    if (render->first == 0 && render->last == last) remove_stale_frames(render);
-    return encode(video, panels, render, error);
+bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderResult *result,
+                 Error *error) {
+    bool ok = draw(panels, render, result, error);
+    if (ok && result->all) remove_stale_frames(render, result->last);
+    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], panels, render, result, error);
+    free(result->hashes);
+    result->hashes = NULL;
+    return ok;
 }

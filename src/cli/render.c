@@ -2,19 +2,28 @@
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
 #include "cli/options.h"
+#include "cli/render_look.h"
 #include "common/file.h"
-#include "render/video.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { SIZE = 256, FRAMES, VIDEO, PNG, JOBS, CONTEXT, SET };
+enum { SIZE = 256, FRAMES, SLOW, HOLD, TITLE, END, VIDEO, RESUME, PNG, JOBS, CONTEXT, SET };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
     {"size", SIZE, "WxH", 0, "Size of a frame in pixels (default: 1920x1080)", 0},
-    {"frames", FRAMES, "A:B", 0, "Draw these frames only (default: all)", 0},
-    {"video", VIDEO, "FILE.mp4", 0, "Encode the frames too (ffmpeg, H.264)", 0},
+    {"frames", FRAMES, "A:B", 0, "Draw these frames of the run only (default: all)", 0},
+    {"slow", SLOW, "K", 0,
+     "K times slower around the bomb's impact, 2 to 16: pictures between two frames show bodies between them", 0},
+    {"hold", HOLD, "SECONDS", 0, "How long the last frame stays", 0},
+    {"title", TITLE, "TEXT", 0, "Begin with a card, two seconds long, that says so", 0},
+    {"end", END, "TEXT", 0, "End with such a card", 0},
+    {"video", VIDEO, "FILE", 0,
+     "Encode the frames too, as FILE.mp4 (H.264), .webm (VP9) or .gif; - is standard output, as y4m in 4:4:4 and "
+     "BT.709 (may be repeated)",
+     0},
+    {"resume", RESUME, NULL, 0, "Draw only what the manifest in DIR does not know, or what is not as it says", 0},
     {"png", PNG, "fast|small", 0, "How hard to compress (default: fast); the pictures are the same", 0},
     {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
     {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
@@ -24,17 +33,29 @@ static const struct argp_option option_table[] = {
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count;
-    const char *output, *size, *frames, *video, *png, *jobs, *context;
+    const char *output, *size, *frames, *slow, *hold, *title, *end, *png, *jobs, *context;
+    bool resume;
+    DrawVideos videos;
     SetOptions set;
+    RenderLookOptions look;
 } Options;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
     Options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->look; break;
     case 'o': options->output = value; break;
     case SIZE: options->size = value; break;
     case FRAMES: options->frames = value; break;
-    case VIDEO: options->video = value; break;
+    case SLOW: options->slow = value; break;
+    case HOLD: options->hold = value; break;
+    case TITLE: options->title = value; break;
+    case END: options->end = value; break;
+    case VIDEO:
+        if (options->videos.count == DRAW_VIDEOS_MAX) argp_error(state, "at most %d videos", DRAW_VIDEOS_MAX);
+        options->videos.paths[options->videos.count++] = value;
+        break;
+    case RESUME: options->resume = true; break;
     case PNG: options->png = value; break;
     case JOBS: options->jobs = value; break;
     case CONTEXT: options->context = value; break;
@@ -52,6 +73,8 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return 0;
 }
 
+static const struct argp_child children[] = {{&render_look_argp, 0, NULL, 0}, {0}};
+
 static const struct argp argp = {
     option_table,
     parse,
@@ -59,7 +82,7 @@ static const struct argp argp = {
     "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
     "run by the engine and by the pair-net that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
-    NULL,
+    children,
     NULL,
     NULL};
 
@@ -80,28 +103,55 @@ static bool choose_png(const char *name, bool *small, Error *error) {
     return *small || strcmp(name, "fast") == 0 || error_input(error, "--png", "'%s' is neither fast nor small", name);
 }
 
+static bool read_order(const Options *options, RenderOptions *render, Error *error) {
+    float hold = 0;
+    if ((options->slow != NULL && !option_int("--slow", options->slow, 2, RENDER_SLOW_MAX, &render->slow, error)) ||
+        (options->hold != NULL && !option_float("--hold", options->hold, 0, RENDER_HOLD_MAX, &hold, error)))
+        return false;
+    render->hold = (double)hold;
+    render->title = options->title;
+    render->title_card = options->title != NULL;
+    render->look.end = options->end;
+    render->end_card = options->end != NULL;
+    return true;
+}
+
 static bool read_options(const Options *options, RenderOptions *render, Error *error) {
     *render = draw_panels_defaults(options->output);
-    return choose_context(options->context, &render->context, error) &&
+    render->resume = options->resume;
+    return render_look_read(&options->look, &render->look, error) &&
+           choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
            (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||
             option_frames("--frames", options->frames, &render->first, &render->last, error)) &&
            (options->jobs == NULL || option_int("--jobs", options->jobs, 1, RENDER_JOBS_MAX, &render->jobs, error)) &&
-           (options->video == NULL || video_check(options->video, render->width, render->height, error));
+           read_order(options, render, error) &&
+           draw_videos_check(&options->videos, render->width, render->height, error);
 }
 
-static bool render_panels(const Options *options, const Panels *panels, RenderOptions *render, Error *error) {
+/* Words go to standard error where standard output is the video. */
+static void print_result(const Options *options, const RenderOptions *render, const RenderResult *result) {
+    FILE *out = draw_videos_use_output(&options->videos) ? stderr : stdout;
+    if (render->resume && result->why[0] != '\0') fprintf(out, "nothing to resume: %s\n", result->why);
+    fprintf(out, "%d frames -> %s/frame_%06d.png ... frame_%06d.png", result->last - result->first + 1,
+            render->directory, result->first, result->last);
+    if (render->resume) fprintf(out, ", %d of them there already", result->kept);
+    fprintf(out, "\nmanifest -> %s/manifest.json\n", render->directory);
+    for (int i = 0; i < options->videos.count; i++) fprintf(out, "video -> %s\n", options->videos.paths[i]);
+}
+
+static bool render_panels(Options *options, const Panels *panels, RenderOptions *render, Error *error) {
     int last = panels_last_frame(panels);
+    RenderResult result;
     if (render->first > last || render->last > last)
         return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
-    if (!file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
-        !draw_panels(panels, render, options->video, error))
+    if (!render_look_apply(&options->look, &render->look, panels, error) ||
+        !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+        !draw_panels(panels, render, &options->videos, &result, error))
         return false;
-    printf("%d frames -> %s/frame_%06d.png ... frame_%06d.png\n", render->last - render->first + 1, render->directory,
-           render->first, render->last);
-    if (options->video != NULL) printf("video -> %s\n", options->video);
+    print_result(options, render, &result);
     return true;
 }
 

@@ -3,7 +3,7 @@
 
 #include "cli/draw_panels.h"
 #include "cli/stability_cell.h"
-#include "render/video.h"
+#include "common/file.h"
 
 #include <limits.h>
 #include <math.h>
@@ -121,10 +121,13 @@ static bool draw(Clip *clip, Error *error) {
         describe(notes[i], clip->rows[i], clip->dt);
         render.notes[i] = notes[i];
     }
-    if (!video_check(video, render.width, render.height, error) || !draw_panels(&clip->panels, &render, video, error))
+    const DrawVideos videos = {1, {video}};
+    RenderResult result;
+    if (!file_make_directory(folder, error) || !draw_videos_check(&videos, render.width, render.height, error) ||
+        !draw_panels(&clip->panels, &render, &videos, &result, error))
         return false;
     printf("%s: %s -> %s, %s/frame_%06d.png ... frame_%06d.png\n", clip->options->cell, notes[clip->count - 1], video,
-           folder, render.first, render.last);
+           folder, result.first, result.last);
     return true;
 }
 

@@ -14,7 +14,10 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error);
    or the new one, never a part. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
-/* Puts in place what `print` writes: in the C locale, whose decimal point is a point. */
+/* What `print` writes, in the C locale, whose decimal point is a point: a malloc'ed text; NULL when memory is short. */
+char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size);
+
+/* Puts in place what `print` writes, as file_print() has it. */
 bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
                      Error *error);
 

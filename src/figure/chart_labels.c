@@ -44,8 +44,8 @@ static double mark_x(const Labels *labels, int i) { return log_axis_place(labels
 
 static double mark_y(const Labels *labels, int i) { return log_axis_place(labels->y, labels->panel->marks[i].error); }
 
-static Box box_around(double x, double y, double radius) {
-    return (Box){x - radius, y - radius, x + radius, y + radius};
+static PageBox box_around(double x, double y, double radius) {
+    return (PageBox){x - radius, y - radius, x + radius, y + radius};
 }
 
 static void add_obstacles(Labels *labels) {
@@ -77,7 +77,7 @@ static bool add_front(Labels *labels) {
 }
 
 /* A thin line from a mark's ring to a label that lies off it. */
-static void put_leader(FILE *script, double x, double y, const Box *box) {
+static void put_leader(FILE *script, double x, double y, const PageBox *box) {
     double near_x = fmin(fmax(x, box->left), box->right), near_y = fmin(fmax(y, box->bottom), box->top);
     double apart = sqrt((near_x - x) * (near_x - x) + (near_y - y) * (near_y - y));
     if (apart < RING_RADIUS + 1) return;
@@ -88,7 +88,7 @@ static void put_leader(FILE *script, double x, double y, const Box *box) {
 }
 
 static void put_label(Labels *labels, int i, const char *text, bool must) {
-    Box box;
+    PageBox box;
     const ChartMark *mark = &labels->panel->marks[i];
     double x = mark_x(labels, i), y = mark_y(labels, i), width = character_width * (double)strlen(text);
     double distance = (mark->shipped ? RING_RADIUS : MARK_RADIUS) + 0.4;

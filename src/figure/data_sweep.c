@@ -85,7 +85,7 @@ static void put_bomb(Sketch *sketch, const View *view, const Scene *launched, bo
     if (!named) return;
     Point at = view_place(view, bomb.position);
     at.y += view->scale * (double)bomb.size.y / 2 + 2.4;
-    sketch_text(sketch, at, &(TextStyle){7.5, TEXT_CENTER, INK, 0}, "%s m",
+    sketch_text(sketch, at, &(TextStyle){7.5, TEXT_CENTER, INK, 0, false}, "%s m",
                 show_decimals((double)bomb.position.x, 1).text);
 }
 

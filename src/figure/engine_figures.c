@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "figure/engine_figure.h"
+#include "figure/sketch_files.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -30,7 +31,7 @@ static bool draw_figure(const EngineFigure *figure, const char *name, Scene *con
     Sketch sketch;
     char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
     if (!join(stem, folder, name, "", error)) return false;
-    if (!sketch_begin(&sketch, figure->width, figure->height, error)) return false;
+    sketch_begin(&sketch, figure->width, figure->height);
     bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, error);
     sketch_free(&sketch);
     return drawn && write_caption(folder, name, caption, error);

@@ -44,7 +44,7 @@ static void put_pair(Sketch *sketch, const SweepRow *row) {
         Point at = view_place(&view, row->boxes[i].position);
         Point to = put_vector(sketch, at, &row->inputs[i == 0 ? VELOCITY_A : VELOCITY_B], ACCENT);
         put_vector(sketch, to, &row->changes[3 * i], NETWORK_COLOUR);
-        const TextStyle name = {8.5, i == 0 ? TEXT_RIGHT : TEXT_LEFT, is_bomb(row, i) ? BOMB.line : BOX_INK, 0};
+        const TextStyle name = {8.5, i == 0 ? TEXT_RIGHT : TEXT_LEFT, is_bomb(row, i) ? BOMB.line : BOX_INK, 0, false};
         double side = (i == 0 ? -1 : 1) * view.scale * 0.6;
         sketch_text(sketch, (Point){at.x + side, at.y}, &name, "%c: %s", "ab"[i], is_bomb(row, i) ? "bomb" : "box");
     }
@@ -55,21 +55,21 @@ static void put_key(Sketch *sketch) {
     static const char *const arrows[] = {"velocity before", "its change"};
     static const char *const letters[] = {"dx, dy: b as seen from a", "v: velocity, w: spin", "dv, dw: their changes"};
     const uint32_t colours[] = {ACCENT, NETWORK_COLOUR};
-    const TextStyle words = {7.5, TEXT_LEFT, INK, 0};
+    const TextStyle words = {7.5, TEXT_LEFT, INK, 0, false};
     Point at = {split + 61, height - 11};
     for (int i = 0; i < 2; i++, at.y -= 5) {
         sketch_arrow(sketch, at, (Point){at.x + 10 * speed_scale, at.y}, HEAD_AT_END, colours[i], 2.6);
         sketch_text(sketch, (Point){at.x + 13, at.y}, &words, "%s", arrows[i]);
     }
-    sketch_bar(sketch, at, 10 * speed_scale, "10 m/s");
+    sketch_bar(sketch, at, speed_scale, 10, "m/s", 7.5);
     at.y -= 3;
     for (int i = 0; i < 3; i++) sketch_text(sketch, (Point){at.x, at.y -= 5}, &words, "%s", letters[i]);
 }
 
 /* Names, numbers and units in a column from `at` down. */
 static void put_numbers(Sketch *sketch, Point at, const NumberName *names, const float *numbers, int count) {
-    const TextStyle name = {7.5, TEXT_LEFT, INK_SOFT, 0}, number = {7.5, TEXT_RIGHT, INK, 0};
-    const TextStyle unit = {7.5, TEXT_LEFT, INK_SOFT, 0};
+    const TextStyle name = {7.5, TEXT_LEFT, INK_SOFT, 0, false}, number = {7.5, TEXT_RIGHT, INK, 0, false};
+    const TextStyle unit = {7.5, TEXT_LEFT, INK_SOFT, 0, false};
     for (int i = 0; i < count; i++, at.y -= 4.2) {
         sketch_text(sketch, at, &name, "%s", names[i].name);
         sketch_text(sketch, (Point){at.x + 19.5, at.y}, &number, "%s", show_decimals((double)numbers[i], 3).text);
@@ -82,12 +82,12 @@ static void put_row(Sketch *sketch, const SweepRow *row) {
     const double top = 42, foot = 9, second = split + 34, third = split + 70;
     sketch_rectangle(sketch, (Point){split, foot}, (Point){third - 4, top}, &inputs);
     sketch_rectangle(sketch, (Point){third - 1, foot}, (Point){width - 0.5, top}, &changes);
-    sketch_text(sketch, (Point){split + 2, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, BOX_INK, 0}, "Ten inputs");
-    sketch_text(sketch, (Point){third + 1, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, NETWORK_INK, 0}, "Changes");
+    sketch_text(sketch, (Point){split + 2, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, BOX_INK, 0, false}, "Ten inputs");
+    sketch_text(sketch, (Point){third + 1, top - 3.5}, &(TextStyle){8.5, TEXT_LEFT, NETWORK_INK, 0, false}, "Changes");
     put_numbers(sketch, (Point){split + 2, top - 8.5}, input_names, row->inputs, 5);
     put_numbers(sketch, (Point){second, top - 8.5}, input_names + 5, row->inputs + 5, 5);
     put_numbers(sketch, (Point){third + 1, top - 8.5}, change_names, row->changes, 6);
-    sketch_text(sketch, (Point){split, 4.5}, &(TextStyle){7.5, TEXT_LEFT, INK, 0},
+    sketch_text(sketch, (Point){split, 4.5}, &(TextStyle){7.5, TEXT_LEFT, INK, 0, false},
                 "The two outputs: change of b as seen from a, (%s, %s) m/s",
                 show_decimals((double)row->changes[3] - (double)row->changes[0], 3).text,
                 show_decimals((double)row->changes[4] - (double)row->changes[1], 3).text);
@@ -116,12 +116,12 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     SweepRow row;
     int rows;
     if (!put_sweep(sketch, &view, scenes[SCENE_STACK], &row, &rows, error)) return false;
-    sketch_bar(sketch, (Point){3, 4}, 2 * view.scale, "2 m");
-    sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0}, "dot: first touch");
+    sketch_bar(sketch, (Point){3, 4}, view.scale, 2, "m", 7.5);
+    sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0, false}, "dot: first touch");
     put_pair(sketch, &row);
     put_key(sketch);
     put_row(sketch, &row);
-    const TextStyle title = {8.5, TEXT_LEFT, INK, 0};
+    const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){1, height - 2.5}, &title, "%d of %d launches",
                 (SWEEP_LAUNCHES - 1) / SWEEP_SHOWN_EVERY + 1, SWEEP_LAUNCHES);
     sketch_text(sketch, (Point){split, height - 2.5}, &title, "One row: bodies %d and %d, step %d, launch from %s m",

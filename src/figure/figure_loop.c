@@ -69,7 +69,7 @@ static Point corner(int column_number, double row) { return (Point){1 + column *
 static void put_stage(Sketch *sketch, Point at, const char *title, const char *first, const char *second,
                       const Pen *pen, uint32_t ink) {
     sketch_rectangle(sketch, at, (Point){at.x + box_width, at.y + box_height}, pen);
-    const TextStyle heading = {9, TEXT_LEFT, ink, 0}, words = {7.5, TEXT_LEFT, INK, 0};
+    const TextStyle heading = {9, TEXT_LEFT, ink, 0, false}, words = {7.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){at.x + 2.5, at.y + 15.8}, &heading, "%s", title);
     sketch_text(sketch, (Point){at.x + 2.5, at.y + 9.2}, &words, "%s", first);
     sketch_text(sketch, (Point){at.x + 2.5, at.y + 4.4}, &words, "%s", second);
@@ -92,7 +92,7 @@ static void put_network(Sketch *sketch, const StepCounts *counts) {
     const Pen pen = {NETWORK_COLOUR, 0.12, NETWORK_INK, 1.6, "(12,6)"};
     Point low = {corner(1, 0).x - 20, 1}, high = {low.x + box_width + 40, 15};
     sketch_rectangle(sketch, low, high, &pen);
-    const TextStyle heading = {9, TEXT_CENTER, NETWORK_INK, 0}, words = {7.5, TEXT_CENTER, INK, 0};
+    const TextStyle heading = {9, TEXT_CENTER, NETWORK_INK, 0, false}, words = {7.5, TEXT_CENTER, INK, 0, false};
     double middle = (low.x + high.x) / 2;
     sketch_text(sketch, (Point){middle, 11}, &heading, "Neural network, in place of the solver");
     sketch_text(sketch, (Point){middle, 5}, &words, "%d predictions, one a touching pair: %d numbers in, %d out",
@@ -135,7 +135,7 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     put_stages(sketch, &counts);
     put_arrows(sketch);
     put_network(sketch, &counts);
-    const TextStyle words = {7.5, TEXT_CENTER, INK_SOFT, 0};
+    const TextStyle words = {7.5, TEXT_CENTER, INK_SOFT, 0, false};
     sketch_text(sketch, (Point){corner(1, 0).x + box_width / 2, (low_row + box_height + high_row) / 2}, &words,
                 "One step of 1/%.4g s; counts of step %d of the stack, just after the bomb's first touch",
                 counts.steps_a_second, counts.step);

@@ -35,13 +35,12 @@ static bool find_in_step(Collision *collision, const EngineRun *run) {
         *collision = (Collision){.boxes = {engine_run_box(run, a), engine_run_box(run, b)},
                                  .bodies = {a, b},
                                  .bomb = problem->bomb,
-                                 .step = run->frame};
-        manifold_compute(&collision->manifold, &collision->boxes[0], &collision->boxes[1]);
-        separating_axes(collision->overlaps, &collision->boxes[0], &collision->boxes[1]);
-        collision->least = least_overlap(collision->overlaps);
+                                 .step = run->frame,
+                                 .points = 8};
+        for (int k = 0; k < 2; k++)
+            snprintf(collision->names[k], sizeof collision->names[k], "%s", is_bomb(collision, k) ? "bomb" : "box");
         /* Of two that are nearly alike the engine may keep the other. */
-        Vec2 axis = collision->overlaps[collision->least].axis;
-        if (fabsf(vec2_dot(axis, collision->manifold.normal)) > 0.9999f) return true;
+        if (collision_find(collision) && collision->least == least_overlap(collision->overlaps)) return true;
     }
     return false;
 }
@@ -59,13 +58,6 @@ static bool find_collision(Collision *collision, const Scene *scene, Error *erro
         return error_input(error, scene->name, "the bomb touches no box in two points at %g degrees or more",
                            LEAST_TILT);
     return ok;
-}
-
-void put_collision(Sketch *sketch, const View *view, const Collision *collision) {
-    for (int i = 0; i < 2; i++) {
-        const Pen pen = pen_fill(fill_of(collision, i), is_bomb(collision, i) ? 0.28 : 0.13, ink_of(collision, i));
-        sketch_box(sketch, view, &collision->boxes[i], &pen);
-    }
 }
 
 static void write_caption(char caption[CAPTION_SIZE], const Collision *c) {
@@ -88,7 +80,7 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     if (!find_collision(&collision, scenes[SCENE_PYRAMID], error)) return false;
     put_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);
     put_contact(sketch, (View){.low = {split, 1}, .high = {width - 1, height - 7}}, &collision);
-    const TextStyle title = {8.5, TEXT_LEFT, INK, 0};
+    const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){1, height - 2.5}, &title, "Overlaps along the axes of both boxes");
     sketch_text(sketch, (Point){split, height - 2.5}, &title, "Contact points: separations along the normal");
     write_caption(caption, &collision);

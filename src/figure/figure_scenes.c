@@ -107,7 +107,7 @@ static double bomb_speed(const Trajectory *run) {
 }
 
 static void put_words(Sketch *sketch, const View *view, const char *title, const Scene *scene, const Trajectory *run) {
-    const TextStyle heading = {8.5, TEXT_LEFT, INK, 0}, words = {7.5, TEXT_LEFT, INK_SOFT, 0};
+    const TextStyle heading = {8.5, TEXT_LEFT, INK, 0, false}, words = {7.5, TEXT_LEFT, INK_SOFT, 0, false};
     int boxes = count_boxes(scene);
     sketch_text(sketch, (Point){view->low.x, height - 2.8}, &heading, "%s: %d %s", title, boxes,
                 boxes == 1 ? "box" : "boxes");
@@ -126,7 +126,7 @@ static bool put_scene(Sketch *sketch, int i, const Scene *scene, int *step, Erro
         put_way(sketch, &view, run, scene->bomb.frame);
         put_words(sketch, &view, titles[i], scene, run);
         sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
-        if (i == 0) sketch_bar(sketch, (Point){x + 2.5, low + 1.6}, 5 * view.scale, "5 m");
+        if (i == 0) sketch_bar(sketch, (Point){x + 2.5, low + 1.6}, view.scale, 5, "m", 7.5);
     }
     *step = run->frames - 1;
     image_destroy(window);

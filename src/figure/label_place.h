@@ -3,9 +3,9 @@
 #pragma once
 #include <stdbool.h>
 
-typedef struct Box {
+typedef struct PageBox {
     double left, bottom, right, top;
-} Box;
+} PageBox;
 
 typedef struct Segment {
     double x0, y0, x1, y1;
@@ -15,18 +15,18 @@ enum { LABEL_MAX_BOXES = 1024, LABEL_MAX_SEGMENTS = 2048 };
 
 /* What is drawn already. */
 typedef struct LabelField {
-    Box frame; /* labels stay inside */
+    PageBox frame; /* labels stay inside */
     int box_count, segment_count;
-    Box boxes[LABEL_MAX_BOXES];           /* marks and labels: never covered */
+    PageBox boxes[LABEL_MAX_BOXES];       /* marks and labels: never covered */
     Segment segments[LABEL_MAX_SEGMENTS]; /* lines: crossed only by a label that must be there */
 } LabelField;
 
 /* Beyond the limits boxes and segments are dropped: labels may then cover them. */
-void label_add_box(LabelField *field, Box box);
+void label_add_box(LabelField *field, PageBox box);
 void label_add_segment(LabelField *field, Segment segment);
 
 /* The box for a label of this size near (x, y), at least `distance` from it: the nearest that covers no box and
    crosses no line. False where there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
    field. */
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
-                 Box *place);
+                 PageBox *place);

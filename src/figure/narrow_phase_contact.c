@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/narrow_phase.h"
+#include "figure/type.h"
 
 #include <math.h>
 
@@ -18,8 +19,20 @@ static void facing_edge(Vec2 ends[2], const Box *box, Vec2 direction) {
 /* The box whose axis the manifold's normal lies on. */
 static int reference_of(const Collision *collision) { return collision->overlaps[collision->least].box; }
 
-/* Words along an edge, `share` of the way from its left end, off it in the direction `off`. */
-static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 off, uint32_t colour,
+static float length_of(const Vec2 ends[2]) { return hypotf(ends[1].x - ends[0].x, ends[1].y - ends[0].y); }
+
+/* The edges that face each other, the reference edge first. */
+static void find_edges(const Collision *collision, Vec2 front, Vec2 edges[2][2]) {
+    int reference = reference_of(collision);
+    facing_edge(edges[0], &collision->boxes[reference], front);
+    facing_edge(edges[1], &collision->boxes[1 - reference], vec2_negate(front));
+}
+
+/* What lengths of the picture go by, m. */
+static float unit_of(const Vec2 edges[2][2]) { return fmaxf(length_of(edges[0]), length_of(edges[1])); }
+
+/* Words of a size and colour along an edge, `share` of the way from its left end, off it in the direction `off`. */
+static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 off, TextStyle style,
                           const char *words) {
     Point p = view_place(view, ends[0]), q = view_place(view, ends[1]);
     if (p.x > q.x) {
@@ -27,78 +40,152 @@ static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], 
         p = q;
         q = swap;
     }
-    const TextStyle style = {7.5, TEXT_CENTER, colour, atan2(q.y - p.y, q.x - p.x) * 180 / M_PI};
+    style.degrees = atan2(q.y - p.y, q.x - p.x) * 180 / M_PI;
     const Point at = {p.x + share * (q.x - p.x) + 2.4 * (double)off.x, p.y + share * (q.y - p.y) + 2.4 * (double)off.y};
     sketch_text(sketch, at, &style, "%s", words);
 }
 
 /* What the incident edge is cut off at: it goes on along `front` through an end of the reference edge. */
-static void put_side_plane(Sketch *sketch, const View *view, Vec2 end, Vec2 out, Vec2 front) {
+static void put_side_plane(Sketch *sketch, const View *view, Vec2 end, Vec2 out, Vec2 front, float unit,
+                           double points) {
     const Pen pen = pen_line(INK_SOFT, 1.6, "(6,6)");
-    const Vec2 ends[2] = {vec2_add(end, vec2_scale(-0.3f, front)), vec2_add(end, vec2_scale(0.26f, front))};
+    const Vec2 ends[2] = {vec2_add(end, vec2_scale(-0.3f * unit, front)),
+                          vec2_add(end, vec2_scale(0.26f * unit, front))};
     sketch_line(sketch, view_place(view, ends[0]), view_place(view, ends[1]), &pen);
     if (out.x <= 0) return;
-    put_edge_name(sketch, view, ends, 0.78, vec2_scale(1 / hypotf(out.x, out.y), out), INK_SOFT, "side plane");
+    put_edge_name(sketch, view, ends, 0.78, vec2_scale(1 / hypotf(out.x, out.y), out),
+                  (TextStyle){0.94 * points, TEXT_CENTER, INK_SOFT, 0, false}, "side plane");
 }
 
-static void put_edges(Sketch *sketch, const View *view, const Collision *collision, Vec2 front) {
-    Vec2 ends[2];
-    int reference = reference_of(collision);
-    uint32_t ink = ink_of(collision, reference), other_ink = ink_of(collision, 1 - reference);
-    facing_edge(ends, &collision->boxes[reference], front);
-    for (int i = 0; i < 2; i++) put_side_plane(sketch, view, ends[i], vec2_sub(ends[i], ends[1 - i]), front);
+/* Where the contact points lie on the page; `near`: so near each other that their depths go outward. */
+typedef struct ShownPoints {
+    Point deep[2], on_face[2];
+    bool near;
+    double middle; /* mm, from left to right */
+} ShownPoints;
+
+static ShownPoints show_points(const View *view, const Collision *collision, Vec2 front) {
+    const Manifold *manifold = &collision->manifold;
+    ShownPoints shown = {.middle = 0};
+    for (int i = 0; i < manifold->count; i++) {
+        const ManifoldPoint *point = &manifold->points[i];
+        shown.on_face[i] = view_place(view, point->position);
+        shown.deep[i] = view_place(view, vec2_add(point->position, vec2_scale(point->separation, front)));
+        shown.middle += shown.deep[i].x / manifold->count;
+    }
+    const double least = 2 * type_width("-999 mm", 1.06 * collision->points);
+    shown.near = manifold->count < 2 || fabs(shown.deep[1].x - shown.deep[0].x) < least;
+    return shown;
+}
+
+/* Between points that lie apart there is room for an edge's name outside its box; else it is inside, away from them. */
+static void name_edge(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 out,
+                      const ShownPoints *points, TextStyle style, const char *words) {
+    const double middle = (view_place(view, ends[0]).x + view_place(view, ends[1]).x) / 2;
+    if (points->near) share = points->middle > middle ? 0.3 : 0.7;
+    put_edge_name(sketch, view, ends, share, points->near ? vec2_negate(out) : out, style, words);
+}
+
+static void put_edges(Sketch *sketch, const View *view, const Collision *collision, Vec2 front,
+                      const Vec2 edges[2][2]) {
+    const double points = 0.94 * collision->points;
+    const int reference = reference_of(collision);
+    const uint32_t ink = ink_of(collision, reference), other_ink = ink_of(collision, 1 - reference);
+    const ShownPoints shown = show_points(view, collision, front);
+    for (int i = 0; i < 2; i++)
+        put_side_plane(sketch, view, edges[0][i], vec2_sub(edges[0][i], edges[0][1 - i]), front, unit_of(edges),
+                       collision->points);
     const Pen thick = pen_line(ink, 5, NULL), dashed = pen_line(other_ink, 4, "(9,4)");
-    sketch_line(sketch, view_place(view, ends[0]), view_place(view, ends[1]), &thick);
-    put_edge_name(sketch, view, ends, 0.22, front, ink, "reference edge");
-    facing_edge(ends, &collision->boxes[1 - reference], vec2_negate(front));
-    sketch_line(sketch, view_place(view, ends[0]), view_place(view, ends[1]), &dashed);
-    put_edge_name(sketch, view, ends, 0.5, vec2_negate(front), other_ink, "incident edge");
+    sketch_line(sketch, view_place(view, edges[0][0]), view_place(view, edges[0][1]), &thick);
+    name_edge(sketch, view, edges[0], 0.22, front, &shown, (TextStyle){points, TEXT_CENTER, ink, 0, true},
+              "reference edge");
+    sketch_line(sketch, view_place(view, edges[1][0]), view_place(view, edges[1][1]), &dashed);
+    name_edge(sketch, view, edges[1], 0.5, vec2_negate(front), &shown,
+              (TextStyle){points, TEXT_CENTER, other_ink, 0, true}, "incident edge");
 }
 
-/* A point's depth is written below it, toward the middle of the edge. */
+/* A point's depth is written below it: toward the middle of the edge, but outward where two points lie side by side. */
 static void put_points(Sketch *sketch, const View *view, const Collision *collision, Vec2 front) {
     const Pen dot = pen_fill(ACCENT, 1, NO_COLOUR), ring = {0xFFFFFF, 1, ACCENT, 1.6, NULL};
     const Pen depth = pen_line(ACCENT, 1.8, NULL);
-    for (int i = 0; i < collision->manifold.count; i++) {
-        const ManifoldPoint *point = &collision->manifold.points[i];
-        Point on_face = view_place(view, point->position);
-        Point deep = view_place(view, vec2_add(point->position, vec2_scale(point->separation, front)));
-        sketch_line(sketch, on_face, deep, &depth);
+    const Manifold *manifold = &collision->manifold;
+    const ShownPoints shown = show_points(view, collision, front);
+    const bool pair = shown.near && manifold->count == 2;
+    for (int i = 0; i < manifold->count; i++) {
+        const Point deep = shown.deep[i];
+        sketch_line(sketch, shown.on_face[i], deep, &depth);
         sketch_dot(sketch, deep, 1.1, &dot);
-        sketch_dot(sketch, on_face, 0.9, &ring);
-        bool left = deep.x < (view->low.x + view->high.x) / 2;
-        const TextStyle words = {8.5, left ? TEXT_LEFT : TEXT_RIGHT, ACCENT, 0};
-        sketch_text(sketch, (Point){deep.x + (left ? -1 : -2.5), deep.y - 4}, &words, "%s mm",
-                    show_decimals(1000 * (double)point->separation, 0).text);
+        sketch_dot(sketch, shown.on_face[i], 0.9, &ring);
+        const bool left = pair ? deep.x < shown.deep[1 - i].x : deep.x < (view->low.x + view->high.x) / 2;
+        const double off = pair ? (left ? -1.5 : 1.5) : left ? -1 : -2.5;
+        const TextStyle words = {1.06 * collision->points, left != pair ? TEXT_LEFT : TEXT_RIGHT, ACCENT, 0, true};
+        sketch_text(sketch, (Point){deep.x + off, deep.y - 4 * collision->points / 8}, &words, "%s mm",
+                    show_decimals(1000 * (double)manifold->points[i].separation, 0).text);
     }
 }
 
 /* Out of the reference edge; written as the engine has it, from a to b. */
-static void put_normal(Sketch *sketch, const View *view, Vec2 foot, Vec2 front, Vec2 normal) {
-    const Point from = view_place(view, foot), to = view_place(view, vec2_add(foot, vec2_scale(0.35f, front)));
+static void put_normal(Sketch *sketch, const View *view, const Collision *collision, Vec2 foot, Vec2 way) {
+    const Vec2 normal = collision->normal;
+    const Point from = view_place(view, foot), to = view_place(view, vec2_add(foot, way));
+    const double length = hypot(to.x - from.x, to.y - from.y);
     sketch_arrow(sketch, from, to, HEAD_AT_END, ACCENT, 3);
-    const TextStyle words = {8.5, TEXT_CENTER, ACCENT, 0};
-    sketch_text(sketch, (Point){to.x, to.y + 3}, &words, "normal (%s, %s)", show_decimals((double)normal.x, 3).text,
+    /* Beyond the tip, half of a line of words off. */
+    const double off = 3 * collision->points / 8;
+    const Point at = {to.x + off * (to.x - from.x) / length, to.y + off * (to.y - from.y) / length};
+    const TextStyle words = {1.06 * collision->points, TEXT_CENTER, ACCENT, 0, true};
+    sketch_text(sketch, at, &words, "normal (%s, %s)", show_decimals((double)normal.x, 3).text,
                 show_decimals((double)normal.y, 3).text);
 }
 
-void put_contact(Sketch *sketch, View view, const Collision *collision) {
+static double between(double a, double b) { return (a + b) / 2; }
+
+/* Both edges lie in the window, with something of the boxes around them. */
+static View look_at(View view, const Vec2 edges[2][2]) {
+    const double around = 1.27;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < 4; i++) {
+        const Vec2 end = edges[i / 2][i % 2];
+        low[0] = fmin(low[0], (double)end.x), high[0] = fmax(high[0], (double)end.x);
+        low[1] = fmin(low[1], (double)end.y), high[1] = fmax(high[1], (double)end.y);
+    }
+    const double side = fmax(fmax(high[0] - low[0], high[1] - low[1]), (double)unit_of(edges));
+    view.center = (Point){between(low[0], high[0]), between(low[1], high[1])};
+    view.scale = fmin(view.high.x - view.low.x, view.high.y - view.low.y) / (around * side);
+    return view;
+}
+
+/* On the way from an edge's middle to that of its box; the upper one above the normal's words. */
+static void put_names(Sketch *sketch, const View *view, const Collision *collision, const Vec2 edges[2][2],
+                      Vec2 front) {
+    const int reference = reference_of(collision);
+    const Vec2 foot = vec2_scale(0.5f, vec2_add(edges[0][0], edges[0][1]));
+    for (int i = 0; i < 2; i++) {
+        const int box = i == 0 ? reference : 1 - reference;
+        const Vec2 middle = vec2_scale(0.5f, vec2_add(edges[i][0], edges[i][1]));
+        const Vec2 in = vec2_sub(collision->boxes[box].position, middle);
+        const float up = (i == 0 ? -0.5f : 0.57f) * unit_of(edges) - vec2_dot(vec2_sub(middle, foot), front);
+        const float share = fminf(fmaxf(up / vec2_dot(in, front), 0.3f), 1.2f);
+        const TextStyle name = {1.06 * collision->points, TEXT_CENTER, ink_of(collision, box), 0, true};
+        sketch_text(sketch, view_place(view, vec2_add(middle, vec2_scale(share, in))), &name, "%s",
+                    name_of(collision, box));
+    }
+}
+
+void put_contact(Sketch *sketch, View window, const Collision *collision) {
     const Manifold *manifold = &collision->manifold;
     int reference = reference_of(collision);
-    Vec2 front = reference == 0 ? manifold->normal : vec2_negate(manifold->normal), ends[2];
-    facing_edge(ends, &collision->boxes[reference], front);
-    Vec2 middle = vec2_scale(0.5f, vec2_add(ends[0], ends[1]));
-    view.center = (Point){(double)middle.x, (double)middle.y};
-    view.scale = 60;
+    Vec2 front = reference == 0 ? manifold->normal : vec2_negate(manifold->normal), edges[2][2];
+    find_edges(collision, front, edges);
+    const View view = look_at(window, (const Vec2(*)[2])edges);
+    const float unit = unit_of((const Vec2(*)[2])edges);
+    const Vec2 middle = vec2_scale(0.5f, vec2_add(edges[0][0], edges[0][1]));
     put_collision(sketch, &view, collision);
-    put_edges(sketch, &view, collision, front);
+    put_edges(sketch, &view, collision, front, (const Vec2(*)[2])edges);
     put_points(sketch, &view, collision, front);
-    put_normal(sketch, &view, middle, front, manifold->normal);
-    for (int i = 0; i < 2; i++) {
-        const TextStyle name = {8.5, TEXT_CENTER, ink_of(collision, i), 0};
-        Vec2 at = vec2_add(middle, vec2_scale(i == reference ? -0.45f : 0.55f, front));
-        sketch_text(sketch, view_place(&view, at), &name, "%s", name_of(collision, i));
-    }
-    sketch_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, 0.2 * view.scale, "0.2 m");
+    put_normal(sketch, &view, collision, middle, vec2_scale(0.33f * unit, front));
+    put_names(sketch, &view, collision, (const Vec2(*)[2])edges, front);
+    sketch_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, view.scale, round_down(14 / view.scale), "m",
+               0.94 * collision->points);
     sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/narrow_phase.h"
+#include "figure/type.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Where the shadows on one axis are drawn: a point of the page for each place along it. */
 typedef struct Gauge {
@@ -50,18 +52,42 @@ static void put_guides(Sketch *sketch, const Gauge *gauge, const double ends[2])
         sketch_line(sketch, gauge_point(gauge, ends[i], 0), gauge_point(gauge, ends[i], -1.1 * gauge->scale), &pen);
 }
 
-/* Beside a bar that stands, along one that lies. */
-static void put_depth(Sketch *sketch, const Gauge *gauge, double place, const Collision *collision, int i) {
+enum { DEPTH_TEXT_SIZE = 64 };
+
+static void write_depth(char text[DEPTH_TEXT_SIZE], const Collision *collision, int i) {
     const AxisOverlap *overlap = &collision->overlaps[i];
-    bool least = i == collision->least, beside = fabsf(gauge->out.x) > fabsf(gauge->out.y);
-    TextStyle words = {least ? 9 : 7.5, TEXT_CENTER, INK, 0};
+    snprintf(text, DEPTH_TEXT_SIZE, "%s %c: %.0f mm", name_of(collision, overlap->box), overlap->letter,
+             1000 * overlap->depth);
+}
+
+static double depth_points(const Collision *collision, int i) {
+    return (i == collision->least ? 1.13 : 0.94) * collision->points;
+}
+
+/* From this width of the window on there is room for words beside bars that stand; else they go along them. */
+static const double wide = 100; /* mm, for type of 8 points */
+
+static bool has_room_beside(const View *view, const Collision *collision) {
+    return view->high.x - view->low.x >= wide * collision->points / 8;
+}
+
+/* Beside a bar that stands, along one that lies. */
+static void put_depth(Sketch *sketch, const View *view, const Gauge *gauge, double place, const Collision *collision,
+                      int i) {
+    const bool beside = fabsf(gauge->out.x) > fabsf(gauge->out.y) && has_room_beside(view, collision);
+    const double step = 3.8 * collision->points / 8;
+    TextStyle words = {depth_points(collision, i), TEXT_CENTER, INK, 0, true};
     if (beside) words.align = gauge->out.x > 0 ? TEXT_LEFT : TEXT_RIGHT;
     if (!beside) words.degrees = atan((double)(gauge->along.y / gauge->along.x)) * 180 / M_PI;
+    if (words.degrees < -80) words.degrees += 180; /* all that stand are read the same way */
     Point at = gauge_point(gauge, place, 6.2);
-    sketch_text(sketch, at, &words, "%s %c: %.0f mm", name_of(collision, overlap->box), overlap->letter,
-                1000 * overlap->depth);
-    words.points = 7.5;
-    if (least) sketch_text(sketch, (Point){at.x, at.y - 3.8}, &words, "the least");
+    char text[DEPTH_TEXT_SIZE];
+    write_depth(text, collision, i);
+    sketch_text(sketch, at, &words, "%s", text);
+    if (i != collision->least) return;
+    words.points = 0.94 * collision->points;
+    at = beside ? (Point){at.x, at.y - step} : gauge_point(gauge, place, 6.2 + step);
+    sketch_text(sketch, at, &words, "%s", collision->why);
 }
 
 static void put_gauge(Sketch *sketch, const View *view, const Collision *collision, int i) {
@@ -79,18 +105,42 @@ static void put_gauge(Sketch *sketch, const View *view, const Collision *collisi
     const Pen mark = pen_line(ACCENT, least ? 5 : 1.8, NULL);
     sketch_shape(sketch, corners, 4, &mark);
     if (least) put_guides(sketch, &gauge, ends);
-    put_depth(sketch, &gauge, (ends[0] + ends[1]) / 2, collision, i);
+    put_depth(sketch, view, &gauge, (ends[0] + ends[1]) / 2, collision, i);
 }
 
-void put_overlaps(Sketch *sketch, View view, const Collision *collision) {
-    Vec2 sum = vec2_add(collision->boxes[0].position, collision->boxes[1].position);
-    view.center = (Point){(double)sum.x / 2, (double)sum.y / 2};
-    view.scale = 22;
+/* Around both boxes there are gauges, and words beside them. */
+static View look_at(View view, const Collision *collision) {
+    const double gauges = 14, above = 27 + collision->points;
+    double words = 8 * collision->points / 8;
+    for (int i = 0; has_room_beside(&view, collision) && i < SEPARATING_AXES; i++) {
+        char text[DEPTH_TEXT_SIZE];
+        write_depth(text, collision, i);
+        words = fmax(words, type_width(text, depth_points(collision, i)));
+    }
+    const double beside = 2 * (gauges + words);
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < 2; i++) {
+        const Box *box = &collision->boxes[i];
+        const Vec2 x = vec2_scale(box->half.x, box->rotation.column1),
+                   y = vec2_scale(box->half.y, box->rotation.column2);
+        const double reach[2] = {fabs((double)x.x) + fabs((double)y.x), fabs((double)x.y) + fabs((double)y.y)};
+        const double at[2] = {(double)box->position.x, (double)box->position.y};
+        for (int k = 0; k < 2; k++) low[k] = fmin(low[k], at[k] - reach[k]), high[k] = fmax(high[k], at[k] + reach[k]);
+    }
+    view.center = (Point){(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    view.scale = fmin((view.high.x - view.low.x - beside) / (high[0] - low[0]),
+                      (view.high.y - view.low.y - above) / (high[1] - low[1]));
+    return view;
+}
+
+void put_overlaps(Sketch *sketch, View window, const Collision *collision) {
+    const View view = look_at(window, collision);
     put_collision(sketch, &view, collision);
     for (int i = 0; i < SEPARATING_AXES; i++) put_gauge(sketch, &view, collision, i);
     for (int i = 0; i < 2; i++) {
-        const TextStyle words = {8.5, TEXT_CENTER, ink_of(collision, i), 0};
+        const TextStyle words = {1.06 * collision->points, TEXT_CENTER, ink_of(collision, i), 0, false};
         sketch_text(sketch, view_place(&view, collision->boxes[i].position), &words, "%s", name_of(collision, i));
     }
-    sketch_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, 0.5 * view.scale, "0.5 m");
+    sketch_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, view.scale, round_down(14 / view.scale), "m",
+               0.94 * collision->points);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/sketch.h"
 
-#include "figure/gnuplot.h"
+#include "common/array.h"
+#include "figure/type.h"
 #include "render/style.h"
 
 #include <math.h>
@@ -14,99 +15,65 @@ Point view_place(const View *view, Vec2 position) {
                    (view->low.y + view->high.y) / 2 + view->scale * ((double)position.y - view->center.y)};
 }
 
-bool sketch_begin(Sketch *sketch, double width, double height, Error *error) {
-    *sketch = (Sketch){.width = width, .height = height};
-    for (int i = 0; i < SKETCH_PARTS; i++) {
-        SketchPart *part = &sketch->parts[i];
-        part->file = open_memstream(&part->text, &part->size);
-        if (part->file != NULL) continue;
-        sketch_free(sketch);
-        return error_memory(error, "figure");
-    }
-    fprintf(sketch->parts[PART_PICTURES].file,
-            "set termoption noenhanced\nset key off\nunset border\nunset tics\nset multiplot\n"
-            "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen 1\n"
-            "set xrange [0:%g]\nset yrange [0:%g]\n",
-            width, height);
-    fprintf(sketch->parts[PART_PLOT].file, "plot NaN");
-    return true;
-}
-
-static bool close_part(SketchPart *part) {
-    if (part->file == NULL) return true;
-    bool whole = !ferror(part->file);
-    whole = fclose(part->file) == 0 && whole;
-    part->file = NULL;
-    return whole;
-}
+void sketch_begin(Sketch *sketch, double width, double height) { *sketch = (Sketch){.width = width, .height = height}; }
 
 void sketch_free(Sketch *sketch) {
-    for (int i = 0; i < SKETCH_PARTS; i++) {
-        close_part(&sketch->parts[i]);
-        free(sketch->parts[i].text);
-    }
+    for (size_t i = 0; i < sketch->mark_count; i++) image_destroy(sketch->marks[i].image);
+    free(sketch->marks);
+    free(sketch->points);
+    free(sketch->texts);
     *sketch = (Sketch){0};
 }
 
-/* The parts behind each other; NULL when memory is short. */
-static char *join_parts(Sketch *sketch, size_t *size) {
-    bool whole = true;
-    *size = 0;
-    for (int i = 0; i < SKETCH_PARTS; i++) {
-        whole = close_part(&sketch->parts[i]) && whole;
-        *size += sketch->parts[i].size;
+/* On the page or near it. Runs can go anywhere, and no page is so large. */
+static bool has_place(Point p) {
+    const double farthest = 1e5; /* mm */
+    return fabs(p.x) < farthest && fabs(p.y) < farthest;
+}
+
+/* False when memory is short. */
+static bool add_mark(Sketch *sketch, const SketchMark *mark) {
+    if (!array_reserve((void **)&sketch->marks, &sketch->mark_capacity, sketch->mark_count + 1, sizeof *mark)) {
+        sketch->failed = true;
+        return false;
     }
-    char *script = whole ? malloc(*size) : NULL, *end = script;
-    for (int i = 0; script != NULL && i < SKETCH_PARTS; end += sketch->parts[i++].size)
-        memcpy(end, sketch->parts[i].text, sketch->parts[i].size);
-    return script;
+    sketch->marks[sketch->mark_count++] = *mark;
+    return true;
 }
 
-bool sketch_draw(Sketch *sketch, const char *stem, Error *error) {
-    fprintf(sketch->parts[PART_PLOT].file, "\nunset multiplot\n");
-    size_t size;
-    char *script = join_parts(sketch, &size);
-    if (script == NULL) return error_memory(error, stem);
-    const GnuplotDrawing drawing = {
-        .width = sketch->width, .height = sketch->height, .script = script, .script_size = size, .without_pdf = true};
-    bool drawn = gnuplot_draw(&drawing, stem, error);
-    free(script);
-    return drawn;
-}
-
-/* gnuplot places the middles of pixels. */
 void sketch_image(Sketch *sketch, const Image *image, Point low, double width) {
-    double pixel = width / image->width;
-    FILE *script = sketch->parts[PART_PICTURES].file;
-    fprintf(script,
-            "plot '-' binary array=(%d,%d) flipy dx=%.9g dy=%.9g origin=(%.9g,%.9g) format='%%uchar' with rgbimage\n",
-            image->width, image->height, pixel, pixel, low.x + pixel / 2, low.y + pixel / 2);
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        fwrite(image->pixels + 4 * i, 1, 3, script);
-    fprintf(script, "\n");
+    Image *copy = image_create(image->width, image->height, &(Error){0});
+    if (copy == NULL) {
+        sketch->failed = true;
+        return;
+    }
+    memcpy(copy->pixels, image->pixels, (size_t)image->width * (size_t)image->height * 4);
+    const SketchMark mark = {LAYER_PICTURES, MARK_IMAGE, .at = low, .width = width, .image = copy};
+    if (!add_mark(sketch, &mark)) image_destroy(copy);
 }
 
-static void put_path(Sketch *sketch, const Point *points, int count, bool closed, const Pen *pen) {
-    int path = sketch->paths++;
-    FILE *script = sketch->parts[PART_POINTS].file, *plot = sketch->parts[PART_PLOT].file;
-    fprintf(script, "$d%d << END\n", path);
-    for (int i = 0; i < count; i++) fprintf(script, "%.4f %.4f\n", points[i].x, points[i].y);
-    if (closed) fprintf(script, "%.4f %.4f\n", points[0].x, points[0].y);
-    fprintf(script, "END\n");
-    if (closed && pen->fill != NO_COLOUR)
-        fprintf(plot, ", $d%d with filledcurves closed fs transparent solid %g noborder fc rgb '#%06X'", path,
-                pen->opacity, pen->fill);
-    if (pen->line != NO_COLOUR)
-        fprintf(plot, ", $d%d with lines lw %g dt %s lc rgb '#%06X'", path, pen->width,
-                pen->dashes != NULL ? pen->dashes : "solid", pen->line);
+static void put_path(Sketch *sketch, SketchLayer layer, const Point *points, size_t count, bool closed,
+                     const Pen *pen) {
+    for (size_t i = 0; i < count; i++)
+        if (!has_place(points[i])) return;
+    if (!array_reserve((void **)&sketch->points, &sketch->point_capacity, sketch->point_count + count,
+                       sizeof *points)) {
+        sketch->failed = true;
+        return;
+    }
+    const SketchMark mark = {layer,         MARK_PATH, .pen = *pen, .closed = closed, .first = sketch->point_count,
+                             .count = count};
+    memcpy(sketch->points + sketch->point_count, points, count * sizeof *points);
+    sketch->point_count += count;
+    add_mark(sketch, &mark);
 }
 
 void sketch_path(Sketch *sketch, const Point *points, int count, const Pen *pen) {
-    if (count > 1) put_path(sketch, points, count, false, pen);
+    if (count > 1) put_path(sketch, LAYER_SHAPES, points, (size_t)count, false, pen);
 }
 
 void sketch_shape(Sketch *sketch, const Point *points, int count, const Pen *pen) {
-    if (count > 2) put_path(sketch, points, count, true, pen);
+    if (count > 2) put_path(sketch, LAYER_SHAPES, points, (size_t)count, true, pen);
 }
 
 void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen) {
@@ -127,10 +94,30 @@ void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen) {
     sketch_shape(sketch, points, CORNERS, pen);
 }
 
+/* A filled head with its tip at `to`; the line is to end `head` mm before it. */
+static void put_head(Sketch *sketch, Point from, Point to, double head, uint32_t colour) {
+    const double slimness = 0.325; /* tangent of half the angle at the tip: 18 degrees */
+    double length = hypot(to.x - from.x, to.y - from.y);
+    Point along = {(to.x - from.x) / length, (to.y - from.y) / length};
+    Point foot = {to.x - head * along.x, to.y - head * along.y};
+    double half = slimness * head;
+    const Point corners[] = {
+        to, {foot.x - half * along.y, foot.y + half * along.x}, {foot.x + half * along.y, foot.y - half * along.x}};
+    put_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+}
+
 void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width) {
-    fprintf(sketch->parts[PART_WORDS].file,
-            "set arrow from %.4f,%.4f to %.4f,%.4f front size first 2.2,18 %s filled lw %g lc rgb '#%06X'\n", from.x,
-            from.y, to.x, to.y, heads == HEADS_AT_BOTH ? "heads" : "head", width, colour);
+    const double longest_head = 2.2;
+    double length = hypot(to.x - from.x, to.y - from.y), head = fmin(longest_head, 0.6 * length);
+    if (!(length > 0)) return;
+    /* The line ends inside its heads, which are sharper than it is. */
+    double in_x = 0.7 * head * (to.x - from.x) / length, in_y = 0.7 * head * (to.y - from.y) / length;
+    bool both = heads == HEADS_AT_BOTH;
+    const Point line[] = {{from.x + (both ? in_x : 0), from.y + (both ? in_y : 0)}, {to.x - in_x, to.y - in_y}};
+    const Pen pen = pen_line(colour, width, NULL);
+    put_path(sketch, LAYER_ARROWS, line, 2, false, &pen);
+    put_head(sketch, from, to, head, colour);
+    if (both) put_head(sketch, to, from, head, colour);
 }
 
 /* Keeps what lies where sign * coordinate <= limit (Sutherland and Hodgman 1974). Room for one corner more. */
@@ -161,27 +148,22 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
     sketch_shape(sketch, corners, count, pen);
 }
 
-/* In single quotes gnuplot takes everything as it is but a quote, which is written twice. */
-static void put_quoted(FILE *script, const char *text) {
-    fputc('\'', script);
-    for (; *text != '\0'; text++) {
-        if (*text == '\'') fputc('\'', script);
-        fputc(*text, script);
-    }
-    fputc('\'', script);
-}
-
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) {
-    static const char *const aligns[] = {"left", "center", "right"};
+    if (!has_place(at)) return;
     char text[SKETCH_TEXT_SIZE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    fprintf(sketch->parts[PART_WORDS].file, "set label ");
-    put_quoted(sketch->parts[PART_WORDS].file, text);
-    fprintf(sketch->parts[PART_WORDS].file, " at %.4f,%.4f %s front font ',%g' rotate by %g tc rgb '#%06X'\n", at.x,
-            at.y, aligns[style->align], style->points, style->degrees, style->colour);
+    size_t size = strlen(text) + 1;
+    if (!array_reserve((void **)&sketch->texts, &sketch->text_capacity, sketch->text_size + size, 1)) {
+        sketch->failed = true;
+        return;
+    }
+    const SketchMark mark = {LAYER_WORDS, MARK_TEXT, .at = at, .style = *style, .text = sketch->text_size};
+    memcpy(sketch->texts + sketch->text_size, text, size);
+    sketch->text_size += size;
+    add_mark(sketch, &mark);
 }
 
 ShownDecimals show_decimals(double value, int decimals) {
@@ -193,11 +175,18 @@ ShownDecimals show_decimals(double value, int decimals) {
     return shown;
 }
 
-void sketch_bar(Sketch *sketch, Point left, double length, const char *words) {
-    const Point right = {left.x + length, left.y};
+void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points) {
+    const double up = 0.3 * points * MM_PER_POINT;
+    const Point right = {left.x + scale * amount, left.y};
     const Pen pen = pen_line(INK, 1.6, NULL);
     sketch_line(sketch, left, right, &pen);
-    sketch_line(sketch, (Point){left.x, left.y - 0.8}, (Point){left.x, left.y + 0.8}, &pen);
-    sketch_line(sketch, (Point){right.x, right.y - 0.8}, (Point){right.x, right.y + 0.8}, &pen);
-    sketch_text(sketch, (Point){right.x + 1.5, left.y}, &(TextStyle){7.5, TEXT_LEFT, INK, 0}, "%s", words);
+    sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
+    sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
+    sketch_text(sketch, (Point){right.x + 1.4, left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%g %s", amount,
+                unit);
+}
+
+double round_down(double most) {
+    const double power = pow(10, floor(log10(most))), share = most / power;
+    return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
 }

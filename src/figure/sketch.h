@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawings made of boxes, lines, arrows and words, by gnuplot. All lengths on the page in mm, from its lower left
-   corner; what comes later lies above what came before, and arrows and words above all. */
+/* Drawings made of boxes, lines, arrows and words, for a page: kept as a list, then written as PNG, SVG or PDF (sketch_files.h).
+   All lengths on the page in mm, from its lower left corner; what comes later lies above what came before, pictures
+   below all and arrows and words above all. */
 #pragma once
 #include "collision/manifold.h"
 #include "common/error.h"
@@ -20,6 +21,8 @@
 #define ACCENT 0x000000u
 #define NO_COLOUR UINT32_MAX
 
+#define LINE_UNIT 0.17 /* mm */
+
 typedef struct Point {
     double x, y;
 } Point;
@@ -29,8 +32,8 @@ typedef struct Pen {
     uint32_t fill; /* NO_COLOUR: not filled */
     double opacity;
     uint32_t line;      /* NO_COLOUR: no line */
-    double width;       /* of the line, gnuplot's */
-    const char *dashes; /* gnuplot's, or NULL: solid */
+    double width;       /* of the line, LINE_UNIT */
+    const char *dashes; /* "(6,5)": dash and gap, twice at most, in LINE_UNIT; NULL: solid. Outlives the sketch */
 } Pen;
 
 static inline Pen pen_line(uint32_t line, double width, const char *dashes) {
@@ -50,31 +53,51 @@ typedef struct View {
 
 Point view_place(const View *view, Vec2 position);
 
-/* Text that grows. */
-typedef struct SketchPart {
-    FILE *file;
-    char *text;
-    size_t size;
-} SketchPart;
+enum { SKETCH_TEXT_SIZE = 200 };
 
-/* The parts of gnuplot's script, in this order: pictures, points of lines and shapes, arrows and words, and the command
-   that plots lines and shapes. */
-typedef enum SketchParts { PART_PICTURES, PART_POINTS, PART_WORDS, PART_PLOT, SKETCH_PARTS } SketchParts;
+typedef enum TextAlign { TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT } TextAlign;
+
+typedef struct TextStyle {
+    double points; /* of type */
+    TextAlign align;
+    uint32_t colour;
+    double degrees; /* turned counter-clockwise */
+    bool halo;      /* with a white edge, to be read over a picture */
+} TextStyle;
+
+/* In the order in which they lie above each other. */
+typedef enum SketchLayer { LAYER_PICTURES, LAYER_SHAPES, LAYER_ARROWS, LAYER_WORDS, SKETCH_LAYERS } SketchLayer;
+
+typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT } SketchMarkKind;
+
+/* One thing on the page. */
+typedef struct SketchMark {
+    SketchLayer layer;
+    SketchMarkKind kind;
+    Point at;     /* lower left corner of an image; of words */
+    double width; /* mm, of an image */
+    Image *image;
+    Pen pen;
+    bool closed;
+    size_t first, count; /* of a path: its part of the sketch's points */
+    TextStyle style;
+    size_t text; /* where it begins in the sketch's texts */
+} SketchMark;
 
 typedef struct Sketch {
     double width, height; /* mm */
-    SketchPart parts[SKETCH_PARTS];
-    int paths; /* put so far */
+    SketchMark *marks;
+    Point *points;
+    char *texts;
+    size_t mark_count, mark_capacity, point_count, point_capacity, text_size, text_capacity;
+    bool failed; /* memory was short: something is missing */
 } Sketch;
 
-/* False when memory is short; a sketch begun is to be freed. */
-bool sketch_begin(Sketch *sketch, double width, double height, Error *error);
+/* A sketch begun is to be freed. */
+void sketch_begin(Sketch *sketch, double width, double height);
 void sketch_free(Sketch *sketch);
 
-/* Draws stem.png and stem.svg. Nothing more can be added then. */
-bool sketch_draw(Sketch *sketch, const char *stem, Error *error);
-
-/* A picture (alpha is dropped) with its lower left corner at `low`, `width` mm wide. Pictures lie below all else. */
+/* A picture with its lower left corner at `low`, `width` mm wide; its alpha counts. It is copied. */
 void sketch_image(Sketch *sketch, const Image *image, Point low, double width);
 
 /* A line through points, or the closed shape that they bound. */
@@ -91,17 +114,6 @@ void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32
 /* A shape of the world, cut off at the window's edge. */
 void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen);
 
-enum { SKETCH_TEXT_SIZE = 200 };
-
-typedef enum TextAlign { TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT } TextAlign;
-
-typedef struct TextStyle {
-    double points; /* of type */
-    TextAlign align;
-    uint32_t colour;
-    double degrees; /* turned counter-clockwise */
-} TextStyle;
-
 /* A line of words, cut to SKETCH_TEXT_SIZE - 1 bytes, its middle at the height of `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
@@ -111,5 +123,8 @@ typedef struct ShownDecimals {
 } ShownDecimals;
 ShownDecimals show_decimals(double value, int decimals);
 
-/* A bar to measure by, and what it stands for. */
-void sketch_bar(Sketch *sketch, Point left, double length, const char *words);
+/* A bar to measure by, for an amount at a scale in mm a unit, and what it stands for: "5 m". */
+void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
+
+/* The largest of 1, 2 and 5 times a power of ten that is not above `most`, which is above 0. */
+double round_down(double most);

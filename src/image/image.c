@@ -16,52 +16,103 @@ Image *image_create(int width, int height, Error *error) {
         error_memory(error, "image");
         return NULL;
     }
-    *image = (Image){width, height, pixels};
+    *image = (Image){width, height, pixels, NULL};
     return image;
 }
 
 void image_destroy(Image *image) {
     if (image == NULL) return;
     free(image->pixels);
+    free(image->deep);
     free(image);
 }
 
-static void put_little_endian(uint8_t *bytes, uint64_t value, int count) {
+/* Continues a hash over the bytes of a number, the lowest first on every machine. */
+static uint64_t add_number(uint64_t hash, uint64_t value, int count) {
+    uint8_t bytes[8];
     for (int i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
+    return hash_fnv1a64(hash, bytes, (size_t)count);
+}
+
+static uint64_t hash_shape(const Image *image) {
+    return add_number(add_number(FNV1A64_START, (uint64_t)image->width, 4), (uint64_t)image->height, 4);
+}
+
+static uint64_t hash_row(const Image *image, int y) {
+    size_t size = (size_t)image->width * 4;
+    return hash_xxh3(image->pixels + (size_t)y * size, size);
 }
 
 uint64_t image_hash(const Image *image) {
-    uint64_t pixels = hash_xxh3(image->pixels, (size_t)image->width * (size_t)image->height * 4);
-    uint8_t whole[16];
-    put_little_endian(whole, (uint64_t)image->width, 4);
-    put_little_endian(whole + 4, (uint64_t)image->height, 4);
-    put_little_endian(whole + 8, pixels, 8);
-    return hash_xxh3(whole, sizeof whole);
+    uint64_t hash = hash_shape(image);
+    for (int y = 0; y < image->height; y++) hash = add_number(hash, hash_row(image, y), 8);
+    return hash;
 }
 
-static int largest_channel_difference(const uint8_t *a, const uint8_t *b) {
+uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows) {
+    uint64_t hash = hash_shape(image);
+    for (int y = 0; y < image->height; y++) {
+        if (changed == NULL || changed[y]) rows[y] = hash_row(image, y);
+        hash = add_number(hash, rows[y], 8);
+    }
+    return hash;
+}
+
+static int channel_difference(const Image *a, const Image *b, size_t i) {
+    if (a->deep == NULL && b->deep == NULL) return abs(a->pixels[i] - b->pixels[i]);
+    int deep_a = a->deep != NULL ? a->deep[i] : a->pixels[i] * 257;
+    int deep_b = b->deep != NULL ? b->deep[i] : b->pixels[i] * 257;
+    return (abs(deep_a - deep_b) + 256) / 257;
+}
+
+int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
     int largest = 0;
-    for (int channel = 0; channel < 4; channel++) {
-        int difference = abs(a[channel] - b[channel]);
+    for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++) {
+        int difference = channel_difference(a, b, i);
         if (difference > largest) largest = difference;
     }
     return largest;
 }
 
-void image_compare(const Image *a, const Image *b, ImageDifference *difference) {
+static void count_pixel(ImageDifference *difference, int x, int y, int here) {
+    if (difference->pixels++ == 0) {
+        difference->first_x = difference->left = x, difference->right = x + 1;
+        difference->first_y = difference->top = y;
+    }
+    if (here > difference->largest) difference->largest = here;
+    if (x < difference->left) difference->left = x;
+    if (x >= difference->right) difference->right = x + 1;
+    difference->bottom = y + 1;
+}
+
+static bool equal_row(const Image *a, const Image *b, size_t first) {
+    return a->deep == NULL && b->deep == NULL &&
+           memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
+}
+
+static int64_t count_masked(const uint8_t *masked, size_t pixels) {
+    int64_t count = 0;
+    for (size_t i = 0; masked != NULL && i < pixels; i++) count += masked[i] != 0;
+    return count;
+}
+
+void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, ImageDifference *difference) {
     bool same_size = a->width == b->width && a->height == b->height;
     *difference = (ImageDifference){.same_size = same_size, .first_x = -1, .first_y = -1};
     if (!same_size) return;
-    size_t row = (size_t)a->width * 4;
+    size_t width = (size_t)a->width, all = width * (size_t)a->height;
+    difference->counted = (int64_t)all - count_masked(masked, all);
     for (int y = 0; y < a->height; y++) {
-        const uint8_t *row_a = a->pixels + (size_t)y * row, *row_b = b->pixels + (size_t)y * row;
-        if (memcmp(row_a, row_b, row) == 0) continue;
-        for (int x = 0; x < a->width; x++) {
-            int here = largest_channel_difference(row_a + 4 * x, row_b + 4 * x);
-            if (here == 0) continue;
-            if (difference->pixels++ == 0) difference->first_x = x, difference->first_y = y;
-            if (here > difference->largest) difference->largest = here;
+        size_t first = (size_t)y * width;
+        if (equal_row(a, b, first)) continue;
+        for (size_t x = 0; x < width; x++) {
+            int here = image_pixel_difference(a, b, first + x);
+            if (here > 0 && (masked == NULL || masked[first + x] == 0)) count_pixel(difference, (int)x, y, here);
         }
     }
     difference->equal = difference->pixels == 0;
+}
+
+void image_compare(const Image *a, const Image *b, ImageDifference *difference) {
+    image_compare_masked(a, b, NULL, difference);
 }

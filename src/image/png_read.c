@@ -18,7 +18,9 @@ typedef struct Decoder {
     const char *path;
     const uint8_t *data;
     size_t size, position;
+    int64_t max_pixels;
     Image *image;
+    uint8_t *row; /* of 16 bits */
     Error *error;
 } Decoder;
 
@@ -37,10 +39,8 @@ static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_
 
 static void ignore_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
-static bool open_decoder(Decoder *decoder, const char *path, Error *error) {
-    *decoder = (Decoder){.path = path, .error = error};
-    decoder->data = (uint8_t *)file_read(path, MAX_FILE_SIZE, &decoder->size, error);
-    if (decoder->data == NULL) return false;
+static bool open_decoder(Decoder *decoder, const uint8_t *data, size_t size, const char *path, Error *error) {
+    *decoder = (Decoder){.path = path, .error = error, .data = data, .size = size};
     decoder->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning);
     if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
     return decoder->info != NULL || error_memory(error, path);
@@ -48,7 +48,11 @@ static bool open_decoder(Decoder *decoder, const char *path, Error *error) {
 
 static void close_decoder(Decoder *decoder) {
     png_destroy_read_struct(&decoder->png, &decoder->info, NULL);
-    free((void *)decoder->data);
+    free(decoder->row);
+}
+
+uint8_t *image_load_png(const char *path, size_t *size, Error *error) {
+    return (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
 }
 
 /* Everything doubtful is an error: a frame of which a part is a guess must not count as a frame. */
@@ -64,17 +68,63 @@ static void be_strict(Decoder *decoder) {
 static void refuse_bomb(Decoder *decoder) {
     uint64_t width = png_get_image_width(decoder->png, decoder->info);
     uint64_t height = png_get_image_height(decoder->png, decoder->info);
-    if (width * height <= IMAGE_MAX_PIXELS) return;
-    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %d in all can be read",
-                (unsigned long long)width, (unsigned long long)height, IMAGE_MAX_PIXELS);
+    if (width * height <= (uint64_t)decoder->max_pixels) return;
+    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %lld in all can be read",
+                (unsigned long long)width, (unsigned long long)height, (long long)decoder->max_pixels);
     png_longjmp(decoder->png, 1);
+}
+
+/* libpng would show the first picture of an animation, and no difference in the others. What is here has passed its
+   checks up to the pixels, so the lengths of chunks are right. */
+static void refuse_animation(Decoder *decoder) {
+    for (size_t at = 8; at + 12 <= decoder->position;) {
+        const uint8_t *chunk = decoder->data + at;
+        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 | chunk[3];
+        if (memcmp(chunk + 4, "acTL", 4) == 0) {
+            error_input(decoder->error, decoder->path,
+                        "an animated PNG (chunk acTL at byte %zu); split it into one file a frame", at);
+            png_longjmp(decoder->png, 1);
+        }
+        at += length + 12;
+    }
 }
 
 static void ask_for_rgba(Decoder *decoder) {
     png_set_expand(decoder->png);
-    png_set_scale_16(decoder->png);
     png_set_gray_to_rgb(decoder->png);
-    png_set_add_alpha(decoder->png, 0xff, PNG_FILLER_AFTER);
+    png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
+}
+
+static bool make_deep(Decoder *decoder) {
+    size_t width = (size_t)decoder->image->width;
+    decoder->image->deep = calloc(width * (size_t)decoder->image->height * 4, sizeof(uint16_t));
+    decoder->row = malloc(width * 8);
+    return (decoder->image->deep != NULL && decoder->row != NULL) || error_memory(decoder->error, decoder->path);
+}
+
+/* The rows of one pass of an interlaced file fill only some pixels: they go on from what the passes before left. */
+static void read_deep_row(Decoder *decoder, size_t first) {
+    size_t samples = (size_t)decoder->image->width * 4;
+    uint16_t *deep = decoder->image->deep + first;
+    uint8_t *pixels = decoder->image->pixels + first, *row = decoder->row;
+    for (size_t i = 0; i < samples; i++) row[2 * i] = (uint8_t)(deep[i] >> 8), row[2 * i + 1] = (uint8_t)deep[i];
+    png_read_row(decoder->png, row, NULL);
+    for (size_t i = 0; i < samples; i++) {
+        deep[i] = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
+        pixels[i] = (uint8_t)((deep[i] * 255u + 32895) >> 16); /* rounded to the nearest */
+    }
+}
+
+static void read_rows(Decoder *decoder) {
+    const Image *image = decoder->image;
+    size_t samples = (size_t)image->width * 4;
+    for (int y = 0; y < image->height; y++) {
+        size_t first = (size_t)y * samples;
+        if (image->deep != NULL)
+            read_deep_row(decoder, first);
+        else
+            png_read_row(decoder->png, image->pixels + first, NULL);
+    }
 }
 
 static bool decode(Decoder *decoder) {
@@ -85,26 +135,36 @@ static bool decode(Decoder *decoder) {
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(png, decoder->info);
     refuse_bomb(decoder);
+    refuse_animation(decoder);
     ask_for_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
     decoder->image = image_create((int)png_get_image_width(png, decoder->info),
                                   (int)png_get_image_height(png, decoder->info), decoder->error);
     if (decoder->image == NULL) return false;
-    for (int pass = 0; pass < passes; pass++)
-        for (int y = 0; y < decoder->image->height; y++)
-            png_read_row(png, decoder->image->pixels + (size_t)y * (size_t)decoder->image->width * 4, NULL);
+    if (png_get_bit_depth(png, decoder->info) == 16 && !make_deep(decoder)) return false;
+    for (int pass = 0; pass < passes; pass++) read_rows(decoder);
     png_read_end(png, NULL);
     return true;
 }
 
-Image *image_read_png(const char *path, Error *error) {
+Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Decoder decoder;
-    bool ok = open_decoder(&decoder, path, error) && decode(&decoder);
+    bool ok = open_decoder(&decoder, data, size, path, error);
+    decoder.max_pixels = max_pixels;
+    ok = ok && decode(&decoder);
     close_decoder(&decoder);
     if (ok) return decoder.image;
     image_destroy(decoder.image);
     return NULL;
+}
+
+Image *image_read_png(const char *path, Error *error) {
+    size_t size;
+    uint8_t *data = image_load_png(path, &size, error);
+    Image *image = data != NULL ? image_decode_png(data, size, path, IMAGE_MAX_PIXELS, error) : NULL;
+    free(data);
+    return image;
 }
 
 static bool decode_texts(Decoder *decoder) {
@@ -127,9 +187,24 @@ static bool find_text(const Decoder *decoder, const char *key, char *value, size
     return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
 }
 
-bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
+static bool text_of(const uint8_t *data, size_t size, const char *path, const char *key, char *value, size_t value_size,
+                    Error *error) {
     Decoder decoder;
-    bool ok = open_decoder(&decoder, path, error) && decode_texts(&decoder) && find_text(&decoder, key, value, size);
+    bool ok = open_decoder(&decoder, data, size, path, error) && decode_texts(&decoder) &&
+              find_text(&decoder, key, value, value_size);
     close_decoder(&decoder);
     return ok;
+}
+
+bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
+    size_t file_size;
+    uint8_t *data = image_load_png(path, &file_size, error);
+    bool ok = data != NULL && text_of(data, file_size, path, key, value, size, error);
+    free(data);
+    return ok;
+}
+
+void image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size) {
+    Error ignored = {0};
+    if (!text_of(data, size, "", key, value, value_size, &ignored)) value[0] = '\0';
 }

@@ -2,6 +2,7 @@
 #include "image/sequence.h"
 
 #include "common/array.h"
+#include "common/file.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -11,53 +12,110 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* The number that a name ends in before ".png"; -1 where it has none of 1 to 18 digits. */
-static int64_t frame_number(const char *name) {
-    const char *ending = strrchr(name, '.');
-    if (ending == NULL || strcasecmp(ending, ".png") != 0) return -1;
-    const char *digits = ending;
-    while (digits > name && digits[-1] >= '0' && digits[-1] <= '9') digits--;
-    if (digits == ending || ending - digits > 18) return -1;
-    return strtoll(digits, NULL, 10);
+/* Bytes of a UTF-8 character that begins here, 0 where none does. Overlong forms and surrogates are none. */
+static int character(const unsigned char *text) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    int size = text[0] < 0x80 ? 1 : text[0] >> 5 == 6 ? 2 : text[0] >> 4 == 14 ? 3 : text[0] >> 3 == 30 ? 4 : 0;
+    if (size == 1) return text[0] >= 0x20 && text[0] != 0x7F;
+    uint32_t code = size > 0 ? text[0] & (0xFFu >> (size + 1)) : 0;
+    for (int i = 1; i < size; i++) {
+        if (text[i] >> 6 != 2) return 0;
+        code = code << 6 | (text[i] & 0x3F);
+    }
+    bool control = code < 0xA0, surrogate = code >= 0xD800 && code < 0xE000;
+    return size > 0 && code >= least[size] && !control && !surrogate && code < 0x110000 ? size : 0;
 }
 
-static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *folder, const char *name, int64_t number,
-                      Error *error) {
-    size_t size = strlen(folder) + strlen(name) + 2;
+bool name_is_text(const char *name) {
+    for (int size; *name != '\0'; name += size)
+        if ((size = character((const unsigned char *)name)) == 0) return false;
+    return true;
+}
+
+static bool is_png(const char *name) {
+    const char *ending = strrchr(name, '.');
+    return name[0] != '.' && ending != NULL && strcasecmp(ending, ".png") == 0;
+}
+
+/* Splits a name into stem and number; 19 digits and more are no number. */
+static void read_name(SequenceFrame *frame) {
+    enum { DIGITS = 18 };
+    const char *ending = strrchr(frame->name, '.'), *end = ending != NULL ? ending : frame->name + strlen(frame->name);
+    const char *digits = end;
+    while (digits > frame->name && digits[-1] >= '0' && digits[-1] <= '9') digits--;
+    bool numbered = digits < end && end - digits <= DIGITS;
+    frame->number = numbered ? strtoll(digits, NULL, 10) : -1;
+    frame->stem = (int)((numbered ? digits : end) - frame->name);
+}
+
+/* folder is what goes before the name, with its slash. */
+static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *folder, const char *name, Error *error) {
+    size_t size = strlen(folder) + strlen(name) + 1;
+    if (!name_is_text(name)) return error_input(error, folder, "a file's name there is no text (UTF-8)");
     char *path = malloc(size);
     if (path == NULL ||
         !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1, sizeof *sequence->frames)) {
         free(path);
         return error_memory(error, folder);
     }
-    snprintf(path, size, "%s%s%s", folder, folder[0] != '\0' ? "/" : "", name);
-    sequence->frames[sequence->count++] = (SequenceFrame){number, path};
+    snprintf(path, size, "%s%s", folder, name);
+    SequenceFrame *frame = &sequence->frames[sequence->count++];
+    *frame = (SequenceFrame){.path = path, .name = path + strlen(folder)};
+    read_name(frame);
     return true;
 }
 
-static int by_number(const void *a, const void *b) {
-    const SequenceFrame *x = a, *y = b;
+static int by_stem(const SequenceFrame *x, const SequenceFrame *y) {
+    int common = x->stem < y->stem ? x->stem : y->stem, order = memcmp(x->name, y->name, (size_t)common);
+    return order != 0 ? order : (x->stem > y->stem) - (x->stem < y->stem);
+}
+
+static int by_number(const SequenceFrame *x, const SequenceFrame *y) {
     return (x->number > y->number) - (x->number < y->number);
+}
+
+static int by_stem_and_number(const void *a, const void *b) {
+    int order = by_stem(a, b);
+    return order != 0 ? order : by_number(a, b);
+}
+
+static bool sort(ImageSequence *sequence, Error *error) {
+    if (sequence->count == 0) return true;
+    qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, by_stem_and_number);
+    for (int i = 1; i < sequence->count; i++)
+        if (by_stem_and_number(&sequence->frames[i], &sequence->frames[i - 1]) == 0)
+            return error_input(error, sequence->frames[i].path, "has the same number as %s",
+                               sequence->frames[i - 1].path);
+    return true;
 }
 
 static bool list_folder(ImageSequence *sequence, const char *path, Error *error) {
     DIR *folder = opendir(path);
     if (folder == NULL) return error_input(error, path, "cannot be read: %s", strerror(errno));
-    size_t capacity = 0;
-    bool ok = true;
-    for (struct dirent *entry; ok && (entry = readdir(folder)) != NULL;) {
-        int64_t number = frame_number(entry->d_name);
-        if (number >= 0) ok = add_frame(sequence, &capacity, path, entry->d_name, number, error);
-    }
+    char before[4096];
+    size_t capacity = 0, length = strlen(path);
+    bool ok = snprintf(before, sizeof before, "%s%s", path, path[length - 1] == '/' ? "" : "/") < (int)sizeof before ||
+              error_input(error, path, "the name is too long");
+    for (struct dirent *entry; ok && (entry = readdir(folder)) != NULL;)
+        if (is_png(entry->d_name)) ok = add_frame(sequence, &capacity, before, entry->d_name, error);
     closedir(folder);
-    if (!ok) return false;
-    if (sequence->count == 0) return error_input(error, path, "no files named like frame_000000.png");
-    qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, by_number);
-    for (int i = 1; i < sequence->count; i++)
-        if (sequence->frames[i].number == sequence->frames[i - 1].number)
-            return error_input(error, sequence->frames[i].path, "has the same number as %s",
-                               sequence->frames[i - 1].path);
-    return true;
+    return ok && sort(sequence, error);
+}
+
+static bool take_file(ImageSequence *sequence, const char *path, Error *error) {
+    size_t capacity = 0;
+    char *before = strndup(path, file_folder_length(path));
+    bool ok = before != NULL ? add_frame(sequence, &capacity, before, path + strlen(before), error)
+                             : error_memory(error, path);
+    free(before);
+    return ok;
+}
+
+/* "a/b/" -> "a/b"; a file's folder. */
+static char *folder_of(const char *path, bool single) {
+    size_t length = single ? file_folder_length(path) : strlen(path);
+    while (length > 1 && path[length - 1] == '/') length--;
+    return length == 0 ? strdup(".") : strndup(path, length);
 }
 
 ImageSequence *image_sequence_open(const char *path, Error *error) {
@@ -71,10 +129,12 @@ ImageSequence *image_sequence_open(const char *path, Error *error) {
         error_memory(error, path);
         return NULL;
     }
-    size_t capacity = 0;
-    bool ok = S_ISDIR(status.st_mode) ? list_folder(sequence, path, error)
-                                      : add_frame(sequence, &capacity, "", path, 0, error);
-    if (ok) return sequence;
+    sequence->single = !S_ISDIR(status.st_mode);
+    sequence->folder = folder_of(path, sequence->single);
+    if (sequence->folder == NULL) error_memory(error, path);
+    if (sequence->folder != NULL &&
+        (sequence->single ? take_file(sequence, path, error) : list_folder(sequence, path, error)))
+        return sequence;
     image_sequence_close(sequence);
     return NULL;
 }
@@ -83,51 +143,37 @@ void image_sequence_close(ImageSequence *sequence) {
     if (sequence == NULL) return;
     for (int i = 0; i < sequence->count; i++) free(sequence->frames[i].path);
     free(sequence->frames);
+    free(sequence->folder);
     free(sequence);
 }
 
-/* Both pictures of one number; the first pair that differs is kept in *difference. */
-static bool compare_frame(const SequenceFrame *a, const SequenceFrame *b, SequenceDifference *difference,
-                          Error *error) {
-    Image *image_a = image_read_png(a->path, error);
-    Image *image_b = image_a != NULL ? image_read_png(b->path, error) : NULL;
-    if (image_b != NULL) {
-        ImageDifference found;
-        image_compare(image_a, image_b, &found);
-        difference->compared++;
-        difference->different += !found.equal;
-        if (!found.equal && difference->first < 0) {
-            difference->first = a->number;
-            difference->at_first = found;
-            difference->width_a = image_a->width;
-            difference->height_a = image_a->height;
-            difference->width_b = image_b->width;
-            difference->height_b = image_b->height;
-        }
-    }
-    bool ok = image_b != NULL;
-    image_destroy(image_a);
-    image_destroy(image_b);
-    return ok;
+static bool has_one_stem(const ImageSequence *sequence) {
+    return sequence->count > 0 && by_stem(&sequence->frames[0], &sequence->frames[sequence->count - 1]) == 0;
 }
 
-bool image_sequence_compare(const ImageSequence *a, const ImageSequence *b, SequenceDifference *difference,
-                            const Progress *progress, Error *error) {
-    *difference = (SequenceDifference){.first = -1, .first_only_a = -1, .first_only_b = -1};
-    for (int i = 0, j = 0; i < a->count || j < b->count;) {
-        int64_t in_a = i < a->count ? a->frames[i].number : INT64_MAX;
-        int64_t in_b = j < b->count ? b->frames[j].number : INT64_MAX;
-        if (in_a < in_b) {
-            if (difference->only_a++ == 0) difference->first_only_a = in_a;
-            i++;
-        } else if (in_b < in_a) {
-            if (difference->only_b++ == 0) difference->first_only_b = in_b;
-            j++;
-        } else {
-            if (!compare_frame(&a->frames[i++], &b->frames[j++], difference, error)) return false;
-            if (!progress_report(progress, i, a->count))
-                return error_input(error, a->frames[i - 1].path, "stopped after %d frames", difference->compared);
-        }
+SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {
+    *count = 0;
+    if (a->single != b->single) {
+        error_input(error, (a->single ? b : a)->folder, "is a folder, but %s is a file",
+                    (a->single ? a : b)->frames[0].path);
+        return NULL;
     }
-    return true;
+    SequencePair *pairs = malloc(((size_t)a->count + (size_t)b->count + 1) * sizeof *pairs);
+    if (pairs == NULL) {
+        error_memory(error, a->folder);
+        return NULL;
+    }
+    bool numbers_alone = has_one_stem(a) && has_one_stem(b);
+    for (int i = 0, j = 0; i < a->count || j < b->count;) {
+        const SequenceFrame *x = i < a->count ? &a->frames[i] : NULL, *y = j < b->count ? &b->frames[j] : NULL;
+        int order = x == NULL       ? 1
+                    : y == NULL     ? -1
+                    : a->single     ? 0
+                    : numbers_alone ? by_number(x, y)
+                                    : by_stem_and_number(x, y);
+        pairs[(*count)++] = (SequencePair){order <= 0 ? x : NULL, order >= 0 ? y : NULL};
+        i += order <= 0;
+        j += order >= 0;
+    }
+    return pairs;
 }

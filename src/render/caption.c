@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/caption.h"
 
+#include "render/body.h"
 #include "render/panel.h"
-#include "render/style.h"
+#include "render/pose.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { TEXT_SIZE = 256 };
 static const double FAR_APART = 1000.0; /* m; beyond it the figures say no more */
 
 typedef struct Item {
-    char label[16], number[TEXT_SIZE], unit[8];
+    char label[16], number[CAPTION_SIZE], unit[8];
 } Item;
 
 /* Pads a number on the left to the width that the longest of the run will take. */
@@ -23,20 +22,21 @@ static void pad(char *number, size_t size, const char *text, const char *longest
     snprintf(number + used, size - used, "%s", text);
 }
 
-static void format_apart(char *text, size_t size, double apart) {
-    if (isnan(apart))
+void caption_distance(char *text, size_t size, double metres) {
+    if (isnan(metres))
         snprintf(text, size, "\xE2\x80\x93");
-    else if (apart < FAR_APART)
-        snprintf(text, size, "%.2f", apart);
+    else if (metres < FAR_APART)
+        snprintf(text, size, "%.2f", metres);
     else
         snprintf(text, size, ">%.0f", FAR_APART);
 }
 
-static Item apart_item(const Picture *picture, int frame) {
-    Item item = {.label = "apart ", .unit = " m"};
+static Item apart_item(const char *label, double apart, double largest) {
+    Item item = {.unit = " m"};
     char text[32], longest[32];
-    format_apart(text, sizeof text, picture_apart(picture, frame));
-    format_apart(longest, sizeof longest, picture->largest_apart);
+    snprintf(item.label, sizeof item.label, "%s", label);
+    caption_distance(text, sizeof text, apart);
+    caption_distance(longest, sizeof longest, largest);
     pad(item.number, sizeof item.number, text, longest);
     return item;
 }
@@ -50,11 +50,11 @@ static Item frame_item(const Picture *picture, int frame) {
     return item;
 }
 
-static Item time_item(const Picture *picture, int frame) {
+static Item time_item(const Picture *picture, Moment moment) {
     Item item = {.label = "t = ", .unit = " s"};
     double dt = (double)picture->panels[0]->dt;
     char text[64], longest[64];
-    snprintf(text, sizeof text, "%.3f", frame * dt);
+    snprintf(text, sizeof text, "%.3f", (moment.frame + moment.part) * dt);
     snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
     pad(item.number, sizeof item.number, text, longest);
     return item;
@@ -64,74 +64,56 @@ static int item_width(const Font *font, const Item *item) {
     return font_width(font, item->label) + font_width(font, item->number) + font_width(font, item->unit);
 }
 
-static void draw_item(const Layout *layout, const Item *item, int x, Drawing *drawing) {
-    x = font_add(drawing, &layout->status, item->label, x, layout->header_baseline, INK_SOFT);
-    x = font_add(drawing, &layout->status, item->number, x, layout->header_baseline, INK);
-    font_add(drawing, &layout->status, item->unit, x, layout->header_baseline, INK_SOFT);
+static void draw_item(const Picture *picture, const Font *font, const Item *item, int x, int baseline,
+                      Drawing *drawing) {
+    const Theme *theme = picture->theme;
+    x = font_add(drawing, font, item->label, x, baseline, theme->ink_soft);
+    x = font_add(drawing, font, item->number, x, baseline, theme->ink);
+    font_add(drawing, font, item->unit, x, baseline, theme->ink_soft);
 }
 
-/* "pyramid_settled" -> "Pyramid settled" */
-static void scene_title(char *title, size_t size, const char *scene) {
-    snprintf(title, size, "%s", scene);
+void caption_title(const Picture *picture, char title[CAPTION_SIZE]) {
+    snprintf(title, CAPTION_SIZE, "%s", picture->title != NULL ? picture->title : picture->panels[0]->scene);
     for (char *c = title; *c != '\0'; c++)
         if (*c == '_') *c = ' ';
     if (title[0] >= 'a' && title[0] <= 'z') title[0] = (char)(title[0] - 'a' + 'A');
 }
 
-void caption_header(const Picture *picture, int frame, Drawing *drawing) {
+/* Of two panels side by side one distance is said once, in the header. */
+static bool is_pair(const Picture *picture) { return picture->count == 2 && picture->shown == 2; }
+
+/* The words stay as long as the motion is slow: they would flicker if they were gone in every stored frame. */
+static void draw_slow(const Picture *picture, Moment moment, int x, int right, Drawing *drawing) {
     const Layout *layout = &picture->layout;
-    Item items[3] = {time_item(picture, frame), frame_item(picture, frame), apart_item(picture, frame)};
-    int count = picture->count > 1 ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
+    char text[64];
+    if (moment.slow <= 1) return;
+    snprintf(text, sizeof text, "slow motion 1/%d, poses between frames", moment.slow);
+    x += layout->status.pixels;
+    font_add_fitting(drawing, &layout->status, text, x, layout->header_baseline, right - x, picture->theme->ink_soft);
+}
+
+void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    const Item items[3] = {time_item(picture, moment), frame_item(picture, moment.frame),
+                           apart_item("apart ", picture_apart(picture, moment), picture->largest_apart)};
+    int count = is_pair(picture) ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
     for (int i = 0; i < count; i++) {
         int left = x - item_width(&layout->status, &items[i]);
         if (left < layout->left) break;
-        draw_item(layout, &items[i], left, drawing);
+        draw_item(picture, &layout->status, &items[i], left, layout->header_baseline, drawing);
         x = left - gap;
     }
-    char title[TEXT_SIZE];
-    scene_title(title, sizeof title, picture->title != NULL ? picture->title : picture->panels[0]->scene);
-    font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left, INK);
-}
-
-static bool is_method(const char *text, const char *name) {
-    size_t length = strlen(name);
-    return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
-}
-
-/* Copies a method without the folders of its files: they belong to a machine and not to a picture. */
-static void shorten_method(char *text, size_t size, const char *method) {
-    size_t used = 0;
-    while (*method != '\0') {
-        size_t length = strcspn(method, ":=,");
-        const char *end = method + length, *start = method;
-        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
-            for (const char *c = method; c < end; c++)
-                if (*c == '/') start = c + 1;
-        if (*end != '\0') end++;
-        used += (size_t)snprintf(text + used, size - used, "%.*s", (int)(end - start), start);
-        method = end;
-    }
-}
-
-static void describe(const char *method, const char **title, char *note, size_t size) {
-    char text[TRAJECTORY_NAME_SIZE] = "";
-    shorten_method(text, sizeof text, method);
-    *title = NULL;
-    if (is_method(method, "engine")) {
-        *title = "Physics engine";
-        snprintf(note, size, "sequential impulses, %s", text);
-    } else {
-        if (is_method(method, "reference")) *title = "Converged solution";
-        if (is_method(method, "pair-net")) *title = "Neural network";
-        if (is_method(method, "scene-net")) *title = "Network of the scene";
-        snprintf(note, size, "%s", text);
-    }
+    char title[CAPTION_SIZE];
+    caption_title(picture, title);
+    int end = font_add_fitting(drawing, &layout->scene, title, layout->left, layout->header_baseline, x - layout->left,
+                               picture->theme->ink);
+    draw_slow(picture, moment, end, x, drawing);
 }
 
 /* What the bodies do not show. */
-static void describe_state(const Picture *picture, int panel, int frame, char *text, size_t size) {
-    bool ended = frame >= picture->panels[panel]->frames;
-    int unseen = panel_count_unseen(picture, panel, frame);
+static void describe_state(const Picture *picture, int panel, Moment moment, char *text, size_t size) {
+    bool ended = moment.frame >= picture->panels[picture_run(picture, panel)]->frames;
+    int unseen = panel_count_unseen(picture, panel, moment);
     text[0] = '\0';
     if (unseen > 0)
         snprintf(text, size, "%d out of view%s", unseen, ended ? ", ended" : "");
@@ -139,29 +121,66 @@ static void describe_state(const Picture *picture, int panel, int frame, char *t
         snprintf(text, size, "ended");
 }
 
-/* The note comes first: what is cut short is the method's settings. */
-static void add_note(char *text, size_t size, const char *note, const char *method) {
-    bool both = note != NULL && method[0] != '\0';
-    snprintf(text, size, "%s%s%s", note != NULL ? note : "", both ? "; " : "", method);
+/* Boxes that are coloured by their distance have their run's colour in the timeline only. */
+static int draw_swatch(const Picture *picture, int run, int x, int baseline, Drawing *drawing) {
+    bool hollow = picture->look.compare == LOOK_OVERLAY && run > 0;
+    if (picture_colors_distance(picture, run) && !hollow && (picture->look.show & LOOK_TIMELINE) == 0) return x;
+    int pixels = picture->layout.title.pixels;
+    return body_draw_swatch(picture, run, hollow, x, baseline, pixels, drawing) + pixels / 2;
 }
 
-void caption_panel(const Picture *picture, int panel, int frame, Drawing *drawing) {
+static int draw_name(const Picture *picture, int run, const char *name, int left, int right, int baseline,
+                     Drawing *drawing) {
+    int x = draw_swatch(picture, run, left, baseline, drawing);
+    return font_add_fitting(drawing, &picture->layout.title, name, x, baseline, right - x, picture->theme->ink);
+}
+
+static void draw_notes(const Picture *picture, int run, const char *note, int left, int right, int baseline,
+                       Drawing *drawing) {
+    char text[4 * CAPTION_SIZE];
+    caption_notes(picture, run, note, text, sizeof text);
+    font_add_fitting(drawing, &picture->layout.method, text, left, baseline, right - left, picture->theme->ink_soft);
+}
+
+/* All runs of an overlay in one line, with as much room each. */
+static void draw_methods(const Picture *picture, Moment moment, int left, int right, int baseline, Drawing *drawing) {
+    const Font *font = &picture->layout.method;
+    int gap = picture->layout.title.pixels, width = (right - left + gap) / picture->count;
+    for (int run = 0; run < picture->count; run++) {
+        char title[CAPTION_SIZE], note[CAPTION_SIZE];
+        int start = left + run * width, end = start + width - gap;
+        caption_method(picture, run, title, note);
+        Item item = apart_item("", picture_run_apart(picture, run, moment), picture->largest[run]);
+        int room = run > 0 ? item_width(font, &item) + gap / 2 : 0;
+        int x = draw_name(picture, run, title, start, end - room, baseline, drawing) + gap / 2;
+        if (run > 0) draw_item(picture, font, &item, x, baseline, drawing);
+        if (end - x - room > 4 * font->pixels) draw_notes(picture, run, note, x + room, end, baseline, drawing);
+    }
+}
+
+void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     if (layout->title.glyphs == NULL) return;
-    const Trajectory *trajectory = picture->panels[panel];
     const Rect *rect = &layout->panels[panel];
-    int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2;
-    const char *title;
-    char note[TEXT_SIZE];
-    describe_state(picture, panel, frame, note, sizeof note);
-    int right = rect->right - font_width(&layout->method, note);
-    font_add(drawing, &layout->method, note, right, baseline, INK_SOFT);
-    if (note[0] != '\0') right -= gap;
-    describe(trajectory->method, &title, note, sizeof note);
-    int x = panel_draw_swatch(picture, panel, rect->left, baseline, drawing) + gap;
-    x = font_add_fitting(drawing, &layout->title, title != NULL ? title : note, x, baseline, right - x, INK) + gap;
-    if (title == NULL) note[0] = '\0';
-    char text[2 * TEXT_SIZE];
-    add_note(text, sizeof text, picture->notes[panel], note);
-    font_add_fitting(drawing, &layout->method, text, x, baseline, right - x, INK_SOFT);
+    int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2, right = rect->right;
+    int run = picture_run(picture, panel);
+    if (picture->look.compare == LOOK_OVERLAY) {
+        draw_methods(picture, moment, rect->left, right, baseline, drawing);
+        return;
+    }
+    char state[CAPTION_SIZE];
+    if (run > 0 && !is_pair(picture)) {
+        Item item = apart_item("apart ", picture_run_apart(picture, run, moment), picture->largest[run]);
+        right -= item_width(&layout->method, &item);
+        draw_item(picture, &layout->method, &item, right, baseline, drawing);
+        right -= layout->method.pixels;
+    }
+    describe_state(picture, panel, moment, state, sizeof state);
+    right -= font_width(&layout->method, state);
+    font_add(drawing, &layout->method, state, right, baseline, picture->theme->ink_soft);
+    if (state[0] != '\0') right -= gap;
+    char title[CAPTION_SIZE], note[CAPTION_SIZE];
+    caption_method(picture, run, title, note);
+    int x = draw_name(picture, run, title, rect->left, right, baseline, drawing) + gap;
+    draw_notes(picture, run, note, x, right, baseline, drawing);
 }

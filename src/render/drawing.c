@@ -59,6 +59,15 @@ static bool is_drawable(const Shape *shape) {
            isfinite(shape->sine);
 }
 
+/* A hollow shape is its line in all its parts, or its inner edge would take on another colour. */
+static void set_paint(ShapeInstance *instance, const Shape *shape) {
+    bool hollow = shape->hollow;
+    instance->paint[0] = hollow ? shape->line | SHAPE_HOLLOW : shape->fill;
+    instance->paint[1] = hollow || shape->outline > 0 ? shape->line : shape->fill;
+    instance->paint[2] = hollow ? shape->line : shape->band > 0 ? shape->band_color : shape->fill;
+    instance->paint[3] = (uint32_t)fixed(shape->band);
+}
+
 /* The whole pixels that the snapped shape can touch, inside clip. False where there are none. */
 static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
     double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
@@ -97,9 +106,7 @@ void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip
     instance->form[0] = fixed(shape.half_width), instance->form[1] = fixed(shape.half_height);
     instance->form[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
     instance->form[3] = fixed(fmin(shape.outline, LARGEST_HALF));
-    instance->paint[0] = shape.fill, instance->paint[1] = shape.outline > 0 ? shape.line : shape.fill;
-    instance->paint[2] = shape.band > 0 ? shape.band_color : shape.fill;
-    instance->paint[3] = (uint32_t)fixed(shape.band);
+    set_paint(instance, &shape);
     drawing->shape_count++;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a frame consists of, before OpenGL sees it: rectangles, above them shapes, above these glyphs, each in
-   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the upper left corner of the picture; colours
-   0xRRGGBB. */
+   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the upper
+   left corner of the picture; colours 0xRRGGBB. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -25,15 +25,18 @@ typedef struct Shape {
     double cosine, sine;    /* of its angle, counter-clockwise as seen */
     double radius, outline; /* of the corners; width of the outline, inside the box */
     double band;            /* thickness of the band along the local top; 0: none */
+    bool hollow;            /* the outline alone, in `line`: what lies below shows inside it */
     uint32_t fill, line, band_color;
 } Shape;
+
+enum { SHAPE_HOLLOW = 1 << 24 }; /* beside the colour */
 
 /* As shaders/shape.vert wants it: lengths in 1/65536 pixel. */
 typedef struct ShapeInstance {
     int32_t bounds[4]; /* the whole pixels to paint: left, top, right, bottom */
     int32_t axis[4];   /* direction of the local x axis, local position of the first pixel's centre */
     int32_t form[4];   /* half width, half height, corner radius, outline */
-    uint32_t paint[4]; /* fill, line, colour and thickness of the band */
+    uint32_t paint[4]; /* fill (SHAPE_HOLLOW: none), line, colour and thickness of the band */
 } ShapeInstance;
 
 /* As shaders/text.vert wants it. */

@@ -13,8 +13,7 @@ Font font_pick(FontFace face, double pixels) {
     return font;
 }
 
-/* Decodes a character and moves *text behind it; 0xFFFD for a byte that begins no valid one. */
-static unsigned next_character(const char **text) {
+unsigned font_next_character(const char **text) {
     const unsigned char *s = (const unsigned char *)*text;
     int more = s[0] < 0x80 ? 0 : s[0] < 0xC2 ? -1 : s[0] < 0xE0 ? 1 : s[0] < 0xF0 ? 2 : s[0] < 0xF5 ? 3 : -1;
     unsigned code = more <= 0 ? s[0] : s[0] & (0x3Fu >> more);
@@ -43,7 +42,7 @@ static const FontGlyph *find(const Font *font, unsigned code) {
 
 static int advance(const Font *font, const char *text) {
     int pen = 0;
-    while (font->glyphs != NULL && *text != '\0') pen += find(font, next_character(&text))->advance;
+    while (font->glyphs != NULL && *text != '\0') pen += find(font, font_next_character(&text))->advance;
     return pen;
 }
 
@@ -56,7 +55,7 @@ static int add(Drawing *drawing, const Font *font, const char *text, const char 
                uint32_t color) {
     int pen = 0;
     while (text < end) {
-        const FontGlyph *glyph = find(font, next_character(&text));
+        const FontGlyph *glyph = find(font, font_next_character(&text));
         int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph->left;
         GlyphInstance instance = {{left, baseline - glyph->top, glyph->width, glyph->height}, glyph->offset, color};
         if (glyph->width > 0) drawing_add_glyph(drawing, &instance);
@@ -76,7 +75,7 @@ int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x
     int room = (max_width - font_width(font, ELLIPSIS)) * PEN_UNIT, pen = 0;
     if (room < 0) return x;
     const char *end = text, *next = text;
-    while (*next != '\0' && (pen += find(font, next_character(&next))->advance) <= room) end = next;
+    while (*next != '\0' && (pen += find(font, font_next_character(&next))->advance) <= room) end = next;
     while (end > text && end[-1] == ' ') end--;
     int behind = add(drawing, font, text, end, x, baseline, color);
     return font_add(drawing, font, ELLIPSIS, behind, baseline, color);

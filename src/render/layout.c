@@ -11,6 +11,7 @@ static double base_unit(int width, int height) { return fmin(height, 0.75 * widt
 static const double LEAST_TEXT_UNIT = 300;
 static const double LEAST_PIXELS = 10; /* an em */
 static const double LEAST_MARGIN = 4;  /* pixels */
+static const double TIMELINE = 0.16;   /* height of its curves */
 
 static void pick_fonts(Layout *layout, double unit) {
     if (unit < LEAST_TEXT_UNIT) return;
@@ -40,8 +41,27 @@ static void place_panels(Layout *layout, Rect area, int panels, int gap, int row
     }
 }
 
-Layout layout_make(int width, int height, int panels) {
-    Layout layout = {0};
+/* Takes the rows from the bottom of the area and returns what is left. Pictures too small for words have no legend. */
+static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, int title, int axis) {
+    bool text = unit >= LEAST_TEXT_UNIT;
+    int bottom = area.bottom + axis; /* of what stands above the next row */
+    if (rows.timeline) {
+        int top = area.bottom - pixels(TIMELINE * unit);
+        layout->timeline = (Rect){area.left, top, area.right, area.bottom};
+        layout->key_baseline = top - layout->title_rise;
+        bottom = top - (text ? title : layout->left);
+    }
+    if (rows.legend > 0 && text) {
+        layout->legend_pitch = pixels(0.035 * unit);
+        layout->legend_baseline = bottom - pixels(0.012 * unit) - (rows.legend - 1) * layout->legend_pitch;
+        bottom -= pixels(0.046 * unit) + (rows.legend - 1) * layout->legend_pitch;
+    }
+    area.bottom = bottom - axis;
+    return area;
+}
+
+Layout layout_make(int width, int height, int panels, LayoutRows rows) {
+    Layout layout = {.width = width, .height = height};
     double unit = base_unit(width, height);
     bool text = unit >= LEAST_TEXT_UNIT;
     int margin = pixels(fmax(0.030 * unit, LEAST_MARGIN));
@@ -59,6 +79,7 @@ Layout layout_make(int width, int height, int panels) {
     int header = text ? layout.header_baseline + pixels(0.006 * unit) : margin;
     Rect area = {margin + gutter, header + title, width - margin, height - pixels(0.016 * unit) - axis};
     if (!text) area.bottom = height - margin;
+    area = place_rows(&layout, area, unit, rows, title, axis);
     place_panels(&layout, area, panels, margin, text ? title + axis : margin);
     return layout;
 }

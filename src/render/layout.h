@@ -14,6 +14,17 @@ typedef struct Layout {
     int tick;                       /* length of a tick at the axis */
     int hairline;                   /* thickness of the thinnest line */
     Rect panels[RENDER_PANELS_MAX]; /* all of one size */
+    int width, height;              /* of the picture */
+    int legend_baseline;            /* of its first row; 0: no legend */
+    int legend_pitch;               /* from one of its rows to the next */
+    int key_baseline;               /* of the words above the timeline */
+    Rect timeline;                  /* its curves; empty: none */
 } Layout;
 
-Layout layout_make(int width, int height, int panels);
+/* Rows below the panels. */
+typedef struct LayoutRows {
+    int legend;
+    bool timeline;
+} LayoutRows;
+
+Layout layout_make(int width, int height, int panels, LayoutRows rows);

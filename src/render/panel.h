@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One panel: grid, bodies, axes. */
+/* One panel: grid, bodies, axes, marks. */
 #pragma once
 #include "render/picture.h"
+#include "render/stroke.h"
 
 /* What keeps still: grid, static bodies, axes. Shapes of it lie behind all others. */
-void panel_draw_still(const Picture *picture, int panel, int frame, Drawing *drawing);
+void panel_draw_still(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
-/* The bodies that move, and the bomb before them. */
-void panel_draw_moving(const Picture *picture, int panel, int frame, Drawing *drawing);
+/* The bodies that move, the bomb before them, and what the look adds. */
+void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing *drawing);
+
+/* Where a point in metres lies in the picture. */
+Point panel_point(const Picture *picture, int panel, double x, double y);
+
+/* The shorter side of a panel in pixels: what lines are thick by. */
+double panel_side(const Picture *picture);
 
 /* How many dynamic bodies that are there lie with their centre outside the panel. */
-int panel_count_unseen(const Picture *picture, int panel, int frame);
-
-/* A small box in the colours of the panel's bodies, standing on a line of text. Returns its right edge. */
-int panel_draw_swatch(const Picture *picture, int panel, int left, int baseline, Drawing *drawing);
+int panel_count_unseen(const Picture *picture, int panel, Moment moment);

@@ -4,11 +4,19 @@
 #pragma once
 #include "common/progress.h"
 #include "image/image.h"
+#include "render/look.h"
 #include "trajectory/trajectory.h"
 
 typedef enum RenderContext { RENDER_CONTEXT_AUTO, RENDER_CONTEXT_OSMESA, RENDER_CONTEXT_EGL } RenderContext;
 
-enum { RENDER_PANELS_MAX = 6, RENDER_LEAST_SIDE = 64, RENDER_LARGEST_SIDE = 8192, RENDER_JOBS_MAX = 256 };
+enum {
+    RENDER_PANELS_MAX = LOOK_RUNS_MAX,
+    RENDER_LEAST_SIDE = 64,
+    RENDER_LARGEST_SIDE = 8192,
+    RENDER_JOBS_MAX = 256,
+    RENDER_SLOW_MAX = 16, /* times */
+    RENDER_HOLD_MAX = 60  /* s */
+};
 
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_LEAST_SIDE .. RENDER_LARGEST_SIDE */
@@ -19,14 +27,37 @@ typedef struct RenderOptions {
     bool small;                           /* files as small as libpng can make them, which takes long */
     const char *title;                    /* at the head of the picture; NULL: the scene's name */
     const char *notes[RENDER_PANELS_MAX]; /* behind what solved a panel; NULL: none */
+    RenderLook look;                      /* zeroed: bodies side by side */
+    int slow;                             /* times slower around the impact; 0, 1: nowhere */
+    double hold;                          /* s that the last frame stays */
+    bool title_card, end_card;            /* before and after the run */
+    bool resume;                          /* keep what an earlier, equal call has drawn */
 } RenderOptions;
 
-/* Writes directory/frame_000000.png and on: all frames of the longest of 1 to 6 panels, or the range asked
-   for; a shorter panel holds its last frame. Processes of its own draw, so that the caller keeps its
-   environment and threads. Progress counts frames; where it asks to stop, the frames begun are finished and
-   the error is "stopped" (ERROR_INPUT). */
+/* Of a picture and of the file that it is in (XXH3 of its bytes). */
+typedef struct PictureHashes {
+    uint64_t pixels, file;
+} PictureHashes;
+
+/* What became of a sequence. */
+typedef struct RenderResult {
+    int first, last;       /* numbers of the files */
+    bool all;              /* these are all there are */
+    int kept;              /* of them, found whole from an earlier call */
+    char why[256];         /* to resume, and nothing could be: why; else empty */
+    PictureHashes *hashes; /* [last - first + 1]; to be freed by the caller */
+} RenderResult;
+
+/* Writes directory/frame_000000.png and on: the moments (moments.h) of the longest of 1 to 6 panels, or of the frames asked
+   for, which begin with the number of the first; a shorter panel holds its last frame. Without slow motion, hold and cards file k is frame k. Beside them
+   manifest.json (manifest.h) tells what was drawn. Processes of its own draw, so that the caller keeps its environment and
+   threads. Progress counts pictures; where it asks to stop, those begun are finished and the error is "stopped"
+   (ERROR_INPUT). `result` may be NULL.
+
+   To resume: pictures of an earlier call, ended or killed, whose files have the bytes that they had then stay; all others
+   are drawn. Where that call was of other runs, options or another version, all are. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     const Progress *progress, Error *error);
+                     RenderResult *result, const Progress *progress, Error *error);
 
 typedef struct Renderer Renderer;
 

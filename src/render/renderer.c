@@ -5,12 +5,13 @@
 #include "render/canvas.h"
 #include "render/context.h"
 #include "render/damage.h"
-#include "render/style.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct Renderer {
     Picture picture;
+    bool owns_picture;
     Context context;
     GlFunctions gl;
     Canvas *canvas;
@@ -45,40 +46,46 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
                           Error *error) {
     Picture picture;
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
-    picture_caption(&picture, options);
-    return renderer_create_planned(&picture, options, error);
+    Renderer *renderer = NULL;
+    if (picture_dress(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
+    if (renderer == NULL)
+        picture_free(&picture);
+    else
+        renderer->owns_picture = true;
+    return renderer;
 }
 
 /* `changed` is NULL where everything is to be painted. */
 static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
     return context_make_current(&renderer->context, error) &&
-           canvas_paint(renderer->canvas, &renderer->drawing, PAGE, changed, image, error);
+           canvas_paint(renderer->canvas, &renderer->drawing, renderer->picture.theme->page, changed, image, error);
 }
 
-static bool compose(Renderer *renderer, int frame, Error *error) {
+static bool compose(Renderer *renderer, Moment moment, Error *error) {
+    const int frame = moment.frame;
     if (frame < 0 || frame >= renderer->picture.frames)
         return error_input(error, "render", "frame %d asked for; the frames are 0 to %d", frame,
                            renderer->picture.frames - 1);
     drawing_clear(&renderer->drawing);
-    picture_draw(&renderer->picture, frame, &renderer->drawing);
+    picture_draw(&renderer->picture, moment, &renderer->drawing);
     return true;
 }
 
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
     renderer->follows = false;
-    return compose(renderer, frame, error) && paint(renderer, NULL, image, error);
+    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
 }
 
-bool renderer_draw_next(Renderer *renderer, int frame, Image *image, const bool **changed, Error *error) {
-    const Drawing nothing = {0}, before = renderer->drawing;
+bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
+    const Drawing before = renderer->drawing;
     bool follows = renderer->follows;
     renderer->follows = false; /* until all has gone well */
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
-    if (!compose(renderer, frame, error)) return false;
-    bool part =
-        damage_find(follows ? &renderer->before : &nothing, &renderer->drawing, image->height, renderer->changed);
+    if (!compose(renderer, moment, error)) return false;
+    bool part = follows && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
+    if (!part) memset(renderer->changed, true, (size_t)image->height);
     renderer->follows = paint(renderer, part ? renderer->changed : NULL, image, error);
     return renderer->follows;
 }
@@ -92,5 +99,6 @@ void renderer_destroy(Renderer *renderer) {
     drawing_free(&renderer->drawing);
     drawing_free(&renderer->before);
     free(renderer->changed);
+    if (renderer->owns_picture) picture_free(&renderer->picture);
     free(renderer);
 }

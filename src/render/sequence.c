@@ -20,7 +20,8 @@ typedef struct Sequence {
     Worker *workers;
     struct pollfd *polls;
     int jobs, listening;
-    double done, total; /* frames */
+    int done, total, kept; /* pictures */
+    Manifest *manifest;
 } Sequence;
 
 static bool choose_range(const RenderOptions *options, const Picture *picture, int *first, int *last, Error *error) {
@@ -56,12 +57,11 @@ static bool start_worker(Sequence *sequence, int index, const WorkerJob *job, Er
     return true;
 }
 
-/* Neighbouring frames go to the same worker, and no two shares differ by more than one frame. */
+/* Neighbouring pictures go to the same worker, and no two shares differ by more than one picture. */
 static bool start_workers(Sequence *sequence, WorkerJob job, int first, Error *error) {
-    int frames = (int)sequence->total;
     for (int i = 0; i < sequence->jobs; i++) {
-        job.first = first + (int)((long long)frames * i / sequence->jobs);
-        job.last = first + (int)((long long)frames * (i + 1) / sequence->jobs) - 1;
+        job.first = first + (int)((long long)sequence->total * i / sequence->jobs);
+        job.last = first + (int)((long long)sequence->total * (i + 1) / sequence->jobs) - 1;
         if (!start_worker(sequence, i, &job, error)) return false;
     }
     return true;
@@ -87,14 +87,15 @@ static void await_end(Worker *worker, Error *error) {
 }
 
 static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
-    Error report;
+    WorkerReport report;
     ssize_t size = read(worker->pipe, &report, sizeof report);
     if (size < 0 && errno == EINTR) return true;
-    if (size == sizeof report && report.kind == ERROR_NONE) {
+    if (size == sizeof report && report.error.kind == ERROR_NONE) {
         sequence->done++;
-        return true;
+        sequence->kept += report.kept;
+        return manifest_add(sequence->manifest, report.index, report.hashes, error);
     }
-    if (size == sizeof report) *error = report;
+    if (size == sizeof report) *error = report.error;
     stop_listening(sequence, worker);
     await_end(worker, error);
     return error->kind == ERROR_NONE;
@@ -133,18 +134,52 @@ static bool draw_all(Sequence *sequence, const WorkerJob *job, int first, const 
     return ok;
 }
 
-bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     const Progress *progress, Error *error) {
-    Picture picture;
+/* The pictures of the frames that the options ask for, drawn or kept; the manifest is open. */
+static bool make_pictures(WorkerJob *job, Manifest *manifest, RenderResult *result, const Progress *progress,
+                          Error *error) {
+    Sequence sequence = {.total = manifest->last - manifest->first + 1, .manifest = manifest};
+    sequence.jobs = job->options->jobs < sequence.total ? job->options->jobs : sequence.total;
+    if (job->options->resume) manifest_recall(manifest, result->why, sizeof result->why);
+    if (!manifest_begin(manifest, error) || !draw_all(&sequence, job, manifest->first, progress, error) ||
+        !manifest_end(manifest, error))
+        return false;
+    result->kept = sequence.kept;
+    result->hashes = manifest->hashes;
+    manifest->hashes = NULL;
+    return true;
+}
+
+/* What is decided before the first picture; the picture is planned. */
+static bool make_sequence(Picture *picture, const RenderOptions *options, RenderResult *result,
+                          const Progress *progress, Error *error) {
+    MomentPlan plan;
     int first, last;
+    if (!choose_range(options, picture, &first, &last, error) ||
+        !moments_plan(&plan, picture->panels, picture->count, first, last, options, error) ||
+        !picture_dress(picture, options, error) || !file_make_directory(options->directory, error))
+        return false;
+    result->first = first;
+    result->last = moments_last(&plan);
+    result->all = first == 0 && last == picture->frames - 1;
+    Manifest manifest;
+    WorkerJob job = {.picture = picture, .options = options, .plan = &plan, .manifest = &manifest};
+    bool ok = manifest_open(&manifest, picture, options, &plan, result->first, result->last, error) &&
+              make_pictures(&job, &manifest, result, progress, error);
+    manifest_close(&manifest);
+    return ok;
+}
+
+bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
+                     RenderResult *result, const Progress *progress, Error *error) {
+    Picture picture;
+    RenderResult unheard;
+    if (result == NULL) result = &unheard;
+    *result = (RenderResult){0};
     if (options->jobs < 1 || options->jobs > RENDER_JOBS_MAX)
         return error_input(error, "render", "%d jobs asked for; there can be 1 to %d", options->jobs, RENDER_JOBS_MAX);
-    if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error) ||
-        !choose_range(options, &picture, &first, &last, error) || !file_make_directory(options->directory, error))
-        return false;
-    picture_caption(&picture, options);
-    int frames = last - first + 1;
-    Sequence sequence = {.jobs = options->jobs < frames ? options->jobs : frames, .total = frames};
-    WorkerJob job = {.picture = &picture, .options = options};
-    return draw_all(&sequence, &job, first, progress, error);
+    if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return false;
+    bool ok = make_sequence(&picture, options, result, progress, error);
+    picture_free(&picture);
+    if (result == &unheard) free(unheard.hashes);
+    return ok;
 }

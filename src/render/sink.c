@@ -2,6 +2,7 @@
 #include "render/sink.h"
 
 #include "common/file.h"
+#include "common/hash.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,24 +13,30 @@ typedef struct PngSink {
     PngEncoder *encoder;
     char *path; /* room for that of any frame */
     size_t path_size;
-    int first, behind; /* frames written: all from the first to the one before `behind` */
+    int first,
+        behind; /* what was written lies from the first to the one before `behind`: others there are on the disk */
 } PngSink;
 
-static void name_frame(PngSink *sink, int frame) {
-    snprintf(sink->path, sink->path_size, "%s/frame_%06d.png", sink->directory, frame);
+void sink_frame_name(char name[SINK_NAME_SIZE], int index) { snprintf(name, SINK_NAME_SIZE, "frame_%06d.png", index); }
+
+bool sink_frame_path(char *path, size_t size, const char *directory, int index) {
+    char name[SINK_NAME_SIZE];
+    sink_frame_name(name, index);
+    return snprintf(path, size, "%s/%s", directory, name) < (int)size;
 }
 
-static bool write_png(void *context, int frame, const Image *image, const bool *changed, const ImageText *texts,
-                      int count, Error *error) {
+static bool write_png(void *context, int index, const Image *image, const bool *changed, const ImageText *texts,
+                      int count, uint64_t *hash, Error *error) {
     PngSink *sink = context;
     const uint8_t *data;
     size_t size;
-    name_frame(sink, frame);
+    sink_frame_path(sink->path, sink->path_size, sink->directory, index);
     if (!png_encode(sink->encoder, image, changed, texts, count, &data, &size, error) ||
         !file_write_soon(sink->path, data, size, error))
         return false;
-    if (sink->behind == 0) sink->first = frame;
-    sink->behind = frame + 1;
+    *hash = hash_xxh3(data, size);
+    if (sink->behind == 0) sink->first = index;
+    sink->behind = index + 1;
     return true;
 }
 
@@ -37,8 +44,8 @@ static bool write_png(void *context, int frame, const Image *image, const bool *
 static bool close_png(void *context, Error *error) {
     PngSink *sink = context;
     bool ok = true;
-    for (int frame = sink->first; ok && frame < sink->behind; frame++) {
-        name_frame(sink, frame);
+    for (int index = sink->first; ok && index < sink->behind; index++) {
+        sink_frame_path(sink->path, sink->path_size, sink->directory, index);
         ok = file_sync(sink->path, error);
     }
     ok = ok && (sink->behind == 0 || file_sync(sink->directory, error));
@@ -49,7 +56,7 @@ static bool close_png(void *context, Error *error) {
 }
 
 bool sink_open_png(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error) {
-    size_t path_size = strlen(directory) + sizeof "/frame_.png" + 16;
+    size_t path_size = strlen(directory) + 1 + SINK_NAME_SIZE;
     PngSink *png = calloc(1, sizeof *png);
     char *path = malloc(path_size);
     PngEncoder *encoder = png_encoder_create(width, height, effort, error);

@@ -14,4 +14,6 @@ typedef struct BodyColors {
     uint32_t fill, line, band; /* the band along the local top tells how a box has turned */
 } BodyColors;
 
-static const BodyColors BOMB = {0xB5371B, 0x5E1606, 0xFFE9DF};
+#define BOMB_COLORS \
+    { 0xB5371B, 0x5E1606, 0xFFE9DF }
+static const BodyColors BOMB = BOMB_COLORS;

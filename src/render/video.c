@@ -1,151 +1,187 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "render/video.h"
+#include "render/video_frames.h"
 
 #include "common/file.h"
 #include "common/process.h"
-#include "image/image.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 4096 };
+enum { ARGUMENTS_MAX = 64, REST = 32 /* bytes that a name of ours is longer */ };
+
+typedef struct VideoFormat {
+    const char *ending;
+    bool halves_colour;      /* 4:2:0: both sides must be even */
+    double fastest;          /* Hz; 0: any */
+    const char *encoder[24]; /* arguments of ffmpeg */
+} VideoFormat;
+
+/* BT.709 said and meant: players otherwise guess the matrix by the size of the picture. */
+#define BT709 \
+    "-vf", "scale=out_color_matrix=bt709", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"
+
+static const VideoFormat formats[] = {
+    {".mp4", true, 0, {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
+    {".webm",
+     true,
+     0,
+     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"}},
+    /* Viewers show a frame of one hundredth of a second for ten. Areas of one colour stay so without dithering. */
+    {".gif", false, 50, {"-lavfi", "paletteuse=dither=none", "-fps_mode", "passthrough"}},
+};
+
+static const VideoFormat *find_format(const char *path) {
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        size_t ending = strlen(formats[i].ending);
+        if (length > ending && strcmp(path + length - ending, formats[i].ending) == 0) return &formats[i];
+    }
+    return NULL;
+}
+
+static bool check_place(const char *path, Error *error) {
+    struct stat status;
+    char folder[PATH_MAX];
+    size_t length = strlen(path), folder_length = file_folder_length(path);
+    if (length >= PATH_MAX - REST) return error_input(error, path, "the name is too long");
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is no regular file");
+    snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
+    return access(folder, W_OK) == 0 || error_system(error, path, "cannot write there: %s", strerror(errno));
+}
 
 bool video_check(const char *path, int width, int height, Error *error) {
-    size_t length = strlen(path);
-    if (length <= 4 || strcmp(path + length - 4, ".mp4") != 0)
-        return error_input(error, path, "the name of a video ends in .mp4");
-    if (length >= PATH_SIZE - 32) return error_input(error, path, "the name is too long");
-    if (width % 2 != 0 || height % 2 != 0)
-        return error_input(error, path, "a video needs even width and height (got %dx%d)", width, height);
+    const VideoFormat *format = find_format(path);
+    if (format == NULL) return error_input(error, path, "the name of a video ends in .mp4, .webm or .gif");
+    if (format->halves_colour && (width % 2 != 0 || height % 2 != 0))
+        return error_input(error, path, "such a video needs even width and height (got %dx%d)", width, height);
+    return check_place(path, error);
+}
+
+bool video_check_programs(Error *error) {
+    static const char *const names[] = {"ffmpeg", "ffprobe"};
+    for (int i = 0; i < 2; i++) {
+        const char *argv[] = {names[i], "-version", NULL};
+        Process process;
+        char text[256];
+        if (!process_start(&process, argv, error) || !process_finish(&process, text, sizeof text, error)) return false;
+    }
     return true;
 }
 
-static Image *read_frame(const VideoOptions *options, int frame, Error *error) {
-    char path[PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/frame_%06d.png", options->directory, frame) >= (int)sizeof path) {
-        error_input(error, options->directory, "the name is too long");
-        return NULL;
-    }
-    return image_read_png(path, error);
+/* Arguments of a program, the last NULL. */
+typedef struct Arguments {
+    const char *list[ARGUMENTS_MAX];
+    int count;
+} Arguments;
+
+static void add(Arguments *arguments, const char *const *more) {
+    for (; *more != NULL; more++) arguments->list[arguments->count++] = *more;
+    arguments->list[arguments->count] = NULL;
 }
 
-static bool write_frame(Process *ffmpeg, const Image *image, uint8_t *rgb) {
+#define ADD(arguments, ...) add((arguments), (const char *const[]){__VA_ARGS__, NULL})
+
+/* Of one video. */
+typedef struct Encoding {
+    const VideoOptions *options;
+    const VideoFormat *format;
+    int width, height, every;
+    /* What is written beside the video. With "file:" a name is never taken for an option or an address. */
+    char part[PATH_MAX], palette[PATH_MAX];
+    const Progress *progress;
+} Encoding;
+
+typedef struct RawTarget {
+    Process process;
+    uint8_t *rgb;
+} RawTarget;
+
+static bool put_raw(void *context, const Image *image) {
+    RawTarget *target = context;
     size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < pixels; i++) memcpy(rgb + 3 * i, image->pixels + 4 * i, 3);
-    return process_write(ffmpeg, rgb, 3 * pixels);
+    for (size_t i = 0; i < pixels; i++) memcpy(target->rgb + 3 * i, image->pixels + 4 * i, 3);
+    return process_write(&target->process, target->rgb, 3 * pixels);
 }
 
-/* Sends all frames; all must be of the first one's size. *stopped is set where ffmpeg stopped reading. */
-static bool send_frames(Process *ffmpeg, const VideoOptions *options, int width, int height, bool *stopped,
-                        const Progress *progress, Error *error) {
-    uint8_t *rgb = malloc(3 * (size_t)width * (size_t)height);
-    if (rgb == NULL) return error_memory(error, options->path);
-    bool ok = true;
-    for (int frame = options->first; ok && !*stopped && frame <= options->last; frame++) {
-        Image *image = read_frame(options, frame, error);
-        ok = image != NULL;
-        if (ok && (image->width != width || image->height != height))
-            ok = error_input(error, options->directory, "frame %d is %dx%d, the first one %dx%d", frame, image->width,
-                             image->height, width, height);
-        if (ok) *stopped = !write_frame(ffmpeg, image, rgb);
-        image_destroy(image);
-        if (ok && !progress_report(progress, frame - options->first + 1, options->last - options->first + 1))
-            ok = error_input(error, options->path, "stopped");
+/* Feeds all pictures to an ffmpeg that makes of its input what the further arguments say. */
+static bool run_ffmpeg(const Encoding *encoding, const char *const *further, const char *output, Error *error) {
+    char size[32], rate[32];
+    Arguments arguments = {0};
+    snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
+    snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->every);
+    ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
+    ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
+    add(&arguments, further);
+    ADD(&arguments, output);
+    RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
+    if (target.rgb == NULL) return error_memory(error, encoding->options->path);
+    bool stopped, ok = process_start(&target.process, arguments.list, error);
+    if (ok && !video_feed(encoding->options, encoding->every, encoding->width, encoding->height, put_raw, &target,
+                          &stopped, encoding->progress, error)) {
+        process_kill(&target.process);
+        ok = false;
     }
-    free(rgb);
-    return ok;
+    free(target.rgb);
+    char text[1024];
+    if (!ok || !process_finish(&target.process, text, sizeof text, error)) return false;
+    return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", text);
+}
+
+/* A GIF has 256 colours: first those are found, then used. */
+static bool run_for_gif(const Encoding *encoding, Error *error) {
+    static const char *const find[] = {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-update", "1", NULL};
+    Arguments use = {0};
+    ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
+    add(&use, encoding->format->encoder);
+    return run_ffmpeg(encoding, find, encoding->palette, error) &&
+           run_ffmpeg(encoding, use.list, encoding->part, error);
 }
 
 /* Frames that a decoder finds in the video. */
 static bool count_frames(const char *path, int *count, Error *error) {
-    const char *argv[] = {"ffprobe",
-                          "-v",
-                          "error",
-                          "-select_streams",
-                          "v:0",
-                          "-count_frames",
-                          "-show_entries",
-                          "stream=nb_read_frames",
-                          "-of",
-                          "csv=p=0",
-                          path,
-                          NULL};
+    Arguments arguments = {0};
+    ADD(&arguments, "ffprobe", "-v", "error", "-select_streams", "v:0", "-count_frames", "-show_entries");
+    ADD(&arguments, "stream=nb_read_frames", "-of", "csv=p=0", path);
     Process ffprobe;
     char text[256];
-    if (!process_start(&ffprobe, argv, error) || !process_finish(&ffprobe, text, sizeof text, error)) return false;
+    if (!process_start(&ffprobe, arguments.list, error) || !process_finish(&ffprobe, text, sizeof text, error))
+        return false;
     *count = atoi(text);
     return true;
 }
 
-static bool run_ffmpeg(const VideoOptions *options, const char *part, int width, int height, const Progress *progress,
-                       Error *error) {
-    char size[32], rate[32];
-    snprintf(size, sizeof size, "%dx%d", width, height);
-    snprintf(rate, sizeof rate, "%.0f/1000", 1000 * options->frame_rate);
-    /* BT.709 said and meant: players otherwise guess the matrix by the size of the picture. */
-    const char *argv[] = {"ffmpeg",
-                          "-y",
-                          "-v",
-                          "error",
-                          "-f",
-                          "rawvideo",
-                          "-pixel_format",
-                          "rgb24",
-                          "-video_size",
-                          size,
-                          "-framerate",
-                          rate,
-                          "-i",
-                          "-",
-                          "-vf",
-                          "scale=out_color_matrix=bt709",
-                          "-colorspace",
-                          "bt709",
-                          "-color_primaries",
-                          "bt709",
-                          "-color_trc",
-                          "bt709",
-                          "-c:v",
-                          "libx264",
-                          "-crf",
-                          "18",
-                          "-pix_fmt",
-                          "yuv420p",
-                          "-movflags",
-                          "+faststart",
-                          part,
-                          NULL};
-    Process ffmpeg;
-    if (!process_start(&ffmpeg, argv, error)) return false;
-    bool stopped = false;
-    if (!send_frames(&ffmpeg, options, width, height, &stopped, progress, error)) {
-        process_kill(&ffmpeg);
-        return false;
-    }
-    char text[1024];
-    if (!process_finish(&ffmpeg, text, sizeof text, error)) return false;
-    return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", text);
-}
-
-static bool encode_to(const VideoOptions *options, const char *part, const Progress *progress, Error *error) {
-    Image *first = read_frame(options, options->first, error);
-    if (first == NULL) return false;
-    int width = first->width, height = first->height, wanted = options->last - options->first + 1, count;
-    image_destroy(first);
-    if (!video_check(options->path, width, height, error) ||
-        !run_ffmpeg(options, part, width, height, progress, error) || !count_frames(part, &count, error))
+static bool encode(const Encoding *encoding, Error *error) {
+    const VideoOptions *options = encoding->options;
+    int wanted = (options->last - options->first) / encoding->every + 1, count;
+    bool gif = strcmp(encoding->format->ending, ".gif") == 0;
+    if (!(gif ? run_for_gif(encoding, error)
+              : run_ffmpeg(encoding, encoding->format->encoder, encoding->part, error)) ||
+        !count_frames(encoding->part, &count, error))
         return false;
     if (count != wanted) return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
-    return rename(part, options->path) == 0 || error_system(error, options->path, "%s", strerror(errno));
+    return rename(strchr(encoding->part, ':') + 1, options->path) == 0 ||
+           error_system(error, options->path, "%s", strerror(errno));
 }
 
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error) {
-    char part[PATH_SIZE];
-    snprintf(part, sizeof part, "%.*s.%ld.part.mp4", PATH_SIZE - 32, options->path, (long)getpid());
-    bool ok = encode_to(options, part, progress, error);
-    if (!ok) unlink(part);
+    Encoding encoding = {.options = options, .every = 1, .progress = progress};
+    if (!video_frame_size(options, &encoding.width, &encoding.height, error) ||
+        !video_check(options->path, encoding.width, encoding.height, error))
+        return false;
+    encoding.format = find_format(options->path);
+    /* A hair more is rounding. */
+    if (encoding.format->fastest > 0)
+        encoding.every = (int)fmax(1, ceil(options->frame_rate / encoding.format->fastest - 1e-3));
+    snprintf(encoding.part, PATH_MAX, "file:%s.%ld.part%s", options->path, (long)getpid(), encoding.format->ending);
+    snprintf(encoding.palette, PATH_MAX, "file:%s.%ld.part.png", options->path, (long)getpid());
+    bool ok = encode(&encoding, error);
+    if (!ok) unlink(strchr(encoding.part, ':') + 1);
+    unlink(strchr(encoding.palette, ':') + 1);
     return ok;
 }

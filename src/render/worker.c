@@ -1,60 +1,76 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/worker.h"
 
+#include "common/file.h"
+#include "common/hash.h"
+#include "render/frame_texts.h"
 #include "render/renderer.h"
 #include "render/sink.h"
 
-#include <inttypes.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 #include <unistd.h>
 
-/* Texts of a frame, all panels joined. */
-enum { TEXTS = 5, METHODS_SIZE = RENDER_PANELS_MAX * (TRAJECTORY_NAME_SIZE + 3), HASHES_SIZE = RENDER_PANELS_MAX * 20 };
+/* Bytes: far more than the file of a picture takes. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
-typedef struct FrameTexts {
-    char methods[METHODS_SIZE], frame[16], state[HASHES_SIZE];
-    ImageText entries[TEXTS];
-} FrameTexts;
-
-static void append(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
-}
-
-/* What tells a frame's origin. No date: the same frame gives the same file. */
-static void fill_texts(FrameTexts *texts, const Picture *picture, int frame) {
-    texts->methods[0] = texts->state[0] = '\0';
-    for (int i = 0; i < picture->count; i++) {
-        const Trajectory *trajectory = picture->panels[i];
-        char hash[20];
-        int shown = picture_panel_frame(picture, i, frame);
-        snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(trajectory, shown));
-        append(texts->methods, sizeof texts->methods, trajectory->method);
-        append(texts->state, sizeof texts->state, hash);
-    }
-    snprintf(texts->frame, sizeof texts->frame, "%d", frame);
-    const ImageText entries[TEXTS] = {{"Scene", picture->panels[0]->scene},
-                                      {"Method", texts->methods},
-                                      {"Frame", texts->frame},
-                                      {"State", texts->state},
-                                      {"Software", "twinbox"}};
-    memcpy(texts->entries, entries, sizeof entries);
-}
-
-static bool report(int pipe, const Error *error) { return write(pipe, error, sizeof *error) == sizeof *error; }
-
-static bool draw_frames(const WorkerJob *job, Renderer *renderer, const FrameSink *sink, Image *image, int pipe,
-                        Error *error) {
+/* What a worker draws with. */
+typedef struct Worker {
+    const WorkerJob *job;
+    Renderer *renderer;
+    Image *image;
+    uint64_t *rows; /* [height] hashes of the image */
+    FrameSink sink;
     FrameTexts texts;
+} Worker;
+
+static bool send(int pipe, const WorkerReport *report) { return write(pipe, report, sizeof *report) == sizeof *report; }
+
+/* The file of an earlier call, byte by byte. */
+static bool is_there(const Worker *worker, int index, PictureHashes *hashes) {
+    const Manifest *manifest = worker->job->manifest;
+    char path[PATH_MAX];
+    size_t size;
+    Error ignored = {0};
+    if (!manifest->known[index - manifest->first] ||
+        !sink_frame_path(path, sizeof path, worker->job->options->directory, index))
+        return false;
+    *hashes = manifest->hashes[index - manifest->first];
+    char *data = file_read(path, MAX_FILE_SIZE, &size, &ignored);
+    bool same = data != NULL && hash_xxh3(data, size) == hashes->file;
+    free(data);
+    return same;
+}
+
+static bool prepare(Worker *worker, Error *error) {
+    const RenderOptions *options = worker->job->options;
+    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
+    if (worker->renderer == NULL) return false;
+    worker->image = image_create(options->width, options->height, error);
+    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
+    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
+}
+
+static bool draw_one(Worker *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
     const bool *changed;
-    for (int frame = job->first; frame <= job->last; frame++) {
-        fill_texts(&texts, job->picture, frame);
-        if (!renderer_draw_next(renderer, frame, image, &changed, error) ||
-            !sink->write(sink->context, frame, image, changed, texts.entries, TEXTS, error))
-            return false;
-        if (!report(pipe, error)) return false; /* the parent has gone, or wants no more */
+    /* Not before: there may be nothing to draw. */
+    if (worker->renderer == NULL && !prepare(worker, error)) return false;
+    frame_texts_fill(&worker->texts, worker->job->picture, moment);
+    if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
+        !worker->sink.write(worker->sink.context, index, worker->image, changed, worker->texts.entries,
+                            worker->texts.count, &hashes->file, error))
+        return false;
+    hashes->pixels = image_hash_next(worker->image, changed, worker->rows);
+    return true;
+}
+
+static bool draw_all(Worker *worker, int pipe, Error *error) {
+    const WorkerJob *job = worker->job;
+    for (int index = job->first; index <= job->last; index++) {
+        WorkerReport report = {.index = index};
+        report.kept = is_there(worker, index, &report.hashes);
+        if (!report.kept && !draw_one(worker, moments_at(job->plan, index), index, &report.hashes, error)) return false;
+        if (!send(pipe, &report)) return false; /* the parent has gone, or wants no more */
     }
     return true;
 }
@@ -66,24 +82,23 @@ static void prepare_process(void) {
     signal(SIGPIPE, SIG_IGN);
 }
 
-static bool draw_to_sink(const WorkerJob *job, Renderer *renderer, Image *image, int pipe, Error *error) {
-    const RenderOptions *options = job->options;
-    FrameSink sink;
-    if (!sink_open_png(&sink, options->directory, options->width, options->height,
+static bool draw_to_sink(Worker *worker, int pipe, Error *error) {
+    const RenderOptions *options = worker->job->options;
+    if (!sink_open_png(&worker->sink, options->directory, options->width, options->height,
                        options->small ? PNG_SMALL : PNG_FAST, error))
         return false;
-    bool drawn = draw_frames(job, renderer, &sink, image, pipe, error);
-    return sink.close(sink.context, error) && drawn;
+    bool drawn = draw_all(worker, pipe, error);
+    return worker->sink.close(worker->sink.context, error) && drawn;
 }
 
 bool worker_run(const WorkerJob *job, int pipe) {
-    Error error = {0};
+    WorkerReport end = {.index = -1};
+    Worker worker = {.job = job};
     prepare_process();
-    Renderer *renderer = renderer_create_planned(job->picture, job->options, &error);
-    Image *image = renderer == NULL ? NULL : image_create(job->options->width, job->options->height, &error);
-    bool ok = image != NULL && draw_to_sink(job, renderer, image, pipe, &error);
-    if (error.kind != ERROR_NONE) report(pipe, &error);
-    image_destroy(image);
-    renderer_destroy(renderer);
+    bool ok = draw_to_sink(&worker, pipe, &end.error);
+    if (end.error.kind != ERROR_NONE) send(pipe, &end);
+    image_destroy(worker.image);
+    renderer_destroy(worker.renderer);
+    free(worker.rows);
     return ok;
 }

@@ -12,5 +12,5 @@ void document_write_markdown(const Document *document, FILE *file);
    2 make its table of contents. */
 void document_write_html(const Document *document, FILE *file);
 
-/* Bytes as base64 (RFC 4648). */
-void base64_put(FILE *file, const void *data, size_t size);
+/* Text as HTML, also within quotes. */
+void html_put(FILE *file, const char *text);

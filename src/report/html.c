@@ -2,6 +2,8 @@
 /* A document in HTML5, for phones, screens and paper. */
 #include "report/document_write.h"
 
+#include "common/base64.h"
+
 static const char style[] =
     "body{margin:0;background:#fff;color:#1a1a1a;font:16px/1.5 system-ui,-apple-system,\"Segoe UI\",sans-serif}\n"
     "main{max-width:54rem;margin:0 auto;padding:1rem}\n"
@@ -19,7 +21,7 @@ static const char style[] =
     "table{font-size:7.5pt}td{white-space:normal}th,td{padding:.1rem .3rem}tr,figure{break-inside:avoid}\n"
     "thead{display:table-header-group}h2,h3,caption{break-after:avoid}}\n";
 
-static void put(FILE *file, const char *text) {
+void html_put(FILE *file, const char *text) {
     for (; *text != '\0'; text++) switch (*text) {
         case '&': fputs("&amp;", file); break;
         case '<': fputs("&lt;", file); break;
@@ -32,7 +34,7 @@ static void put(FILE *file, const char *text) {
 
 static void put_within(FILE *file, const char *tag, const char *text) {
     fprintf(file, "<%s>", tag);
-    put(file, text);
+    html_put(file, text);
     fprintf(file, "</%s>\n", tag);
 }
 
@@ -47,7 +49,7 @@ static void put_table(const Document *document, const Block *table, FILE *file) 
         if (i == table->columns) fputs("</thead><tbody>\n", file);
         if (column == 0) fputs("<tr>", file);
         fprintf(file, "<%s%s>", tag, table->numbers >> column & 1 ? " class=\"n\"" : "");
-        put(file, document->cells[table->first_cell + i]);
+        html_put(file, document->cells[table->first_cell + i]);
         fprintf(file, "</%s>", tag);
         if (column + 1 == table->columns) fputs("</tr>\n", file);
     }
@@ -58,21 +60,21 @@ static void put_figure(const Block *figure, FILE *file) {
     /* Never larger than its pixels: it would only blur. */
     fprintf(file, "<figure><img width=\"%d\" height=\"%d\" style=\"max-width:%dpx\" alt=\"", figure->width,
             figure->height, figure->width);
-    put(file, figure->alt);
+    html_put(file, figure->alt);
     fputs("\" src=\"data:image/png;base64,", file);
     base64_put(file, figure->png, figure->png_size);
     fprintf(file, "\">\n<figcaption><b>Figure %d.</b> ", figure->number);
-    put(file, figure->text);
+    html_put(file, figure->text);
     fputs("</figcaption></figure>\n", file);
 }
 
 static void put_link(const Block *link, FILE *file) {
     fputs("<p>", file);
-    put(file, link->text);
+    html_put(file, link->text);
     fputs(" <a href=\"", file);
-    put(file, link->address);
+    html_put(file, link->address);
     fputs("\">", file);
-    put(file, link->address);
+    html_put(file, link->address);
     fputs("</a></p>\n", file);
 }
 
@@ -82,7 +84,7 @@ static void put_block(const Document *document, size_t place, FILE *file) {
     switch (block->kind) {
     case BLOCK_HEADING:
         fprintf(file, "<h%d id=\"part-%zu\">", block->level, place);
-        put(file, block->text);
+        html_put(file, block->text);
         fprintf(file, "</h%d>\n", block->level);
         break;
     case BLOCK_PARAGRAPH: put_within(file, "p", block->text); break;
@@ -103,7 +105,7 @@ static void put_contents(const Document *document, FILE *file) {
         const Block *block = &document->blocks[i];
         if (block->kind != BLOCK_HEADING || block->level != 2) continue;
         fprintf(file, "<li><a href=\"#part-%zu\">", i);
-        put(file, block->text);
+        html_put(file, block->text);
         fputs("</a></li>\n", file);
     }
     fputs("</ol></nav>\n", file);

@@ -3,6 +3,7 @@
 #include "report/paper_files.h"
 
 #include "common/file.h"
+#include "common/utf8.h"
 #include "image/image.h"
 
 #include <stdio.h>
@@ -26,23 +27,17 @@ static const struct {
 };
 
 /* Length of the UTF-8 character that text begins with; 0 where it is none, or a control character. */
-static size_t character_length(const unsigned char *text) {
-    if (text[0] < 0x80) return text[0] >= 0x20 && text[0] != 0x7f;
-    size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
-    /* Two bytes hold from 0x80, three from 0x800, four from 0x10000 on; surrogates are no characters. */
-    bool valid = text[0] >= 0xc2 && text[0] <= 0xf4;
-    for (size_t i = 1; valid && i < length; i++) valid = (text[i] & 0xc0) == 0x80;
-    if (!valid || (text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xed && text[1] > 0x9f) ||
-        (text[0] == 0xf0 && text[1] < 0x90) || (text[0] == 0xf4 && text[1] > 0x8f))
-        return 0;
-    return length;
+static size_t character_length(const char *text, size_t size) {
+    uint32_t character;
+    size_t length = utf8_decode(text, size, &character);
+    return length > 0 && character >= 0x20 && character != 0x7f ? length : 0;
 }
 
 static bool check_caption(char *caption, size_t size, const char *path, Error *error) {
     if (size > 0 && caption[size - 1] == '\n') caption[--size] = '\0';
     if (size == 0) return error_input(error, path, "an empty caption");
     for (size_t at = 0, length; at < size; at += length) {
-        length = character_length((const unsigned char *)caption + at);
+        length = character_length(caption + at, size - at);
         if (length == 0) return error_input(error, path, "byte %zu is no text: a caption is one line of UTF-8", at + 1);
     }
     return true;

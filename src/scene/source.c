@@ -3,6 +3,7 @@
 #include "scene/source.h"
 
 #include "common/file.h"
+#include "common/utf8.h"
 
 #include <limits.h>
 #include <stdarg.h>
@@ -14,22 +15,6 @@
 /* Characters of the line that an excerpt shows, and how many of them stand before the caret at most. */
 enum { EXCERPT_WIDTH = 100, EXCERPT_BEFORE = 70 };
 
-/* One character of UTF-8 (Unicode 15, table 3-7): its length in bytes, or 0 where it is not well-formed. */
-static size_t decode(const char *text, size_t size, uint32_t *character) {
-    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-    unsigned char lead = (unsigned char)text[0];
-    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
-    if (length == 0 || length > size) return 0;
-    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
-        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
-    }
-    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
-    *character = c;
-    return length;
-}
-
 /* Control characters could drive the terminal; direction marks could show the line as something else. */
 static bool prints(uint32_t c) {
     if (c < 0x20 || (c >= 0x7f && c < 0xa0)) return false;
@@ -40,7 +25,7 @@ static bool prints(uint32_t c) {
 /* Copies one character or '?' to out (room for 5 bytes); returns the bytes read and adds those written. */
 static size_t copy_character(char *out, size_t *written, const char *text, size_t size) {
     uint32_t character;
-    size_t length = decode(text, size, &character);
+    size_t length = utf8_decode(text, size, &character);
     if (length > 0 && (prints(character) || character == '\t')) {
         memcpy(out + *written, text, length);
         *written += length;
@@ -78,7 +63,7 @@ static bool in_line(const Source *source, size_t at) { return at < source->size 
 /* Bytes of the character at `at`; a byte that is no UTF-8 counts as one. */
 static size_t character_length(const Source *source, size_t at) {
     uint32_t character;
-    size_t length = decode(source->text + at, source->size - at, &character);
+    size_t length = utf8_decode(source->text + at, source->size - at, &character);
     return length > 0 ? length : 1;
 }
 
@@ -180,7 +165,7 @@ static bool check_text(const Source *source, Error *error) {
     Check check = {.line_start = 0};
     for (size_t at = 0, length; at < source->size; at += length) {
         uint32_t character;
-        length = decode(source->text + at, source->size - at, &character);
+        length = utf8_decode(source->text + at, source->size - at, &character);
         if (length == 0) return source_error(source, check.place, error, "this is not UTF-8 text");
         if (!check_character(source, at, character, &check, error)) return false;
     }

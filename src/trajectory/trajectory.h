@@ -56,6 +56,9 @@ bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryC
 /* To be called after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);
 
+/* The first step in which the bomb touches a body that can move; -1: there is none. */
+int trajectory_impact(const Trajectory *trajectory);
+
 /* FNV-1a 64 over the little-endian bytes of x, y, angle, vx, vy, omega of each dynamic body that is there, by
    rising index: the definition of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);

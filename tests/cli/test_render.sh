@@ -7,7 +7,7 @@ sed "s|^frames:.*|frames: 7|; s|networks/|$scenes/networks/|" "$scenes/single.ya
 run 0 render single.yaml -o pictures --size 192x108 --video clip.mp4
 says "8 frames"
 equal "files" "$(ls pictures | tr '\n' ' ')" \
-    "$(printf 'frame_%06d.png ' 0 1 2 3 4 5 6 7)single-engine.npz single-pair-net.npz "
+    "$(printf 'frame_%06d.png ' 0 1 2 3 4 5 6 7)manifest.json single-engine.npz single-pair-net.npz "
 equal "frames of the video" \
     "$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height -of csv=p=0 clip.mp4)" "192,108,8"
 for frame in pictures/frame_*.png; do
@@ -43,7 +43,7 @@ done
 
 # A part of it; then a shorter run, whose frames are all there is.
 run 0 render one/single-engine.npz -o part --size 192x108 --frames 2:4
-equal "frames of a part" "$(ls part | tr '\n' ' ')" "frame_000002.png frame_000003.png frame_000004.png single-engine.npz "
+equal "frames of a part" "$(ls part | tr '\n' ' ')" "frame_000002.png frame_000003.png frame_000004.png manifest.json single-engine.npz "
 run 0 simulate single.yaml --frames 3 -o short.npz
 run 0 render short.npz -o one --size 192x108
 equal "frames of a shorter run" "$(ls one | grep -c png)" 4
@@ -83,7 +83,125 @@ head -c 700 short.npz >cut.npz
 run 2 render cut.npz -o x
 complains "cut.npz: error:"
 [ -e x ] && fail "a refused command made a folder"
+run 2 render single.yaml -o x --video a.mp4 --video a.mp4
+complains "'a.mp4' twice"
+mkdir folder.gif
+run 2 render single.yaml -o x --video folder.gif
+complains "folder.gif: error: is no regular file"
+run 2 render single.yaml -o x --slow 1
+complains "--slow"
+run 2 render single.yaml -o x --slow 17
+run 2 render single.yaml -o x --hold -1
+complains "--hold"
+run 2 render single.yaml -o x --hold 61
+[ -e x ] && fail "a refused command made a folder"
 run 3 render short.npz -o /proc/nowhere --size 192x108
 run 3 render short.npz -o part --size 192x108 --video nowhere/clip.mp4
 [ -z "$(ls | grep part.mp4)" ] || fail "half a video left behind"
+
+# No ffmpeg: told before anything is drawn.
+mkdir empty
+PATH=$folder/empty run 3 render short.npz -o x --size 192x108 --video clip.mp4
+complains "ffmpeg: error: cannot be run"
+[ -e x ] && fail "frames were drawn for a video that cannot be"
+
+# Slow motion, hold and cards; all forms of video in one go, y4m into a pipe. From 9 frames
+# before the impact to 36 after it are slow, 30 are held, a card is 120.
+run 0 simulate single.yaml --frames 60 -o slow.npz
+impact=$(/usr/bin/python3 -c "
+import numpy
+run = numpy.load('slow.npz', allow_pickle=False)
+start, bodies, bomb = run['contact_start'], run['contact_bodies'], run['bomb']
+fixed = run['fixed']
+print(next(k for k in range(1, 61) for a, b in bodies[start[k]:start[k + 1]] if bomb in (a, b) and not fixed[a] and not fixed[b]))")
+last=$((impact + 36 < 60 ? impact + 36 : 60))
+wanted=$((120 + 61 + 3 * (last - impact + 9) + 30 + 120))
+"$twinbox" render slow.npz -o slow --size 96x64 --slow 4 --hold 0.5 --title "One box" --end "Thanks" --video - \
+    --video slow.webm --video slow.gif 2>err </dev/null | ffmpeg -v error -i - -pix_fmt yuv444p -crf 0 piped.mp4
+equal "statuses of the pipe" "${PIPESTATUS[*]}" "0 0"
+complains "$wanted frames -> slow/frame_000000.png"
+count() { ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "$1"; }
+equal "pictures" "$(ls slow | grep -c png)" $wanted
+equal "frames of the pipe" "$(count piped.mp4)" $wanted
+equal "frames of the webm" "$(count slow.webm)" $wanted
+equal "frames of the gif" "$(count slow.gif)" $(((wanted + 1) / 2))
+equal "rate of the pipe" "$(ffprobe -v error -show_entries stream=avg_frame_rate -of csv=p=0 piped.mp4)" 60/1
+/usr/bin/python3 - $wanted >out <<'PYTHON'
+import json, sys
+pictures = json.load(open("slow/manifest.json"))["pictures"]
+kinds = [picture["shows"] for picture in pictures]
+print(len(pictures), kinds[:120].count("title"), kinds[-120:].count("end"), kinds.count("frame"))
+print(sorted({picture["part"] for picture in pictures if picture["shows"] == "between"}))
+PYTHON
+says "$wanted 120 120 91"
+says "['1/4', '2/4', '3/4']"
+run 0 render slow.npz -o short --size 96x64 --frames 50:52 --hold 0.1 --end "So far"
+says "129 frames -> short/frame_000050.png ... frame_000178.png"
+"$twinbox" render single.yaml -o grey --size 96x64 --frames 0:0 --video - 2>err </dev/null |
+    ffmpeg -v error -colorspace bt709 -i - back.png
+/usr/bin/python3 - >out <<'PYTHON'
+# The way that README tells gives the colours back.
+import subprocess
+def pixels(path):
+    command = ["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    return subprocess.run(command, check=True, capture_output=True).stdout
+there, back = pixels("grey/frame_000000.png"), pixels("back.png")
+print(len(there) == 96 * 64 * 3, max(abs(a - b) for a, b in zip(there, back, strict=True)) <= 2)
+PYTHON
+says "True True"
+"$twinbox" render slow.npz -o slow --size 96x64 --slow 4 --video - 2>err </dev/null | head -c 1000 >/dev/null
+equal "status where nobody reads" "${PIPESTATUS[0]}" 3
+complains "standard output: error: cannot write: Broken pipe"
+
+"$twinbox" render short.npz -o short --size 96x64 --video - >/dev/full 2>err
+equal "status where standard output is full" $? 3
+complains "standard output: error: cannot write: No space left"
+
+# Interrupted, killed, damaged: what goes on ends with the same bytes.
+run 0 simulate "$scenes/stack.yaml" --frames 400 -o long.npz
+draw() { "$twinbox" render long.npz -o "$1" --size 480x270 --jobs 2 --slow 2 "${@:2}"; }
+draw whole >out 2>err || fail "status $?: $(cat err)"
+for signal in INT KILL; do
+    rm -rf broken
+    "$twinbox" render long.npz -o broken --size 480x270 --jobs 2 --slow 2 >out 2>err </dev/null &
+    for _ in $(seq 1000); do
+        [ "$(ls broken 2>/dev/null | grep -c png)" -gt 20 ] && break
+        sleep 0.01
+    done
+    kill -$signal $!
+    wait $! 2>/dev/null
+    [ -e broken/manifest.json ] && fail "$signal came too late"
+    draw broken --resume >out 2>err || fail "resumed: status $?: $(cat err)"
+    sed -n 's/.*, \([0-9]*\) of them there already/\1/p' out >kept
+    [ "$(cat kept)" -gt 0 ] && [ "$(cat kept)" -lt 445 ] || fail "$signal: kept $(cat kept)"
+    diff -r whole broken >out || fail "after $signal: $(cat out)"
+done
+run 0 render long.npz -o broken --size 480x270 --slow 2 --resume
+says "frame_000445.png, 446 of them there already"
+diff -r whole broken || fail "nothing was to be drawn"
+rm broken/frame_000010.png
+printf x >>broken/frame_000011.png
+cp broken/frame_000013.png broken/frame_000012.png
+run 0 render long.npz -o broken --size 480x270 --slow 2 --resume --video again.mp4
+says ", 443 of them there already"
+diff -r whole broken || fail "damaged frames"
+equal "frames of the video" "$(count again.mp4)" 446
+run 0 render short.npz -o broken --size 480x270 --resume
+says "nothing to resume: broken/manifest.json:"
+equal "frames of another run" "$(ls broken | grep -c png)" 4
+echo '{"mine": 1}' >broken/manifest.json
+run 2 render short.npz -o broken --size 480x270 --resume
+complains "broken/manifest.json: error: is no manifest of twinbox"
+equal "a foreign file" "$(cat broken/manifest.json)" '{"mine": 1}'
+
+# No name leaves the folder, whatever a run is called.
+/usr/bin/python3 -c "
+import numpy
+run = dict(numpy.load('short.npz', allow_pickle=False))
+run['scene'], run['method'] = numpy.array('../../evil'), numpy.array('/tmp/../x')
+numpy.savez('evil.npz', **run)"
+mkdir -p jail
+run 0 render evil.npz -o jail/frames --size 192x108
+equal "files in the folder" "$(ls jail/frames | grep -v '^frame_')" "$(printf '_._.._evil-_tmp_.._x.npz\nmanifest.json')"
+equal "folders beside it" "$(ls jail)" frames
 finish

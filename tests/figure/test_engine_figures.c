@@ -9,6 +9,7 @@
 #include "figure/engine_figure.h"
 #include "figure/engine_figures.h"
 #include "figure/separating_axes.h"
+#include "figure/sketch_files.h"
 #include "simulate/simulate.h"
 
 #include <math.h>
@@ -271,7 +272,7 @@ static void the_same_run_gives_the_same_files(void **state) {
     assert_ok(scenes[SCENE_STACK] != NULL, error);
     Sketch sketch;
     char caption[CAPTION_SIZE];
-    assert_ok(sketch_begin(&sketch, figure_loop.width, figure_loop.height, &error), error);
+    sketch_begin(&sketch, figure_loop.width, figure_loop.height);
     assert_ok(figure_loop.draw(&sketch, scenes, caption, &error), error);
     assert_ok(sketch_draw(&sketch, temporary_path("again"), &error), error);
     sketch_free(&sketch);

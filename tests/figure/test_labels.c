@@ -59,14 +59,14 @@ static void long_axes_have_tics_at_decades(void **state) {
 static LabelField *field_10_by_10(void) {
     LabelField *field = calloc(1, sizeof *field);
     assert_non_null(field);
-    field->frame = (Box){0, 0, 10, 10};
+    field->frame = (PageBox){0, 0, 10, 10};
     return field;
 }
 
 static void labels_go_where_nothing_is(void **state) {
     (void)state;
     LabelField *field = field_10_by_10();
-    Box box;
+    PageBox box;
     /* The right is first choice, then the left, above, below. */
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
     assert_near(box.left, 6, 1e-12);
@@ -84,7 +84,7 @@ static void labels_go_where_nothing_is(void **state) {
 static void labels_stay_inside_the_frame(void **state) {
     (void)state;
     LabelField *field = field_10_by_10();
-    Box box;
+    PageBox box;
     assert_true(label_place(field, 9, 9.5, 0.5, 2, 1, false, &box));
     assert_true(box.right <= 10 && box.top <= 10);
     assert_false(label_place(field, 5, 5, 0.5, 11, 1, true, &box));
@@ -94,12 +94,12 @@ static void labels_stay_inside_the_frame(void **state) {
 static void only_what_must_be_there_crosses_a_line(void **state) {
     (void)state;
     LabelField *field = field_10_by_10();
-    Box box;
+    PageBox box;
     for (int i = 0; i <= 20; i++) label_add_segment(field, (Segment){0, 0.5 * i, 10, 0.5 * i});
     assert_false(label_place(field, 5, 5, 1, 2, 1, false, &box));
     assert_true(label_place(field, 5, 5, 1, 2, 1, true, &box));
     /* But nothing covers a mark. */
-    label_add_box(field, (Box){0, 0, 10, 10});
+    label_add_box(field, (PageBox){0, 0, 10, 10});
     assert_false(label_place(field, 5, 5, 1, 2, 1, true, &box));
     free(field);
 }

@@ -66,12 +66,35 @@ static void the_shape_counts(void **state) {
     image_destroy(turned);
 }
 
+/* Only rows that are said to have changed are looked at. */
+static void the_hash_of_a_sequence_is_that_of_its_pictures(void **state) {
+    (void)state;
+    uint64_t rows[3];
+    assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
+    *channel(a, 1, 0, 0) = 7;
+    *channel(a, 2, 2, 1) = 8;
+    assert_true(image_hash_next(a, (const bool[]){true, false, true}, rows) == image_hash(a));
+    uint64_t before = image_hash(a);
+    *channel(a, 0, 1, 2) = 9;
+    assert_true(image_hash_next(a, (const bool[]){true, false, true}, rows) == before);
+    assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
+}
+
+static void rows_that_change_places_change_the_hash(void **state) {
+    (void)state;
+    *channel(a, 1, 0, 0) = 7;
+    *channel(b, 1, 1, 0) = 7;
+    assert_true(image_hash(a) != image_hash(b));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, make, destroy),
         cmocka_unit_test_setup_teardown(differences_are_counted_by_pixel, make, destroy),
         cmocka_unit_test_setup_teardown(one_bit_changes_the_hash, make, destroy),
         cmocka_unit_test_setup_teardown(the_shape_counts, make, destroy),
+        cmocka_unit_test_setup_teardown(the_hash_of_a_sequence_is_that_of_its_pictures, make, destroy),
+        cmocka_unit_test_setup_teardown(rows_that_change_places_change_the_hash, make, destroy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -198,6 +198,77 @@ static void large_claims_are_refused_before_they_cost(void **state) {
     assert_refused(path, "damaged"); /* for its missing pixels, not its size */
 }
 
+static void the_limit_of_pixels_is_the_callers(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    uint8_t *data = (uint8_t *)small_file(&size);
+    Image *image = image_decode_png(data, size, "small.png", 20, &error);
+    assert_ok(image != NULL, error);
+    image_destroy(image);
+    assert_null(image_decode_png(data, size, "small.png", 19, &error));
+    assert_error(error, ERROR_INPUT, "small.png: error: the picture has 5 x 4 pixels; at most 19");
+    free(data);
+}
+
+/* acTL, before the pixels: libpng would show the first picture alone. */
+static void animations_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("animated.png");
+    FILE *file = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    assert_non_null(file);
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 1, 1, 8, PNG_COLOR_TYPE_RGB, 0, 0, 0);
+    png_write_info(png, info);
+    png_write_chunk(png, (png_const_bytep) "acTL", (png_const_bytep) "\0\0\0\2\0\0\0\0", 8);
+    png_write_row(png, (png_const_bytep) "abc");
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(file);
+    assert_refused(path, "an animated PNG (chunk acTL at byte 33)");
+}
+
+/* Two pictures of 16 bits, the last of which differ; in 8 bits they are equal. */
+static void sixteen_bits_count_in_full(void **state) {
+    (void)state;
+    Error error = {0};
+    static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
+    for (int interlace = 0; interlace < 2; interlace++) {
+        const char *path = temporary_path("deep.png");
+        write_kind(path, &kind, interlace);
+        Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
+        assert_ok(a != NULL && b != NULL, error);
+        assert_non_null(a->deep);
+        for (int y = 0; y < PNG_SIDE; y++)
+            for (int x = 0; x < PNG_SIDE; x++)
+                assert_int_equal(a->deep[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
+        ImageDifference difference;
+        image_compare(a, b, &difference);
+        assert_true(difference.equal);
+        b->deep[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
+        image_compare(a, b, &difference);
+        assert_true(difference.pixels == 1 && difference.largest == 1);
+        assert_true(difference.first_x == 7 && difference.first_y == 5);
+        image_destroy(a);
+        image_destroy(b);
+    }
+}
+
+/* A sample v of 8 bits is v * 257 in 16. */
+static void depths_are_compared_by_what_they_mean(void **state) {
+    (void)state;
+    ImageDifference difference;
+    Image shallow = {1, 1, (uint8_t[]){1, 128, 255, 255}, NULL};
+    Image deep = {1, 1, (uint8_t[]){1, 128, 255, 255}, (uint16_t[]){257, 128 * 257, 65535, 65535}};
+    image_compare(&shallow, &deep, &difference);
+    assert_true(difference.equal);
+    deep.deep[0]++;
+    image_compare(&shallow, &deep, &difference);
+    assert_true(difference.pixels == 1 && difference.largest == 1);
+}
+
 enum { SWOLLEN = 1 << 20 };
 
 /* 1 MiB of text in 1 KiB of file. */
@@ -265,6 +336,10 @@ int main(void) {
         cmocka_unit_test(truncated_files_are_refused),
         cmocka_unit_test(every_flipped_bit_is_noticed),
         cmocka_unit_test(large_claims_are_refused_before_they_cost),
+        cmocka_unit_test(the_limit_of_pixels_is_the_callers),
+        cmocka_unit_test(animations_are_refused),
+        cmocka_unit_test(sixteen_bits_count_in_full),
+        cmocka_unit_test(depths_are_compared_by_what_they_mean),
         cmocka_unit_test(texts_that_swell_do_no_harm),
         cmocka_unit_test(what_is_no_file_is_refused),
         cmocka_unit_test(a_failed_write_is_the_systems_fault),

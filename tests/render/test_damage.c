@@ -57,7 +57,7 @@ static void assert_same_frame(Twins *twins, int frame) {
     Error error = {0};
     ImageDifference difference;
     const bool *changed;
-    assert_ok(renderer_draw_next(twins->next, frame, twins->next_image, &changed, &error), error);
+    assert_ok(renderer_draw_next(twins->next, moment_stored(frame), twins->next_image, &changed, &error), error);
     assert_ok(renderer_draw(twins->whole, frame, twins->whole_image, &error), error);
     image_compare(twins->next_image, twins->whole_image, &difference);
     if (!difference.equal)
@@ -135,7 +135,8 @@ static void other_calls_may_come_between(void **state) {
         if (frame % 2 == 0)
             assert_ok(renderer_draw(twins.next, 5 - frame, twins.whole_image, &error), error);
         else
-            assert_false(renderer_draw_next(twins.next, 6, twins.next_image, &(const bool *){NULL}, &(Error){0}));
+            assert_false(
+                renderer_draw_next(twins.next, moment_stored(6), twins.next_image, &(const bool *){NULL}, &(Error){0}));
     }
     close_twins(&twins);
     trajectory_destroy(run);

@@ -86,7 +86,7 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     copy_panel(a, last, &caption);
     copy_panel(b, later, &caption);
     assert_true(image_hash(a) != image_hash(b));
-    assert_true(isnan(picture_apart(&picture, 9)) && picture_apart(&picture, 5) == 0);
+    assert_true(isnan(picture_apart(&picture, moment_stored(9))) && picture_apart(&picture, moment_stored(5)) == 0);
     image_destroy(last);
     image_destroy(later);
     image_destroy(a);
@@ -100,11 +100,11 @@ static void the_largest_distance_of_any_panel_counts(void **state) {
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
     run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
-    assert_true(fabs(picture_apart(&picture, 4) - 2) < 1e-6);
-    assert_true(picture_apart(&picture, 3) == 0);
+    assert_true(fabs(picture_apart(&picture, moment_stored(4)) - 2) < 1e-6);
+    assert_true(picture_apart(&picture, moment_stored(3)) == 0);
     assert_true(fabs(picture.largest_apart - 2) < 1e-6);
     assert_ok(picture_plan(&picture, panels, 1, 640, 360, &error), error);
-    assert_true(isnan(picture_apart(&picture, 4)));
+    assert_true(isnan(picture_apart(&picture, moment_stored(4))));
 }
 
 /* Seen in the header: the distance and nothing else. */
@@ -149,8 +149,8 @@ static void bodies_out_of_view_are_counted(void **state) {
     *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
     *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* not there at all */
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
-    assert_int_equal(panel_count_unseen(&picture, 1, 5), 2);
-    assert_int_equal(panel_count_unseen(&picture, 0, 5), 0);
+    assert_int_equal(panel_count_unseen(&picture, 1, moment_stored(5)), 2);
+    assert_int_equal(panel_count_unseen(&picture, 0, moment_stored(5)), 0);
 }
 
 static void an_absent_body_is_not_drawn(void **state) {
@@ -201,7 +201,7 @@ static void captions_do_not_jump(void **state) {
     int left = 0;
     for (int frame = 0; frame < 1010; frame += 7) {
         drawing_clear(&drawing);
-        picture_draw(&picture, frame, &drawing);
+        picture_draw(&picture, moment_stored(frame), &drawing);
         if (frame == 0) left = drawing.glyphs[0].box[0];
         assert_int_equal(drawing.glyphs[0].box[0], left); /* the "t" of "t = 0.000 s" */
     }
@@ -231,7 +231,7 @@ static void hostile_names_do_no_harm(void **state) {
         Drawing drawing = {0};
         Error error = {0};
         assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
-        picture_draw(&picture, 3, &drawing);
+        picture_draw(&picture, moment_stored(3), &drawing);
         for (size_t i = 0; i < drawing.glyph_count; i++) {
             const int32_t *box = drawing.glyphs[i].box;
             assert_true(box[0] >= 0 && box[0] + box[2] <= 400 && box[1] >= 0 && box[1] + box[3] <= 300);

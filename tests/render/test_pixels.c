@@ -4,6 +4,7 @@
 
 #include "mesa.h"
 #include "render/font.h"
+#include "render/stroke.h"
 #include "screens.h"
 
 #include <math.h>
@@ -141,6 +142,87 @@ static void the_band_tells_quarter_turns(void **state) {
     }
 }
 
+/* What lies below shows inside, and a thick outline fills the box. */
+static void a_hollow_box_is_its_outline_alone(void **state) {
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        Shape hollow = turned(box(47.3, 48.9, 50, 31), 0.17 * i);
+        hollow.hollow = true, hollow.line = WHITE, hollow.fill = 0x123456, hollow.outline = 0.8 + 0.3 * i;
+        double inner = (50 - 2 * hollow.outline) * (31 - 2 * hollow.outline);
+        const Image *image = paint(hollow);
+        assert_near(area(image), 50 * 31 - inner, 0.012 * 50 * 31);
+        assert_int_equal(rgb(image, 47, 48), BLACK);
+        for (int k = 0; k < SCREEN_SIDE * SCREEN_SIDE; k++) /* white over black is grey: no colour of the fill */
+            assert_true(image->pixels[4 * k] == image->pixels[4 * k + 1]);
+    }
+    Shape thick = box(40, 30, 20, 10);
+    thick.hollow = true, thick.line = WHITE, thick.outline = 6;
+    assert_only(paint(thick), (Rect){30, 25, 50, 35}, WHITE);
+}
+
+static void lines_have_their_length_and_thickness(void **state) {
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        double length = 6 * i, t = 3 + 0.5 * i, c = cos(0.4 * i), s = sin(0.4 * i);
+        Point from = {48 - c * length / 2, 48 - s * length / 2}, to = {48 + c * length / 2, 48 + s * length / 2};
+        stroke_line(&drawing, from, to, t, WHITE, &everything);
+        assert_near(area(painted()), length * t + PI * t * t / 4, 0.02 * (length * t + t * t) + 0.4);
+    }
+}
+
+/* A slanted line is the box that it is, though it is drawn in tiles; with a clip as well. */
+static void long_lines_are_drawn_whole(void **state) {
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        double c = cos(0.26 * i), s = sin(0.26 * i), t = 2 + 0.3 * i;
+        const Rect clip = i % 2 == 0 ? everything : (Rect){20, 30, 70, 77};
+        Shape whole = turned(box(48.3, 47.1, 80 + t, t), -0.26 * i);
+        whole.radius = t / 2;
+        drawing_add_shape(&drawing, &whole, &clip);
+        uint64_t hash = image_hash(painted());
+        Point from = {48.3 - 40 * c, 47.1 - 40 * s}, to = {48.3 + 40 * c, 47.1 + 40 * s};
+        stroke_line(&drawing, from, to, t, WHITE, &clip);
+        assert_true(fmin(fabs(c), fabs(s)) < 0.25 || drawing.shape_count > 2);
+        assert_true(image_hash(painted()) == hash);
+    }
+}
+
+/* Dashes of 4 and gaps of 6 thicknesses, with round ends; in one piece, and in pieces that end anywhere. */
+static void dashes_go_on_from_piece_to_piece(void **state) {
+    (void)state;
+    for (int pieces = 1; pieces < 20; pieces += 3) {
+        Pen pen = {2, 0, WHITE, {4, 6, 0, 0}};
+        for (int i = 0; i < pieces; i++)
+            stroke_dashed(&drawing, (Point){8 + 80.0 * i / pieces, 40}, (Point){8 + 80.0 * (i + 1) / pieces, 40}, &pen,
+                          &everything);
+        const Image *image = painted();
+        for (int x = 8; x < 88; x++) {
+            int at = (x - 8) % 20;
+            if (at >= 1 && at < 7) assert_int_equal(pixel(image, x, 39)[0], 255);
+            if (at >= 10 && at < 18) assert_int_equal(pixel(image, x, 39)[0], 0);
+        }
+    }
+}
+
+/* The tip is where the arrow ends, and without a length there is none. */
+static void arrows_point_where_they_end(void **state) {
+    (void)state;
+    const ArrowStyle style = {2, WHITE, BLACK};
+    for (int i = 0; i < 16; i++) {
+        Point to = {48 + 30 * cos(0.39 * i), 48 + 30 * sin(0.39 * i)};
+        stroke_arrow(&drawing, (Point){48, 48}, to, i % 2 == 0, &style, &everything);
+        const Image *image = painted();
+        assert_true(pixel(image, (int)to.x, (int)to.y)[0] > 100 && pixel(image, 48, 48)[0] > 100);
+        int beyond_x = (int)(48 + 34 * cos(0.39 * i)), beyond_y = (int)(48 + 34 * sin(0.39 * i));
+        assert_int_equal(pixel(image, beyond_x, beyond_y)[0], 0);
+    }
+    stroke_arrow(&drawing, (Point){48, 48}, (Point){48, 48}, false, &style, &everything);
+    stroke_arrow(&drawing, (Point){48, 48}, (Point){NAN, 48}, true, &style, &everything);
+    stroke_line(&drawing, (Point){INFINITY, 48}, (Point){0, 48}, 2, WHITE, &everything);
+    stroke_dashed(&drawing, (Point){0, 0}, (Point){INFINITY, 0}, &(Pen){2, 0, WHITE, {4, 6, 0, 0}}, &everything);
+    assert_int_equal(drawing.shape_count, 0);
+}
+
 static void nothing_is_painted_outside_the_clip(void **state) {
     (void)state;
     Shape shape = turned(box(40, 40, 400, 400), 0.3);
@@ -239,6 +321,11 @@ int main(void) {
         cmocka_unit_test(small_movements_show),
         cmocka_unit_test(outline_and_fill_meet_where_they_should),
         cmocka_unit_test(the_band_tells_quarter_turns),
+        cmocka_unit_test(a_hollow_box_is_its_outline_alone),
+        cmocka_unit_test(lines_have_their_length_and_thickness),
+        cmocka_unit_test(long_lines_are_drawn_whole),
+        cmocka_unit_test(dashes_go_on_from_piece_to_piece),
+        cmocka_unit_test(arrows_point_where_they_end),
         cmocka_unit_test(nothing_is_painted_outside_the_clip),
         cmocka_unit_test(large_boxes_keep_their_edges),
         cmocka_unit_test(what_has_no_place_is_not_painted),

@@ -2,12 +2,11 @@
 /* Sequences: the same files from any number of processes, and every way to fail has a reason. */
 #include "testing.h"
 
-#include "common/file.h"
+#include "folders.h"
 #include "mesa.h"
 #include "render/render.h"
 #include "runs.h"
 
-#include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -36,46 +35,17 @@ static RenderOptions options_for(const char *directory, int jobs) {
     return (RenderOptions){.width = 160, .height = 90, .last = -1, .jobs = jobs, .directory = directory};
 }
 
-static const char *frame_path(const char *directory, int frame) {
-    static char path[2][512];
-    static int next;
-    next = !next;
-    snprintf(path[next], sizeof path[next], "%s/frame_%06d.png", directory, frame);
-    return path[next];
-}
-
-static int count_files(const char *directory) {
-    DIR *stream = opendir(directory);
-    int count = 0;
-    assert_non_null(stream);
-    for (struct dirent *entry; (entry = readdir(stream)) != NULL;) count += entry->d_name[0] != '.';
-    closedir(stream);
-    return count;
-}
-
-static void assert_same_file(const char *a, const char *b) {
-    Error error = {0};
-    size_t size_a, size_b;
-    char *data_a = file_read(a, 1 << 24, &size_a, &error), *data_b = file_read(b, 1 << 24, &size_b, &error);
-    assert_ok(data_a != NULL && data_b != NULL, error);
-    assert_true(size_a == size_b && memcmp(data_a, data_b, size_a) == 0);
-    free(data_a);
-    free(data_b);
-}
-
 static void any_number_of_jobs_writes_the_same_files(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions one = options_for(temporary_path("one/deep"), 1);
-    assert_ok(render_sequence(panels, 2, &one, NULL, &error), error);
-    assert_int_equal(count_files(one.directory), FRAMES);
+    assert_ok(render_sequence(panels, 2, &one, NULL, NULL, &error), error);
+    assert_int_equal(count_files(one.directory, ".png"), FRAMES);
     for (int jobs = 2; jobs <= 20; jobs += 9) {
         RenderOptions many = options_for(temporary_path("many"), jobs);
         many.context = jobs == 11 ? RENDER_CONTEXT_EGL : RENDER_CONTEXT_OSMESA;
-        assert_ok(render_sequence(panels, 2, &many, NULL, &error), error);
-        assert_int_equal(count_files(many.directory), FRAMES);
-        for (int frame = 0; frame < FRAMES; frame++)
-            assert_same_file(frame_path(one.directory, frame), frame_path(many.directory, frame));
+        assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
+        assert_same_folder(one.directory, many.directory);
     }
 }
 
@@ -84,8 +54,8 @@ static void a_sequence_holds_the_frames_of_the_renderer(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("range"), 2);
     options.first = 3, options.last = 7;
-    assert_ok(render_sequence(panels, 2, &options, NULL, &error), error);
-    assert_int_equal(count_files(options.directory), 5);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    assert_int_equal(count_files(options.directory, ".png"), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     Image *image = image_create(options.width, options.height, &error);
     for (int frame = 3; frame <= 7; frame++) {
@@ -111,7 +81,7 @@ static void frames_tell_their_origin(void **state) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("texts"), 1);
     options.first = options.last = FRAMES - 1;
-    assert_ok(render_sequence(panels, 2, &options, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     const char *path = frame_path(options.directory, FRAMES - 1);
     char hashes[64];
     snprintf(hashes, sizeof hashes, "%016llx | %016llx",
@@ -144,7 +114,7 @@ static void progress_counts_the_frames(void **state) {
     Error error = {0};
     Listener listener = {.stop_at = 1000};
     RenderOptions options = options_for(temporary_path("progress"), 3);
-    assert_ok(render_sequence(panels, 2, &options, &(Progress){listen_to, &listener}, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error), error);
     assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
 }
 
@@ -156,9 +126,9 @@ static void a_sequence_can_be_stopped(void **state) {
     panels[0] = runs[0] = run_make("engine", 2000);
     Listener listener = {.stop_at = 5};
     RenderOptions options = options_for(temporary_path("stopped"), 3);
-    assert_false(render_sequence(panels, 2, &options, &(Progress){listen_to, &listener}, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error));
     assert_error(error, ERROR_INPUT, "stopped");
-    assert_true(count_files(options.directory) < 1000);
+    assert_true(count_files(options.directory, ".png") < 1000);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
     for (int frame = 0; access(frame_path(options.directory, frame), F_OK) == 0; frame++) {
         Image *image = image_read_png(frame_path(options.directory, frame), &(Error){0});
@@ -181,12 +151,21 @@ static void a_full_disk_is_told(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
-    limit_files(100, SIG_IGN);
-    bool ok = render_sequence(panels, 2, &options, NULL, &error);
-    limit_files(RLIM_INFINITY, SIG_DFL);
-    assert_false(ok);
-    assert_error(error, ERROR_SYSTEM, "full/frame_00000");
-    assert_int_equal(count_files(options.directory), 0);
+    /* No room for the manifest, for a picture (of 3 kB), for what the manifest grows by. */
+    static const struct {
+        rlim_t bytes;
+        const char *text;
+    } cases[] = {{100, "full/manifest.json.part"}, {2000, "full/frame_00000"}};
+    for (int i = 0; i < 2; i++) {
+        error = (Error){0};
+        limit_files(cases[i].bytes, SIG_IGN);
+        bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
+        limit_files(RLIM_INFINITY, SIG_DFL);
+        assert_false(ok);
+        assert_error(error, ERROR_SYSTEM, cases[i].text);
+        assert_int_equal(count_files(options.directory, ".png"), 0);
+        assert_int_equal(count_files(options.directory, ".tmp"), 0);
+    }
 }
 
 /* The same limit, unheeded, kills the process. */
@@ -194,8 +173,8 @@ static void a_killed_process_is_told(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
-    limit_files(100, SIG_DFL);
-    bool ok = render_sequence(panels, 2, &options, NULL, &error);
+    limit_files(2000, SIG_DFL);
+    bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
     assert_error(error, ERROR_SYSTEM, "a drawing process was ended by signal");
@@ -208,11 +187,11 @@ static void folders_that_cannot_be_written_are_refused(void **state) {
     const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
     assert_ok(file_write(file, "", 0, &error), error);
     RenderOptions options = options_for(inside, 1);
-    assert_false(render_sequence(panels, 2, &options, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_error(error, ERROR_SYSTEM, "file");
     error = (Error){0};
     options.directory = "/proc/frames";
-    assert_false(render_sequence(panels, 2, &options, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_error(error, ERROR_SYSTEM, "/proc");
 }
 
@@ -235,7 +214,7 @@ static void wrong_options_are_refused(void **state) {
         Error error = {0};
         RenderOptions options = wrong[i].options;
         options.directory = directory;
-        assert_false(render_sequence(panels, 2, &options, NULL, &error));
+        assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
         assert_error(error, ERROR_INPUT, wrong[i].text);
         assert_int_not_equal(access(directory, F_OK), 0);
     }

@@ -117,7 +117,7 @@ int main(int argc, char **argv) {
     for (int frame = 0; frame < job.frames; frame++) {
         char path[512];
         drawing_clear(&drawing);
-        picture_draw(&picture, frame, &drawing);
+        picture_draw(&picture, moment_stored(frame), &drawing);
         draw_rects(cairo, &drawing);
         for (int i = 0; i < PANELS; i++) draw_panel(cairo, &picture, i, frame);
         draw_texts(cairo, &picture, frame);

@@ -6,6 +6,7 @@
 #include "runs.h"
 
 #include "common/file.h"
+#include "common/hash.h"
 #include "render/renderer.h"
 #include "render/sink.h"
 
@@ -74,7 +75,7 @@ static bool compress_rows(IsalSink *sink, size_t *size, Error *error) {
 }
 
 static bool write_isal(void *context, int frame, const Image *image, const bool *changed, const ImageText *texts,
-                       int count, Error *error) {
+                       int count, uint64_t *hash, Error *error) {
     IsalSink *sink = context;
     char path[512];
     size_t compressed, size = IDAT_AT;
@@ -86,6 +87,7 @@ static bool write_isal(void *context, int frame, const Image *image, const bool 
     if (sink->behind == 0) sink->first = frame;
     sink->behind = frame + 1;
     name_frame(sink, frame, path);
+    *hash = hash_xxh3(sink->file, size);
     return file_write_soon(path, sink->file, size, error);
 }
 
@@ -126,6 +128,7 @@ static bool draw_range(const Picture *picture, const Job *job, bool own, int fir
     FrameSink frames;
     IsalSink isal;
     const bool *changed;
+    uint64_t hash;
     Renderer *renderer = renderer_create_planned(picture, &options, error);
     Image *image = renderer == NULL ? NULL : image_create(job->width, job->height, error);
     if (image == NULL || !(own ? sink_open_png(&frames, job->directory, job->width, job->height, PNG_FAST, error)
@@ -133,8 +136,8 @@ static bool draw_range(const Picture *picture, const Job *job, bool own, int fir
         return false;
     bool ok = true;
     for (int frame = first; ok && frame < behind; frame++)
-        ok = renderer_draw_next(renderer, frame, image, &changed, error) &&
-             frames.write(frames.context, frame, image, changed, NULL, 0, error);
+        ok = renderer_draw_next(renderer, moment_stored(frame), image, &changed, error) &&
+             frames.write(frames.context, frame, image, changed, NULL, 0, &hash, error);
     ok = frames.close(frames.context, error) && ok;
     image_destroy(image);
     renderer_destroy(renderer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/document_write.h"
+#include "common/base64.h"
 
 #include <stdint.h>
 

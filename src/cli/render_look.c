@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/render_look.h"
+
+#include "render/picture.h"
+#include "study/chart_csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { COMPARE = 512, SHOW, CAMERA, THEME, COSTS, LIST_SIZE = 256 };
+
+static const struct argp_option option_table[] = {
+    {NULL, 0, NULL, 0, "What the pictures show:", 2},
+    {"compare", COMPARE, "KIND", 0,
+     "split: a panel for each run (default); overlay: all in one, all but the first as outlines; difference: coloured "
+     "by "
+     "the distance from the first run",
+     0},
+    {"show", SHOW, "LIST", 0,
+     "Of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
+     "timeline (distance from the first run over time), parted by commas",
+     0},
+    {"camera", CAMERA, "KIND", 0,
+     "fit: at rest (default); bomb: follows it; divergence: goes near where a body is first 1 mm apart", 0},
+    {"theme", THEME, "light|dark", 0, "Colours of the page (default: light)", 0},
+    {"costs", COSTS, "FILE.csv", 0, "Add what a step costs to the captions: a chart.csv of 'twinbox chart'", 0},
+    {0}};
+
+static error_t parse(int key, char *value, struct argp_state *state) {
+    RenderLookOptions *options = state->input;
+    switch (key) {
+    case COMPARE: options->compare = value; break;
+    case SHOW: options->show = value; break;
+    case CAMERA: options->camera = value; break;
+    case THEME: options->theme = value; break;
+    case COSTS: options->costs = value; break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+const struct argp render_look_argp = {option_table, parse, NULL, NULL, NULL, NULL, NULL};
+
+/* The place of a name of `length` characters in a list; -1 where it is not there. */
+static int find(const char *const *names, const char *name, size_t length) {
+    for (int i = 0; names[i] != NULL; i++)
+        if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0) return i;
+    return -1;
+}
+
+static bool unknown(const char *option, const char *name, size_t length, const char *const *names, Error *error) {
+    char list[LIST_SIZE] = "";
+    for (int i = 0; names[i] != NULL; i++) {
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", names[i]);
+    }
+    int shown = length < 60 ? (int)length : 60;
+    return error_input(error, option, "'%.*s' is none of %s", shown, name, list);
+}
+
+/* NULL leaves *index as it is. */
+static bool read_name(const char *option, const char *name, const char *const *names, int *index, Error *error) {
+    if (name == NULL) return true;
+    *index = find(names, name, strlen(name));
+    return *index >= 0 || unknown(option, name, strlen(name), names, error);
+}
+
+static bool read_list(const char *option, const char *list, const char *const *names, unsigned *bits, Error *error) {
+    while (list != NULL) {
+        size_t length = strcspn(list, ",");
+        int i = find(names, list, length);
+        if (i < 0) return unknown(option, list, length, names, error);
+        *bits |= 1u << i;
+        list = list[length] == ',' ? list + length + 1 : NULL;
+    }
+    return true;
+}
+
+bool render_look_read(const RenderLookOptions *options, RenderLook *look, Error *error) {
+    int compare = 0, camera = 0, theme = 0;
+    if (!read_name("--compare", options->compare, look_compare_names, &compare, error) ||
+        !read_name("--camera", options->camera, look_camera_names, &camera, error) ||
+        !read_name("--theme", options->theme, look_theme_names, &theme, error) ||
+        !read_list("--show", options->show, look_show_names, &look->show, error))
+        return false;
+    look->compare = (LookCompare)compare;
+    look->camera = (LookCamera)camera;
+    look->theme = (LookTheme)theme;
+    return true;
+}
+
+/* "momentum:k=20" is method "momentum" with setting "k=20". A run without settings has the scene's, which a trajectory does
+   not tell: any setting fits it, if there is but one in the table. The network is no setting of the chart's. */
+static bool is_of(const ChartRow *row, const Trajectory *run) {
+    size_t length = strcspn(run->method, ":");
+    if (strncmp(row->method, run->method, length) != 0 || row->method[length] != '\0') return false;
+    const char *settings = run->method[length] == ':' ? run->method + length + 1 : "";
+    if (settings[0] == '\0' || strncmp(settings, "network=", 8) == 0) return true;
+    return strcmp(row->setting, settings) == 0;
+}
+
+/* NULL where there is none, or where two could be meant. */
+static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run) {
+    const ChartRow *found = NULL;
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *row = &table->rows[i];
+        if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
+            isnan(row->us_solver) || !is_of(row, run))
+            continue;
+        if (found != NULL) return NULL;
+        found = row;
+    }
+    return found;
+}
+
+static bool read_costs(RenderLookOptions *options, RenderLook *look, const Panels *panels, Error *error) {
+    ChartTable table;
+    if (!chart_csv_read(&table, options->costs, error)) return false;
+    int found = 0;
+    for (int i = 0; i < panels->count; i++) {
+        const ChartRow *row = find_cost(&table, panels->runs[i]);
+        if (row == NULL) continue;
+        snprintf(options->cost_texts[i], sizeof options->cost_texts[i], "%.3g \xC2\xB5s a step at the impact",
+                 row->us_solver);
+        look->costs[i] = options->cost_texts[i];
+        found++;
+    }
+    chart_csv_free(&table);
+    return found > 0 ||
+           error_input(error, options->costs, "has no time of any of these runs in closed loop at the impact");
+}
+
+bool render_look_apply(RenderLookOptions *options, RenderLook *look, const Panels *panels, Error *error) {
+    return look_check(look, (const Trajectory *const *)panels->runs, panels->count, error) &&
+           (options->costs == NULL || read_costs(options, look, panels, error));
+}

@@ -1,0 +1,7 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#pragma once
+#include <stddef.h>
+#include <stdio.h>
+
+/* Bytes as base64 (RFC 4648). */
+void base64_put(FILE *file, const void *data, size_t size);

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A picture for each matrix, a pixel for each weight; where there are more weights than pixels, the largest of each pixel
+   is shown. */
+#include "common/file.h"
+#include "figure/network_drawing.h"
+#include "figure/run_view.h"
+#include "figure/type.h"
+#include "render/style.h"
+
+#include <math.h>
+
+enum { MATRICES_MOST = NETWORK_MAX_LAYERS };
+
+static const double widest = 56, narrowest = 36, gap = 4, shape = 0.6; /* mm of a picture; height over width */
+static const double small_type = 0.85;
+
+typedef struct Matrix {
+    const char *name;
+    const char *activation;
+    const float *weights; /* [outputs, inputs], or, by input, [inputs, outputs] */
+    int inputs, outputs;
+    bool by_input;
+} Matrix;
+
+typedef struct Matrices {
+    const FigureSpec *spec;
+    int count, columns, rows;
+    const Matrix *matrices;
+    double width, height, row; /* mm of a picture; from one row of pictures to the next */
+} Matrices;
+
+static double weight_at(const Matrix *matrix, int input, int output) {
+    size_t i = matrix->by_input ? (size_t)input * (size_t)matrix->outputs + (size_t)output
+                                : (size_t)output * (size_t)matrix->inputs + (size_t)input;
+    return (double)matrix->weights[i];
+}
+
+static double find_largest(const Matrix *matrix) {
+    double largest = 0;
+    for (size_t i = 0; i < (size_t)matrix->inputs * (size_t)matrix->outputs; i++)
+        largest = fmax(largest, fabs((double)matrix->weights[i]));
+    return largest;
+}
+
+/* Of the weights that a pixel stands for, the largest. */
+static double weight_of_pixel(const Matrix *matrix, int x, int y, int columns, int rows) {
+    int first = (int)((int64_t)x * matrix->inputs / columns), top = (int)((int64_t)y * matrix->outputs / rows);
+    int end = (int)((int64_t)(x + 1) * matrix->inputs / columns),
+        bottom = (int)((int64_t)(y + 1) * matrix->outputs / rows);
+    double largest = 0;
+    for (int output = top; output < bottom || output == top; output++)
+        for (int input = first; input < end || input == first; input++) {
+            double weight = weight_at(matrix, input, output);
+            if (fabs(weight) > fabs(largest)) largest = weight;
+        }
+    return largest;
+}
+
+static bool put_picture(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low, double largest,
+                        Error *error) {
+    const double dots = all->spec->dpi / 25.4;
+    const int columns = (int)fmax(rint(all->width * dots), 1), rows = (int)fmax(rint(all->height * dots), 1);
+    Image *image = image_create(columns, rows, error);
+    if (image == NULL) return false;
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++) {
+            double weight = weight_of_pixel(matrix, x, y, columns, rows);
+            uint32_t colour = weight_colour(largest > 0 ? weight / largest : 0);
+            uint8_t *pixel = image->pixels + 4 * ((size_t)y * (size_t)columns + (size_t)x);
+            pixel[0] = (uint8_t)(colour >> 16), pixel[1] = (uint8_t)(colour >> 8), pixel[2] = (uint8_t)colour;
+            pixel[3] = 255;
+        }
+    sketch_image(sketch, image, low, columns / dots);
+    image_destroy(image);
+    return true;
+}
+
+static bool put_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
+    const Matrix *matrix = &all->matrices[i];
+    const double points = all->spec->points, line = line_height(points), small = small_type * points;
+    const double largest = find_largest(matrix), column = i % all->columns;
+    const double top = sketch->height - network_title_height(all->spec) - (i / all->columns) * all->row;
+    const Point low = {0.2 + column * (all->width + gap), top - line - all->height};
+    char words[96];
+    if (!put_picture(all, sketch, matrix, low, largest, error)) return false;
+    sketch_rectangle(sketch, low, (Point){low.x + all->width, low.y + all->height},
+                     &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
+    snprintf(words, sizeof words, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
+             matrix->activation);
+    words_fit(words, points, all->width);
+    sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
+    snprintf(words, sizeof words, "%d to %d, at most %.2g", matrix->inputs, matrix->outputs, largest);
+    words_fit(words, small, all->width);
+    sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
+                words);
+    return true;
+}
+
+/* From the largest below 0 to the largest above it. */
+static void put_scale(const Matrices *all, Sketch *sketch) {
+    enum { STEPS = 20 };
+    const double points = small_type * all->spec->points, y = 0.5 * line_height(points), high = 2, cell = 1;
+    const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
+    sketch_text(sketch, (Point){0.2, y}, &words, "below 0");
+    double x = 0.2 + type_width("below 0", points) + 1.2;
+    const double start = x;
+    for (int i = 0; i < STEPS; i++, x += cell) {
+        const Pen pen = {weight_colour(2.0 * i / (STEPS - 1) - 1), 1, NO_COLOUR, 0, NULL};
+        sketch_rectangle(sketch, (Point){x, y - high / 2}, (Point){x + cell, y + high / 2}, &pen);
+    }
+    sketch_rectangle(sketch, (Point){start, y - high / 2}, (Point){x, y + high / 2},
+                     &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
+    sketch_text(sketch, (Point){x + 1.2, y}, &words, "above 0; inputs from left to right");
+}
+
+static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, const char *title,
+                     Error *error) {
+    Matrices all = {.spec = spec, .count = count, .matrices = matrices};
+    const double usable = spec->width - 0.4, line = line_height(spec->points);
+    all.columns = (int)fmax(floor((usable + gap) / (narrowest + gap)), 1);
+    if (all.columns > count) all.columns = count;
+    all.rows = (count + all.columns - 1) / all.columns;
+    all.width = fmin((usable - (all.columns - 1) * gap) / all.columns, widest);
+    all.height = shape * all.width;
+    all.row = all.height + 2.5 * line;
+    sketch_begin(sketch, spec->width, network_title_height(spec) + all.rows * all.row + 1.2 * line);
+    for (int i = 0; i < count; i++)
+        if (!put_matrix(&all, sketch, i, error)) return false;
+    put_scale(&all, sketch);
+    put_network_title(sketch, spec, title);
+    return true;
+}
+
+bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
+    Matrix matrices[MATRICES_MOST];
+    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MOST][24];
+    for (int i = 0; i < network->layers; i++) {
+        snprintf(names[i], sizeof names[i], "layer %d", i + 1);
+        matrices[i] = (Matrix){names[i],
+                               activation_word(network->activations[i]),
+                               network->weights[i],
+                               network->widths[i],
+                               network->widths[i + 1],
+                               false};
+    }
+    write_widths(widths, network);
+    snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
+             network_parameter_count(network));
+    return draw_all(sketch, spec, matrices, network->layers, title, error);
+}
+
+static Matrix projection_matrix(const char *name, const Projection *projection) {
+    return (Matrix){name, "", projection->rows, projection->from, projection->to, true};
+}
+
+static Matrix layer_matrix(const char *name, const SlotLayer *layer) {
+    return (Matrix){name, "tanh", layer->rows, layer->from, layer->to, true};
+}
+
+bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const SlotNetwork *network, Error *error) {
+    const Matrix matrices[] = {
+        projection_matrix("bomb's state", &network->bomb_state),
+        projection_matrix("others' state", &network->state),
+        projection_matrix("contacts there", &network->present),
+        projection_matrix("warm impulses", &network->warm),
+        layer_matrix("layer 1", &network->first),
+        layer_matrix("layer 2", &network->second),
+        {"impulses", "linear", network->rows, network->second.to, 2 * network->slot_count, false},
+    };
+    char title[NETWORK_TEXT_SIZE + 160];
+    snprintf(title, sizeof title, "%s: %d bodies, %d contacts, %zu parameters",
+             spec->network + file_folder_length(spec->network), network->body_count, network->slot_count,
+             network->parameter_count);
+    return draw_all(sketch, spec, matrices, (int)(sizeof matrices / sizeof *matrices), title, error);
+}

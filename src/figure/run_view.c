@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "figure/run_view.h"
+
+#include "figure/type.h"
+#include "render/font.h"
+#include "render/style.h"
+#include "trajectory/trajectory_states.h"
+
+#include <math.h>
+#include <string.h>
+
+static double last_time(const Trajectory *run, int after) { return (run->frames - 1 - after) * (double)run->dt; }
+
+static bool check_time(const FigureSpec *spec, double time, int after, Error *error) {
+    for (int i = 0; i < spec->run_count; i++) {
+        double last = last_time(spec->runs[i], after);
+        if (time < 0 || time > last + (double)spec->runs[i]->dt / 2)
+            return error_input(error, spec->paths[i], "shows no moment at %g s: %s from 0 to %g s", time,
+                               after > 0 ? "steps follow those" : "it goes", last);
+    }
+    return true;
+}
+
+bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error) {
+    const double dt = (double)spec->runs[0]->dt;
+    if (!check_time(spec, 0, after, error)) return false;
+    double last = HUGE_VAL;
+    for (int i = 0; i < spec->run_count; i++) last = fmin(last, last_time(spec->runs[i], after));
+    *count = spec->time_count > 0 ? spec->time_count : spec->moments > 0 ? spec->moments : moments;
+    for (int i = 0; i < *count; i++) {
+        double time = spec->time_count > 0 ? spec->times[i] : *count > 1 ? last * i / (*count - 1) : last;
+        if (!check_time(spec, time, after, error)) return false;
+        frames[i] = (int)lrint(time / dt);
+    }
+    return true;
+}
+
+bool run_check_worlds(const FigureSpec *spec, Error *error) {
+    char what[256];
+    for (int i = 1; i < spec->run_count; i++)
+        if (trajectory_different_worlds(spec->runs[0], spec->runs[i], what, sizeof what))
+            return error_input(error, spec->paths[i], "cannot be shown beside %s: %s", spec->paths[0], what);
+    return true;
+}
+
+int run_first_touch(const Trajectory *run) {
+    for (int step = 1; run->bomb >= 0 && step < run->frames; step++)
+        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
+            const TrajectoryContact *contact = &run->contacts[i];
+            if ((contact->a == run->bomb || contact->b == run->bomb) && !run->fixed[contact->a] &&
+                !run->fixed[contact->b])
+                return step;
+        }
+    return -1;
+}
+
+/* Of a box, from its place. */
+static void reach(const Trajectory *run, int frame, int body, double *x, double *y) {
+    double angle = (double)run->angle[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    double c = fabs(cos(angle)), s = fabs(sin(angle));
+    double half_x = (double)run->size[body].x / 2, half_y = (double)run->size[body].y / 2;
+    *x = c * half_x + s * half_y;
+    *y = s * half_x + c * half_y;
+}
+
+/* Beyond, nothing could be made out. */
+static const double farthest = 1e5; /* m */
+
+static void widen(double ends[4], const Trajectory *run, int frame, int body) {
+    Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    double x, y;
+    reach(run, frame, body, &x, &y);
+    if (!(fabs((double)at.x) + x < farthest && fabs((double)at.y) + y < farthest)) return; /* nor for NaN */
+    ends[0] = fmin(ends[0], (double)at.x - x), ends[1] = fmin(ends[1], (double)at.y - y);
+    ends[2] = fmax(ends[2], (double)at.x + x), ends[3] = fmax(ends[3], (double)at.y + y);
+}
+
+WorldWindow run_window(const Trajectory *run, const int *frames, int count) {
+    const double margin_share = 0.04, least_margin = 0.4; /* m */
+    Vec2 size = run->camera_size, center = run->camera_center;
+    if (size.x > 0 && size.y > 0 && (double)size.x < farthest && (double)size.y < farthest)
+        return (WorldWindow){(double)(center.x - size.x / 2), (double)(center.y - size.y / 2), (double)size.x,
+                             (double)size.y};
+    double ends[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (int fixed = 0; fixed < 2 && ends[0] > ends[2]; fixed++)
+        for (int i = 0; i < count; i++)
+            for (int body = 0; body < run->bodies; body++)
+                if ((run->fixed[body] != 0) == fixed) widen(ends, run, frames[i], body);
+    if (ends[0] > ends[2]) return (WorldWindow){-1, -1, 2, 2};
+    double margin = fmax(margin_share * fmax(ends[2] - ends[0], ends[3] - ends[1]), least_margin);
+    return (WorldWindow){ends[0] - margin, ends[1] - margin, ends[2] - ends[0] + 2 * margin,
+                         ends[3] - ends[1] + 2 * margin};
+}
+
+void run_window_widen(WorldWindow *window, double shape) {
+    double more = fmax(shape * window->height - window->width, 0);
+    window->left -= more / 2;
+    window->width += more;
+}
+
+int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window) {
+    int count = 0;
+    for (int body = 0; body < run->bodies; body++) {
+        if (run->fixed[body] || !trajectory_has(run, frame, body)) continue;
+        Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+        double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
+        count += !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
+    }
+    return count;
+}
+
+bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, double height, double dpi,
+                     Error *error) {
+    const double dots = dpi / 25.4, scale = fmin(width / window->width, height / window->height);
+    *cells = (RunCells){.window = *window};
+    cells->columns = (int)fmax(floor(dots * scale * window->width), 1);
+    cells->rows = (int)fmax(floor(dots * scale * window->height), 1);
+    cells->width = cells->columns / dots;
+    cells->height = cells->rows / dots;
+    cells->scale = scale;
+    cells->camera = (Camera){dots * scale, -dots * scale * window->left, cells->rows + dots * scale * window->bottom};
+    if (!sketch_check_pixels(cells->width, cells->height, dpi, error)) return false;
+    cells->still = still_create(cells->columns, cells->rows, error);
+    return cells->still != NULL;
+}
+
+void run_cells_free(RunCells *cells) {
+    still_destroy(cells->still);
+    cells->still = NULL;
+}
+
+Image *run_cells_shoot(RunCells *cells, const Trajectory *run, int frame, int colours, StillParts parts, Error *error) {
+    const StillShot shot = {run, frame, colours, parts, cells->camera};
+    Image *image = image_create(cells->columns, cells->rows, error);
+    if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
+    image_destroy(image);
+    return NULL;
+}
+
+bool run_cells_put(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, int colours,
+                   Error *error) {
+    Image *image = run_cells_shoot(cells, run, frame, colours, STILL_ALL, error);
+    if (image == NULL) return false;
+    sketch_image(sketch, image, low, cells->width);
+    image_destroy(image);
+    return true;
+}
+
+View run_cells_view(const RunCells *cells, Point low) {
+    const WorldWindow *window = &cells->window;
+    /* The camera's origin is the cell's lower left corner. */
+    return (View){low,
+                  {low.x + cells->width, low.y + cells->height},
+                  {window->left + cells->width / 2 / cells->scale, window->bottom + cells->height / 2 / cells->scale},
+                  cells->scale};
+}
+
+void run_cells_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
+    sketch_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
+}
+
+double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
+
+void words_fit(char *words, double points, double width) {
+    static const char ellipsis[] = "\xE2\x80\xA6";
+    if (type_width(words, points) <= width) return;
+    double room = width - type_width(ellipsis, points);
+    const char *end = words, *next = words;
+    for (double used = 0; *next != '\0'; end = next) {
+        used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
+        if (used > room) break;
+    }
+    /* An ellipsis takes as many bytes as three characters: of fewer that are left out there is no room for it. */
+    size_t kept = (size_t)(end - words), left = strlen(words) - kept;
+    if (left >= sizeof ellipsis - 1)
+        memcpy(words + kept, ellipsis, sizeof ellipsis);
+    else
+        words[kept] = '\0';
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "image/flip_filter.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static int at_most(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
+
+/* Equation 3's constants: the weight and the width of up to two Gaussians. */
+static const struct {
+    double weight[2], width[2];
+} sensitivity[] = {{{1, 0}, {0.0047, 0}}, {{1, 0}, {0.0053, 0}}, {{34.1, 13.5}, {0.04, 0.025}}};
+
+void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degree) {
+    double volume[2] = {0, 0};
+    /* All channels reach as far as the widest does: three of its standard deviations. */
+    int radius = at_most(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
+    blur->count = sensitivity[channel].weight[1] > 0 ? 2 : 1;
+    for (int i = 0; i < blur->count; i++) {
+        FlipKernel *kernel = &blur->kernels[i];
+        double sum = 0, width = sensitivity[channel].width[i];
+        kernel->radius = radius;
+        for (int k = -radius; k <= radius; k++) sum += exp(-PI * PI / width * pow(k / pixels_per_degree, 2));
+        for (int k = -radius; k <= radius; k++)
+            kernel->weights[k + radius] = (float)(exp(-PI * PI / width * pow(k / pixels_per_degree, 2)) / sum);
+        volume[i] = sensitivity[channel].weight[i] * sqrt(PI / width) * sum * sum;
+    }
+    for (int i = 0; i < blur->count; i++) blur->share[i] = (float)(volume[i] / (volume[0] + volume[1]));
+}
+
+/* Scales what is above 0 to a sum of 1, and what is below to -1. */
+static void normalise(FlipKernel *kernel, const double *weights) {
+    double above = 0, below = 0;
+    int count = 2 * kernel->radius + 1;
+    for (int i = 0; i < count; i++) *(weights[i] > 0 ? &above : &below) += weights[i];
+    for (int i = 0; i < count; i++) kernel->weights[i] = (float)(weights[i] / (weights[i] > 0 ? above : -below));
+}
+
+void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
+    enum { LARGEST = 2 * FLIP_RADIUS_MAX + 1 };
+    double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: a feature as wide as the eye sees best */
+    int radius = at_most(ceil(3 * deviation));
+    double across[LARGEST], edge[LARGEST], point[LARGEST];
+    for (int k = -radius; k <= radius; k++) {
+        double gaussian = exp(-k * k / (2 * deviation * deviation));
+        across[k + radius] = gaussian;
+        edge[k + radius] = -k * gaussian;
+        point[k + radius] = (k * k / (deviation * deviation) - 1) * gaussian;
+    }
+    features->across.radius = features->edge.radius = features->point.radius = radius;
+    normalise(&features->across, across);
+    normalise(&features->edge, edge);
+    normalise(&features->point, point);
+}
+
+static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
+
+/* Weight by weight, so that the compiler takes many columns at once. */
+static void add_weighted(const float *from, int count, float weight, float *to) {
+    for (int i = 0; i < count; i++) to[i] += weight * from[i];
+}
+
+/* padded has room for a row and a kernel. */
+static void filter_row(const float *from, int width, const FlipKernel *kernel, float *padded, float *to) {
+    int radius = kernel->radius;
+    for (int i = 0; i < width + 2 * radius; i++) padded[i] = from[inside(i - radius, width)];
+    memset(to, 0, (size_t)width * sizeof *to);
+    for (int k = 0; k <= 2 * radius; k++) add_weighted(padded + k, width, kernel->weights[k], to);
+}
+
+static void filter_columns(const FlipPlane *from, int y, const FlipKernel *kernel, float *to) {
+    memset(to, 0, (size_t)from->width * sizeof *to);
+    for (int k = -kernel->radius; k <= kernel->radius; k++) {
+        const float *row = from->values + (size_t)inside(y + k, from->height) * (size_t)from->width;
+        add_weighted(row, from->width, kernel->weights[k + kernel->radius], to);
+    }
+}
+
+void flip_filter(const FlipPlane *from, const FlipKernel *x, const FlipKernel *y, FlipPlane *scratch, float *padded,
+                 FlipPlane *to) {
+    for (int row = 0; row < from->height; row++) {
+        size_t first = (size_t)row * (size_t)from->width;
+        filter_row(from->values + first, from->width, x, padded, scratch->values + first);
+    }
+    for (int row = 0; row < from->height; row++)
+        filter_columns(scratch, row, y, to->values + (size_t)row * (size_t)from->width);
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the manifest says. */
+#include "render/manifest_print.h"
+
+#include "common/file.h"
+#include "common/hash.h"
+#include "common/json.h"
+#include "render/frame_texts.h"
+#include "render/sink.h"
+
+#include <stdlib.h>
+
+enum { FORMAT = 1 };
+
+static uint64_t add(uint64_t hash, const void *data, size_t size) {
+    uint64_t parts[] = {hash, hash_xxh3(data, size)};
+    return hash_xxh3(parts, sizeof parts);
+}
+
+/* All of a run that a picture may show. */
+static uint64_t hash_run(const Trajectory *run) {
+    size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
+    uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
+    hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
+    hash = add(hash, &run->camera_center, sizeof run->camera_center);
+    hash = add(hash, &run->camera_size, sizeof run->camera_size);
+    hash = add(hash, run->position, poses * sizeof *run->position);
+    hash = add(hash, run->angle, poses * sizeof *run->angle);
+    hash = add(hash, run->velocity, poses * sizeof *run->velocity);
+    hash = add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
+    hash = add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
+    return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
+}
+
+static void put_runs(JsonWriter *json, const Manifest *manifest) {
+    json_begin_array(json, "runs", JSON_LINES);
+    for (int i = 0; i < manifest->picture->count; i++) {
+        const Trajectory *run = manifest->picture->panels[i];
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_text(json, "scene", run->scene);
+        json_put_hash(json, "scene_hash", run->scene_hash);
+        json_put_text(json, "method", run->method);
+        json_put_text(json, "note", manifest->options->notes[i]);
+        json_put_text(json, "cost", manifest->options->look.costs[i]);
+        json_put_int(json, "frames", run->frames);
+        json_put_int(json, "bomb", run->bomb);
+        json_put_hash(json, "hash", hash_run(run));
+        json_end(json);
+    }
+    json_end(json);
+}
+
+static void put_look(JsonWriter *json, const RenderLook *look) {
+    json_begin_object(json, "look", JSON_LINES);
+    json_put_text(json, "compare", look_compare_names[look->compare]);
+    json_put_text(json, "camera", look_camera_names[look->camera]);
+    json_put_text(json, "theme", look_theme_names[look->theme]);
+    json_begin_array(json, "show", JSON_ONE_LINE);
+    for (int i = 0; look_show_names[i] != NULL; i++)
+        if (look->show >> i & 1) json_put_text(json, NULL, look_show_names[i]);
+    json_end(json);
+    json_end(json);
+}
+
+/* Frames of the run, and how many pictures of all else. */
+static void put_order(JsonWriter *json, const Manifest *manifest) {
+    const MomentPlan *plan = manifest->plan;
+    json_begin_object(json, "order", JSON_LINES);
+    json_put_int(json, "first", plan->first);
+    json_put_int(json, "last", plan->last);
+    json_put_int(json, "title_card", plan->title);
+    json_begin_object(json, "slow", JSON_ONE_LINE);
+    json_put_int(json, "times", plan->slow);
+    json_put_int(json, "first", plan->slow_first);
+    json_put_int(json, "last", plan->slow_last);
+    json_end(json);
+    json_put_int(json, "hold", plan->hold);
+    json_put_int(json, "end_card", plan->end);
+    json_end(json);
+}
+
+static void put_head(JsonWriter *json, const Manifest *manifest) {
+    const RenderOptions *options = manifest->options;
+    json_begin_object(json, NULL, JSON_LINES);
+    json_put_text(json, "twinbox", TWINBOX_VERSION);
+    json_put_int(json, "format", FORMAT);
+    json_begin_array(json, "size", JSON_ONE_LINE);
+    json_put_int(json, NULL, options->width);
+    json_put_int(json, NULL, options->height);
+    json_end(json);
+    json_put_number(json, "dt", (double)manifest->picture->panels[0]->dt);
+    json_put_text(json, "png", options->small ? "small" : "fast");
+    json_put_text(json, "title", options->title);
+    json_put_text(json, "end", options->look.end);
+    put_runs(json, manifest);
+    put_look(json, &options->look);
+    put_order(json, manifest);
+    json_begin_array(json, "pictures", JSON_LINES);
+}
+
+static void put_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
+    static const char *const kinds[] = {"frame", "between", "title", "end"};
+    const Picture *picture = manifest->picture;
+    Moment moment = moments_at(manifest->plan, index);
+    char text[SINK_NAME_SIZE];
+    sink_frame_name(text, index);
+    json_begin_object(json, NULL, JSON_ONE_LINE);
+    json_put_text(json, "file", text);
+    json_put_text(json, "shows", kinds[moment.kind]);
+    json_put_int(json, "frame", moment.frame);
+    frame_part_text(text, sizeof text, moment);
+    if (moment.kind == MOMENT_BETWEEN) json_put_text(json, "part", text);
+    json_begin_array(json, "states", JSON_ONE_LINE);
+    for (int i = 0; i < picture->count; i++)
+        json_put_hash(json, NULL,
+                      trajectory_frame_hash(picture->panels[i], picture_panel_frame(picture, i, moment.frame)));
+    json_end(json);
+    json_put_hash(json, "pixels", hashes.pixels);
+    json_put_hash(json, "file_hash", hashes.file);
+    json_end(json);
+}
+
+void manifest_print_head(FILE *out, const void *manifest) {
+    JsonWriter json = {.out = out};
+    put_head(&json, manifest);
+}
+
+void manifest_print_line(FILE *out, const void *context) {
+    const ManifestLine *line = context;
+    JsonWriter json = {.out = out};
+    put_picture(&json, line->manifest, line->index, line->hashes);
+}
+
+void manifest_print_journal(FILE *out, const void *context) {
+    const Manifest *manifest = context;
+    fprintf(out, "%s\n", manifest->head);
+    for (int i = manifest->first; i <= manifest->last; i++)
+        if (manifest->known[i - manifest->first])
+            manifest_print_line(out, &(ManifestLine){manifest, i, manifest->hashes[i - manifest->first]});
+}
+
+void manifest_print_whole(FILE *out, const void *context) {
+    const Manifest *manifest = context;
+    JsonWriter json = {.out = out};
+    put_head(&json, manifest);
+    for (int i = manifest->first; i <= manifest->last; i++)
+        put_picture(&json, manifest, i, manifest->hashes[i - manifest->first]);
+    json_end(&json);
+    json_end(&json);
+}

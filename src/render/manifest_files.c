@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The manifest on the disk: as it grows, and what of an earlier one still holds. */
+#include "render/manifest_print.h"
+
+#include "common/file.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { LINE_MAX_SIZE = 512 };
+
+/* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
+enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
+
+/* Every manifest begins so. */
+static const char beginning[] = "{\n  \"twinbox\": \"";
+
+static char *join(const char *directory, const char *name) {
+    size_t size = strlen(directory) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (path != NULL) snprintf(path, size, "%s/%s", directory, name);
+    return path;
+}
+
+bool manifest_open(Manifest *manifest, const Picture *picture, const RenderOptions *options, const MomentPlan *plan,
+                   int first, int last, Error *error) {
+    size_t size, count = (size_t)(last - first) + 1;
+    *manifest = (Manifest){.picture = picture, .options = options, .plan = plan, .first = first, .last = last};
+    manifest->path = join(options->directory, "manifest.json");
+    manifest->journal = join(options->directory, "manifest.json.part");
+    manifest->head = file_print(manifest_print_head, manifest, &size);
+    manifest->hashes = calloc(count, sizeof *manifest->hashes);
+    manifest->known = calloc(count, sizeof *manifest->known);
+    return (manifest->path != NULL && manifest->journal != NULL && manifest->head != NULL && manifest->hashes != NULL &&
+            manifest->known != NULL) ||
+           error_memory(error, options->directory);
+}
+
+void manifest_close(Manifest *manifest) {
+    if (manifest->out != NULL) fclose(manifest->out);
+    free(manifest->path);
+    free(manifest->journal);
+    free(manifest->head);
+    free(manifest->hashes);
+    free(manifest->known);
+}
+
+/* The number after "frame_", or -1. */
+static int index_of(const char *line) {
+    static const char start[] = "{\"file\": \"frame_";
+    if (strncmp(line, start, sizeof start - 1) != 0 || !isdigit((unsigned char)line[sizeof start - 1])) return -1;
+    long index = strtol(line + sizeof start - 1, NULL, 10);
+    return index <= INT32_MAX ? (int)index : -1;
+}
+
+/* Takes the hashes from the end of a line, where the line is the one that belongs there with these hashes. */
+static void recall_line(Manifest *manifest, const char *line, size_t length) {
+    int index = index_of(line);
+    if (index < manifest->first || index > manifest->last || length < PIXELS_FROM_END) return;
+    const char *end = line + length;
+    PictureHashes hashes = {strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
+    size_t size;
+    char *wanted = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
+    /* The wanted one ends in a line end. */
+    if (wanted != NULL && size == length + 1 && memcmp(wanted, line, length) == 0) {
+        manifest->hashes[index - manifest->first] = hashes;
+        manifest->known[index - manifest->first] = true;
+    }
+    free(wanted);
+}
+
+/* A last line without its end was being written when the program was killed. */
+static void recall_lines(Manifest *manifest, char *text) {
+    for (char *line = text, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+        while (*line == ' ') line++;
+        size_t length = (size_t)(end - line);
+        if (length > 0 && line[length - 1] == ',') length--;
+        line[length] = '\0';
+        recall_line(manifest, line, length);
+    }
+}
+
+static int line_of_difference(const char *a, const char *b) {
+    int line = 1;
+    for (; *a == *b && *a != '\0'; a++, b++) line += *a == '\n';
+    return line;
+}
+
+/* False, and why, where the file is not there or is of other pictures. */
+static bool recall_file(Manifest *manifest, const char *path, char *why, size_t why_size) {
+    Error error = {0};
+    size_t size, head = strlen(manifest->head), count = (size_t)(manifest->last - manifest->first) + 1;
+    char *text = file_read(path, head + 2 * (count + 1) * LINE_MAX_SIZE, &size, &error);
+    bool same = text != NULL && strncmp(text, manifest->head, head) == 0;
+    if (same)
+        recall_lines(manifest, text + head);
+    else if (text != NULL)
+        snprintf(why, why_size, "%s:%d is of other runs, options or another version", path,
+                 line_of_difference(text, manifest->head));
+    else
+        snprintf(why, why_size, "%s", error.message);
+    free(text);
+    return same;
+}
+
+void manifest_recall(Manifest *manifest, char *why, size_t size) {
+    char other[256];
+    manifest->holds = recall_file(manifest, manifest->path, why, size);
+    bool grows = access(manifest->journal, F_OK) == 0 && recall_file(manifest, manifest->journal, other, sizeof other);
+    if (manifest->holds || grows) why[0] = '\0';
+}
+
+/* What is no manifest may be somebody's work. */
+static bool check_own(const char *path, Error *error) {
+    struct stat status;
+    char text[sizeof beginning] = "";
+    if (lstat(path, &status) != 0 && errno == ENOENT) return true;
+    int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    ssize_t size = file >= 0 ? read(file, text, sizeof text - 1) : -1;
+    if (file >= 0) close(file);
+    if (size == 0 && S_ISREG(status.st_mode)) return true;
+    return (size > 0 && strcmp(text, beginning) == 0) ||
+           error_input(error, path, "is no manifest of twinbox: move it away, or choose another folder");
+}
+
+bool manifest_begin(Manifest *manifest, Error *error) {
+    if (!check_own(manifest->path, error) || !check_own(manifest->journal, error)) return false;
+    size_t size;
+    char *text = file_print(manifest_print_journal, manifest, &size);
+    bool ok =
+        text != NULL ? file_write_soon(manifest->journal, text, size, error) : error_memory(error, manifest->journal);
+    free(text);
+    if (!ok) return false;
+    if (!manifest->holds) unlink(manifest->path);
+    manifest->out = fopen(manifest->journal, "a");
+    return manifest->out != NULL || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
+}
+
+bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *error) {
+    int i = index - manifest->first;
+    const PictureHashes *old = &manifest->hashes[i];
+    if (manifest->known[i] && old->pixels == hashes.pixels && old->file == hashes.file) return true;
+    manifest->hashes[i] = hashes;
+    manifest->known[i] = true;
+    manifest_print_line(manifest->out, &(ManifestLine){manifest, index, hashes});
+    return fflush(manifest->out) == 0 || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
+}
+
+bool manifest_end(Manifest *manifest, Error *error) {
+    if (!file_write_text(manifest->path, manifest_print_whole, manifest, error)) return false;
+    unlink(manifest->journal);
+    return true;
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The renderer's frames are opaque: drawn once on black and once on white, the difference is what nothing covers. */
+#include "render/still.h"
+
+#include "render/body.h"
+#include "render/canvas.h"
+#include "render/context.h"
+
+#include <stdlib.h>
+
+struct Still {
+    Context context;
+    GlFunctions gl;
+    Canvas *canvas;
+    Drawing drawing;
+    Image *on_white;
+};
+
+static bool set_up(Still *still, int width, int height, Error *error) {
+    if (width < 1 || height < 1 || width > RENDER_LARGEST_SIDE || height > RENDER_LARGEST_SIDE)
+        return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be 1 to %d", width,
+                           height, RENDER_LARGEST_SIDE);
+    if ((still->on_white = image_create(width, height, error)) == NULL ||
+        !context_create(&still->context, RENDER_CONTEXT_AUTO, error) ||
+        !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
+        return false;
+    still->canvas = canvas_create(&still->gl, width, height, error);
+    return still->canvas != NULL;
+}
+
+Still *still_create(int width, int height, Error *error) {
+    Still *still = calloc(1, sizeof *still);
+    if (still == NULL) {
+        error_memory(error, "render");
+        return NULL;
+    }
+    if (set_up(still, width, height, error)) return still;
+    still_destroy(still);
+    return NULL;
+}
+
+void still_destroy(Still *still) {
+    if (still == NULL) return;
+    if (still->canvas != NULL && context_make_current(&still->context, &(Error){0})) canvas_destroy(still->canvas);
+    if (still->context.kind != NULL) context_destroy(&still->context);
+    drawing_free(&still->drawing);
+    image_destroy(still->on_white);
+    free(still);
+}
+
+/* A picture of the panel that has the colours, alone and without margins. */
+static Picture plan(const Still *still, const StillShot *shot) {
+    Picture picture = {.count = shot->colours + 1, .frames = shot->run->frames, .camera = shot->camera};
+    for (int i = 0; i <= shot->colours; i++) {
+        picture.layout.panels[i] = (Rect){0, 0, still->on_white->width, still->on_white->height};
+        picture.panels[i] = shot->run;
+    }
+    picture.theme = theme_get(LOOK_LIGHT);
+    return picture;
+}
+
+static void draw_bodies(const Picture *picture, const StillShot *shot, Drawing *drawing) {
+    const Moment moment = moment_stored(shot->frame);
+    const int run = shot->colours;
+    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(picture, run, run, moment, true, drawing);
+    if ((shot->parts & STILL_MOVING) == 0) return;
+    body_draw_all(picture, run, run, moment, false, drawing);
+    if (shot->run->bomb >= 0) body_draw(picture, run, run, moment, shot->run->bomb, drawing);
+}
+
+/* Of a pixel on black and on white. */
+static void take_alpha(uint8_t *black, const uint8_t *white) {
+    int alpha = 255 - (white[1] - black[1]);
+    for (int i = 0; i < 3; i++) {
+        int colour = alpha > 0 ? (black[i] * 255 + alpha / 2) / alpha : 0;
+        black[i] = (uint8_t)(colour < 255 ? colour : 255);
+    }
+    black[3] = (uint8_t)(alpha < 255 ? alpha : 255);
+}
+
+bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
+    const Picture picture = plan(still, shot);
+    Drawing *drawing = &still->drawing;
+    drawing_clear(drawing);
+    draw_bodies(&picture, shot, drawing);
+    if (!context_make_current(&still->context, error) ||
+        !canvas_paint(still->canvas, drawing, 0x000000, NULL, image, error) ||
+        !canvas_paint(still->canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
+        return false;
+    for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4)
+        take_alpha(image->pixels + i, still->on_white->pixels + i);
+    return true;
+}

@@ -1,0 +1,5 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fixed parts of a comparison's page (src/report/page), put into the binary by tools/embed.cmake. */
+#pragma once
+
+extern const char report_page_css[], report_page_js[], report_page_html[], report_help_html[];

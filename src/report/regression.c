@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/regression.h"
+
+#include "common/hash.h"
+#include "common/parallel.h"
+#include "report/regression_states.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool within(const RegressionOptions *options, const ImageDifference *difference) {
+    return difference->largest <= options->max_difference &&
+           (double)difference->pixels <= options->max_share * (double)difference->counted;
+}
+
+static bool judge_pixels(const RegressionOptions *options, RegressionFrame *frame, const Image *expected,
+                         const Image *actual, Error *error) {
+    uint8_t *masked = NULL;
+    bool has_mask = options->mask != NULL && options->mask->count > 0;
+    if (has_mask && (masked = mask_make(options->mask, expected->width, expected->height, frame->at[EXPECTED]->path,
+                                        error)) == NULL)
+        return false;
+    ImageDifference *difference = &frame->difference;
+    image_compare_masked(expected, actual, masked, difference);
+    frame->pixels = !difference->same_size        ? PIXELS_RESIZED
+                    : difference->equal           ? PIXELS_EQUAL
+                    : within(options, difference) ? PIXELS_WITHIN
+                                                  : PIXELS_DIFFER;
+    free(masked);
+    return true;
+}
+
+static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error) {
+    Image *images[SIDES] = {NULL, NULL};
+    bool ok = true;
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
+        RegressionFile *file = &frame->files[side];
+        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, options->max_pixels, error);
+        ok = images[side] != NULL;
+        if (ok) file->width = images[side]->width, file->height = images[side]->height;
+    }
+    ok = ok && judge_pixels(options, frame, images[EXPECTED], images[ACTUAL], error);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
+    return ok;
+}
+
+/* A frame that has no partner is decoded, so that a damaged one is told. */
+static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame, RegressionSide side,
+                        const uint8_t *data, Error *error) {
+    RegressionFile *file = &frame->files[side];
+    Image *image = image_decode_png(data, file->size, frame->at[side]->path, options->max_pixels, error);
+    if (image == NULL) return false;
+    file->width = image->width, file->height = image->height;
+    image_destroy(image);
+    frame->pixels = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
+    return true;
+}
+
+static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
+    const RegressionOptions *options = &regression->options;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
+    regression_judge_states(regression, frame, data);
+    const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
+    bool same_bytes = a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0;
+    if (!same_bytes) return decode_and_judge(options, frame, data, error);
+    frame->pixels = PIXELS_EQUAL;
+    frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
+    return true;
+}
+
+/* A frame that cannot be read does not stop the others: which error comes first must not depend on the threads. */
+static bool compare_frame(void *context, int i, Error *error) {
+    const Regression *regression = context;
+    RegressionFrame *frame = &regression->frames[i];
+    Error refusal = {0};
+    uint8_t *data[SIDES] = {NULL, NULL};
+    bool ok = true;
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
+        if (frame->at[side] == NULL) continue;
+        RegressionFile *file = &frame->files[side];
+        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, &refusal)) != NULL;
+        if (ok) file->hash = hash_xxh3(data[side], file->size);
+    }
+    ok = ok && judge(regression, frame, data, &refusal);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
+    if (!ok && refusal.kind == ERROR_INPUT && (frame->refusal = strdup(refusal.message)) != NULL) return true;
+    if (!ok) *error = refusal;
+    return ok;
+}
+
+static bool tell_refusals(const Regression *regression, Error *error) {
+    int first = -1, count = 0;
+    for (int i = regression->count - 1; i >= 0; i--)
+        if (regression->frames[i].refusal != NULL) first = i, count++;
+    if (first < 0) return true;
+    error->kind = ERROR_INPUT;
+    snprintf(error->message, sizeof error->message, "%s", regression->frames[first].refusal);
+    size_t used = strlen(error->message);
+    if (count > 1)
+        snprintf(error->message + used, sizeof error->message - used, "\n(further frames that cannot be compared: %d)",
+                 count - 1);
+    return false;
+}
+
+bool frame_failed(const RegressionFrame *frame) {
+    return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER;
+}
+
+static void count_first(int *count, int *first, int i) {
+    (*count)++;
+    if (*first < 0) *first = i;
+}
+
+static void count_frame(Regression *regression, int i) {
+    const RegressionFrame *frame = &regression->frames[i];
+    bool pictures = frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED;
+    regression->by_verdict[frame->pixels]++;
+    if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
+    if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
+    regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
+    if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
+    regression->unknown += pictures && frame->states == STATES_UNKNOWN;
+}
+
+static bool same_sequence(const RegressionFrame *a, const RegressionFrame *b) {
+    const SequenceFrame *x = a->at[EXPECTED], *y = b->at[EXPECTED];
+    return x->stem == y->stem && memcmp(x->name, y->name, (size_t)x->stem) == 0;
+}
+
+/* See StateVerdict. The frames of one sequence, [count]. */
+static void settle_sequence(RegressionFrame *const *frames, int count) {
+    bool physics = false, same_framing = false;
+    for (int i = 0; i < count; i++) {
+        physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
+        same_framing = same_framing || (frames[i]->states == STATES_EQUAL && frames[i]->pixels == PIXELS_EQUAL);
+    }
+    for (int i = 0; physics && !same_framing && i < count; i++)
+        if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;
+}
+
+/* Frames without a partner say nothing, and their names may be of another stem. */
+static bool settle(Regression *regression, Error *error) {
+    RegressionFrame **paired = malloc(((size_t)regression->count + 1) * sizeof *paired);
+    if (paired == NULL) return error_memory(error, "frames");
+    int count = 0;
+    for (int i = 0; i < regression->count; i++)
+        if (regression->frames[i].pixels < PIXELS_MISSING) paired[count++] = &regression->frames[i];
+    for (int first = 0, end = 0; first < count; first = end) {
+        while (end < count && same_sequence(paired[first], paired[end])) end++;
+        settle_sequence(paired + first, end - first);
+    }
+    free(paired);
+    return true;
+}
+
+static void count(Regression *regression) {
+    regression->first = regression->first_physics = regression->first_renderer = regression->first_run = -1;
+    for (int i = 0; i < regression->count; i++) count_frame(regression, i);
+    for (int i = 0; i < regression->run_count; i++) {
+        const RegressionRun *runs = regression->runs;
+        if (runs[i].difference.equal) continue;
+        regression->run_failed++;
+        int first = regression->first_run;
+        if (first < 0 || (unsigned)runs[i].difference.frame < (unsigned)runs[first].difference.frame)
+            regression->first_run = i;
+    }
+}
+
+static bool take_pairs(Regression *regression, Error *error) {
+    SequencePair *pairs =
+        image_sequence_pair(regression->sequences[EXPECTED], regression->sequences[ACTUAL], &regression->count, error);
+    if (pairs == NULL) return false;
+    regression->frames = calloc((size_t)regression->count + 1, sizeof *regression->frames);
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++)
+        regression->frames[i] = (RegressionFrame){.at = {pairs[i].a, pairs[i].b}, .flip = NAN};
+    free(pairs);
+    return regression->frames != NULL || error_memory(error, "frames");
+}
+
+/* A folder with nothing in it is a mistake rather than a difference. */
+static bool refuse_empty(const Regression *regression, Error *error) {
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        const ImageSequence *sequence = regression->sequences[side];
+        if (sequence->count == 0 && regression->run_count == 0)
+            return error_input(error, sequence->folder, "no PNG files (such as frame_000000.png) in this folder");
+    }
+    return true;
+}
+
+bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
+                    const Progress *progress, Error *error) {
+    *regression = (Regression){.options = *options};
+    const ParallelWork work = {compare_frame, regression};
+    bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, error)) != NULL &&
+              (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
+              take_pairs(regression, error) && regression_find_runs(regression, error) &&
+              refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+              tell_refusals(regression, error) && settle(regression, error);
+    if (ok)
+        count(regression);
+    else
+        regression_free(regression);
+    return ok;
+}
+
+void regression_free(Regression *regression) {
+    for (int i = 0; i < regression->run_count; i++) {
+        free(regression->runs[i].name);
+        free(regression->runs[i].differs);
+    }
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].refusal);
+    free(regression->frames);
+    free(regression->runs);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
+    *regression = (Regression){0};
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* results.json: also within the page, which reads it. */
+#include "common/json.h"
+#include "report/regression_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void put_file(JsonWriter *json, const char *key, const char *name, const RegressionFile *data) {
+    if (name == NULL) {
+        json_put_text(json, key, NULL);
+        return;
+    }
+    json_begin_object(json, key, JSON_ONE_LINE);
+    json_put_text(json, "name", name);
+    json_put_int(json, "size", (int64_t)data->size);
+    json_put_hash(json, "xxh3", data->hash);
+    json_end(json);
+}
+
+static void put_box(JsonWriter *json, const ImageDifference *difference) {
+    if (difference->pixels == 0) {
+        json_put_text(json, "box", NULL);
+        return;
+    }
+    const int sides[] = {difference->left, difference->top, difference->right, difference->bottom};
+    json_begin_array(json, "box", JSON_ONE_LINE);
+    for (int i = 0; i < 4; i++) json_put_int(json, NULL, sides[i]);
+    json_end(json);
+}
+
+/* Four digits: the last bits of a power depend on the machine. */
+static double rounded(double flip) {
+    char text[32];
+    snprintf(text, sizeof text, "%.4g", flip);
+    return isfinite(flip) ? strtod(text, NULL) : NAN;
+}
+
+static void put_frame(JsonWriter *json, const RegressionFrame *frame) {
+    const char *names[SIDES];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
+    json_begin_object(json, NULL, JSON_ONE_LINE);
+    json_put_text(json, "name", frame_name(frame));
+    json_put_text(json, "verdict", frame_verdict(frame));
+    json_put_bool(json, "failed", frame_failed(frame));
+    json_put_bool(json, "shown", frame->shown);
+    json_put_text(json, "words", frame_words(frame).text);
+    json_put_int(json, "differing", frame->difference.pixels);
+    json_put_int(json, "counted", frame->difference.counted);
+    json_put_int(json, "largest", frame->difference.largest);
+    put_box(json, &frame->difference);
+    json_put_number(json, "flip", rounded(frame->flip));
+    put_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
+    put_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
+    json_end(json);
+}
+
+static void put_run(JsonWriter *json, const RegressionRun *run) {
+    json_begin_object(json, NULL, JSON_ONE_LINE);
+    json_put_text(json, "name", run->name);
+    json_put_text(json, "verdict", run->difference.equal ? "equal" : "physics changed");
+    json_put_bool(json, "failed", !run->difference.equal);
+    json_put_bool(json, "shown", true);
+    json_put_text(json, "words", run_words(run).text);
+    put_file(json, "expected", run->name, &run->files[EXPECTED]);
+    put_file(json, "actual", run->name, &run->files[ACTUAL]);
+    json_end(json);
+}
+
+void report_put_json(FILE *file, const void *context) {
+    const Report *report = context;
+    const Regression *regression = report->regression;
+    JsonWriter json = {.out = file};
+    json_begin_object(&json, NULL, JSON_LINES);
+    json_put_text(&json, "format", "twinbox compare 1");
+    json_put_text(&json, "expected", regression->sequences[EXPECTED]->folder);
+    json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
+    json_put_text(&json, "verdict", regression_verdict(regression).text);
+    json_begin_array(&json, "fuzzy", JSON_ONE_LINE);
+    json_put_int(&json, NULL, regression->options.max_difference);
+    json_put_number(&json, NULL, regression->options.max_share);
+    json_end(&json);
+    json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
+    json_begin_array(&json, "frames", JSON_LINES);
+    for (int i = 0; i < regression->count; i++) put_frame(&json, &regression->frames[i]);
+    json_end(&json);
+    json_begin_array(&json, "trajectories", JSON_LINES);
+    for (int i = 0; i < regression->run_count; i++) put_run(&json, &regression->runs[i]);
+    json_end(&json);
+    json_end(&json);
+}

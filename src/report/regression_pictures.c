@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pictures of a report, in memory. */
+#include "common/hash.h"
+#include "common/parallel.h"
+#include "image/difference_picture.h"
+#include "image/flip.h"
+#include "image/png_encoder.h"
+#include "report/regression_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char report_kind_letters[REPORT_KINDS + 1] = "eadf";
+enum { DIFFERENCE = SIDES, HEAT };
+
+/* The file as it was compared, not what has come in its place since. */
+static bool load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
+    const char *path = frame->at[side]->path;
+    picture->data = image_load_png(path, &picture->size, error);
+    if (picture->data == NULL) return false;
+    return hash_xxh3(picture->data, picture->size) == frame->files[side].hash ||
+           error_input(error, path, "has changed since it was compared");
+}
+
+static bool encode(const Image *image, ReportPicture *picture, Error *error) {
+    const uint8_t *data;
+    PngEncoder *encoder = image == NULL ? NULL : png_encoder_create(image->width, image->height, PNG_SMALL, error);
+    bool ok = encoder != NULL && png_encode(encoder, image, NULL, NULL, 0, &data, &picture->size, error);
+    if (ok && (picture->data = malloc(picture->size)) == NULL) ok = error_memory(error, "report");
+    if (ok) memcpy(picture->data, data, picture->size);
+    png_encoder_destroy(encoder);
+    return ok;
+}
+
+/* Measures FLIP; its picture only where there is room for it. */
+static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
+                    Error *error) {
+    float *map = NULL;
+    Image *heat = NULL;
+    if (picture != NULL && (map = malloc((size_t)expected->width * (size_t)expected->height * sizeof *map)) == NULL)
+        return error_memory(error, "report");
+    bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, map, &frame->flip, error);
+    if (ok && map != NULL) {
+        heat = heat_picture(map, expected->width, expected->height, error);
+        ok = heat != NULL && encode(heat, picture, error);
+    }
+    image_destroy(heat);
+    free(map);
+    return ok;
+}
+
+/* Without room, pictures is only what was read. */
+static bool draw(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                 ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
+    uint8_t *masked = NULL;
+    const Mask *mask = regression->options.mask;
+    if (mask != NULL && mask->count > 0 &&
+        (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
+        return false;
+    Image *difference = room ? difference_picture(expected, actual, masked, error) : NULL;
+    image_cover(expected, actual, masked);
+    bool ok = (!room || (difference != NULL && encode(difference, &pictures[DIFFERENCE], error))) &&
+              measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
+    image_destroy(difference);
+    free(masked);
+    return ok;
+}
+
+/* Those of frames whose pixels differ in pictures of one size. */
+static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
+                             bool room, Error *error) {
+    Image *images[SIDES] = {NULL, NULL};
+    if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
+                                        regression->options.max_pixels, error);
+    bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
+              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
+    return ok;
+}
+
+static void drop(ReportPicture pictures[REPORT_KINDS]) {
+    for (int kind = 0; kind < REPORT_KINDS; kind++) {
+        free(pictures[kind].data);
+        pictures[kind] = (ReportPicture){NULL, 0};
+    }
+}
+
+enum { BATCH = 16 };
+
+/* Frames whose pictures are made at once, by all threads. */
+typedef struct Batch {
+    ReportPictures *pictures;
+    Regression *regression;
+    bool room;
+    int wanted, done; /* frames of all batches */
+    int count, frames[BATCH];
+} Batch;
+
+static bool make_frame(void *context, int i, Error *error) {
+    const Batch *batch = context;
+    RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
+    ReportPicture *made = batch->pictures->frames[batch->frames[i]];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
+    return draw_differences(batch->regression, frame, made, batch->room, error);
+}
+
+/* Keeps a frame's pictures if they fit; *left is 0 once some did not. */
+static void keep_frame(ReportPictures *pictures, RegressionFrame *frame, int i, size_t *left) {
+    ReportPicture *made = pictures->frames[i];
+    size_t size = 0;
+    for (int kind = 0; kind < REPORT_KINDS; kind++) size += (made[kind].size + 2) / 3 * 4;
+    frame->shown = size > 0 && size <= *left;
+    *left = frame->shown ? *left - size : 0;
+    pictures->left_out += !frame->shown;
+    if (!frame->shown) drop(made);
+}
+
+static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Error *error) {
+    const ParallelWork work = {make_frame, batch};
+    batch->room = *left > 0;
+    bool ok = parallel_for(&work, batch->count, "report", NULL, error);
+    for (int k = 0; k < batch->count; k++)
+        keep_frame(batch->pictures, &batch->regression->frames[batch->frames[k]], batch->frames[k], left);
+    if (!ok) return false;
+    batch->done += batch->count;
+    batch->count = 0;
+    if (!progress_report(progress, batch->done, batch->wanted)) return error_input(error, "report", "stopped");
+    return true;
+}
+
+/* Failures first, then what is within tolerance. */
+static bool is_wanted(const RegressionFrame *frame, bool failed) {
+    return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
+}
+
+bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes,
+                            const Progress *progress, Error *error) {
+    *pictures = (ReportPictures){.count = regression->count};
+    pictures->frames = calloc((size_t)regression->count + 1, sizeof *pictures->frames);
+    if (pictures->frames == NULL) return error_memory(error, "report");
+    Batch batch = {.pictures = pictures, .regression = regression};
+    bool ok = true;
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels == PIXELS_EQUAL) frame->flip = 0;
+        batch.wanted += is_wanted(frame, true) || is_wanted(frame, false);
+    }
+    for (int failed = 1; failed >= 0; failed--)
+        for (int i = 0; ok && i < regression->count; i++) {
+            if (!is_wanted(&regression->frames[i], failed)) continue;
+            batch.frames[batch.count++] = i;
+            if (batch.count == BATCH) ok = make_batch(&batch, &max_bytes, progress, error);
+        }
+    ok = ok && make_batch(&batch, &max_bytes, progress, error);
+    if (!ok) report_pictures_free(pictures);
+    return ok;
+}
+
+void report_pictures_free(ReportPictures *pictures) {
+    for (int i = 0; pictures->frames != NULL && i < pictures->count; i++) drop(pictures->frames[i]);
+    free(pictures->frames);
+}

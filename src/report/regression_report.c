@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/regression_report.h"
+
+#include "common/file.h"
+#include "report/regression_parts.h"
+
+#include <limits.h>
+
+/* results.json comes last: where it is, all is. */
+static const struct {
+    const char *name;
+    void (*put)(FILE *file, const void *report);
+} parts[] = {{"report.html", report_put_page}, {"junit.xml", report_put_junit}, {"results.json", report_put_json}};
+
+bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
+                             Error *error) {
+    ReportPictures pictures;
+    char path[PATH_MAX];
+    if (!file_make_directory(folder, error) ||
+        !report_pictures_gather(&pictures, regression, max_bytes, progress, error))
+        return false;
+    const Report report = {regression, &pictures, folder};
+    bool ok = true;
+    for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, parts[i].name);
+        ok = file_write_text(path, parts[i].put, &report, error);
+    }
+    report_pictures_free(&pictures);
+    return ok;
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a comparison found, in words. */
+#include "report/regression.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <string.h>
+
+bool regression_passed(const Regression *regression) { return regression->failed == 0 && regression->run_failed == 0; }
+
+const char *frame_name(const RegressionFrame *frame) {
+    return frame->at[frame->at[EXPECTED] != NULL ? EXPECTED : ACTUAL]->name;
+}
+
+const char *frame_verdict(const RegressionFrame *frame) {
+    switch (frame->pixels) {
+    case PIXELS_MISSING: return "missing";
+    case PIXELS_EXTRA: return "extra";
+    case PIXELS_DIFFER:
+    case PIXELS_RESIZED:
+        if (frame->states == STATES_UNKNOWN) return "pictures differ";
+        return frame->states == STATES_EQUAL ? "renderer changed" : "physics changed";
+    case PIXELS_EQUAL:
+    case PIXELS_WITHIN: break;
+    }
+    if (frame->states == STATES_DIFFER) return "physics changed";
+    return frame->pixels == PIXELS_EQUAL ? "equal" : "within tolerance";
+}
+
+static void add(RegressionText *text, const char *between, const char *format, ...) PRINTF_LIKE(3, 4);
+static void add(RegressionText *text, const char *between, const char *format, ...) {
+    size_t used = strlen(text->text);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used > 0) {
+        snprintf(text->text + used, sizeof text->text - used, "%s", between);
+        used = strlen(text->text);
+    }
+    vsnprintf(text->text + used, sizeof text->text - used, format, arguments);
+    va_end(arguments);
+}
+
+RegressionText frame_words(const RegressionFrame *frame) {
+    RegressionText words = {""};
+    const ImageDifference *difference = &frame->difference;
+    const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
+    switch (frame->pixels) {
+    case PIXELS_MISSING: add(&words, "", "there is no actual picture"); break;
+    case PIXELS_EXTRA: add(&words, "", "there is no expected picture"); break;
+    case PIXELS_RESIZED: add(&words, "", "%d x %d and %d x %d pixels", a->width, a->height, b->width, b->height); break;
+    case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
+    case PIXELS_WITHIN:
+    case PIXELS_DIFFER:
+        add(&words, "", "%" PRId64 " %s (%.3g%%), the largest by %d, the first at (%d, %d)", difference->pixels,
+            difference->pixels == 1 ? "pixel" : "pixels",
+            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
+            difference->first_y);
+    }
+    if (frame->panel > 0) add(&words, ", ", "other states in panel %d", frame->panel);
+    if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
+        add(&words, ", ", "equal states here, but not in the whole run, which sets camera and scales");
+    return words;
+}
+
+RegressionText run_words(const RegressionRun *run) {
+    RegressionText words = {""};
+    const TrajectoryDifference *d = &run->difference;
+    if (d->equal) add(&words, "", "equal states");
+    if (d->what[0] != '\0') add(&words, "", "%s", d->what);
+    if (d->frame >= 0)
+        add(&words, "; ", "from frame %d, body %d on: %g m apart, %g rad, %g m/s there; at most %g m", d->frame,
+            d->body, d->distance, d->angle, d->speed, d->max_distance);
+    return words;
+}
+
+static void add_count(RegressionText *text, int count, const char *what) {
+    if (count > 0) add(text, ", ", "%d %s %s", count, count == 1 ? "frame" : "frames", what);
+}
+
+RegressionText regression_verdict(const Regression *regression) {
+    RegressionText verdict = {""};
+    bool physics = regression->physics > 0 || regression->run_failed > 0, renderer = regression->renderer > 0;
+    if (physics || renderer)
+        add(&verdict, ", ", "%s",
+            physics && renderer ? "physics and renderer changed"
+            : physics           ? "physics changed"
+                                : "renderer changed");
+    if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (no states tell why)");
+    add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
+    add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
+    if (verdict.text[0] == '\0') add(&verdict, "", "equal");
+    return verdict;
+}
+
+RegressionText regression_begin(const Regression *regression) {
+    RegressionText begin = {""};
+    if (regression->first_run >= 0) {
+        const RegressionRun *run = &regression->runs[regression->first_run];
+        add(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
+    } else if (regression->first_physics >= 0) {
+        const RegressionFrame *frame = &regression->frames[regression->first_physics];
+        add(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);
+    }
+    if (regression->first_renderer >= 0)
+        add(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));
+    return begin;
+}

@@ -1,0 +1,134 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Figures: every kind in every format, the same bytes wherever and whenever, and what is refused leaves nothing behind.
+. "$(dirname "$0")/checks.sh"
+
+mkdir one other
+for place in one other; do
+    (cd $place && "$twinbox" simulate "$scenes/stack.yaml" --frames 60 -o engine.npz >/dev/null &&
+        "$twinbox" simulate "$scenes/stack.yaml" --frames 60 --method momentum:k=20 -o momentum.npz >/dev/null) ||
+        fail "simulate in $place"
+done
+
+# kind FORMAT NAME ARGUMENT...: in both places
+kind() {
+    local format=$1 name=$2 place
+    shift 2
+    for place in one other; do
+        cd $place || exit 1
+        run 0 figure "$name" "$@" --width column -o "$name.$format"
+        says "$name, 85.0 x "
+        cd ..
+    done
+    checks=$((checks + 1))
+    cmp -s "one/$name.$format" "other/$name.$format" || fail "$name.$format differs from one place to the other"
+}
+kind png strip engine.npz momentum.npz --at 0.2,0.5,0.9
+kind pdf annotated engine.npz momentum.npz
+kind pdf divergence engine.npz momentum.npz --scene "$scenes/stack.yaml"
+kind svg strobe engine.npz --moments 5
+kind svg network "$scenes/networks/pair-net.npz"
+kind pdf narrow-phase engine.npz
+
+# 85 mm at 300 dots an inch; and nothing that tells when or where.
+pngcheck one/strip.png | grep -q '(1004x' || fail "$(pngcheck one/strip.png)"
+pngcheck -v one/strip.png | grep -qE 'tIME|tEXt|zTXt|iTXt' && fail "$(pngcheck -v one/strip.png)"
+grep -aqE 'CreationDate|ModDate|Producer|/tmp' one/*.pdf one/*.svg && fail "a figure tells when or where"
+
+# The page of figures in golden/: lines and words, not pixels.
+"$sources/golden/figures/draw" "$PWD/page" "$twinbox" >out 2>err || fail "golden/figures/draw: $(cat err)"
+for layout in "$sources"/golden/figures/layout/*.svg; do
+    checks=$((checks + 1))
+    cmp -s "$layout" "page/layout/$(basename "$layout")" || fail "$(basename "$layout") is laid out another way"
+done
+cmp -s "$sources/golden/figures/README.md" page/README.md || fail "the page of figures is another"
+
+/usr/bin/python3 - <<'PYTHON' || fail "an SVG is no XML"
+import xml.dom.minidom
+for name in "strip annotated divergence strobe network narrow-phase".split():
+    svg = xml.dom.minidom.parse(f"page/layout/{name}.svg").documentElement
+    assert svg.getAttribute("width") in ("85.000mm", "174.000mm"), svg.getAttribute("width")
+    words = [g.getAttribute("aria-label") for g in svg.getElementsByTagName("g")]
+    used = {use.getAttribute("xlink:href")[1:] for use in svg.getElementsByTagName("use")}
+    defined = {path.getAttribute("id") for path in svg.getElementsByTagName("path")}
+    assert len(words) > 5 and used <= defined, (words, used - defined)
+PYTHON
+
+cd one || exit 1
+run 0 figure strip engine.npz -o clear.png --transparent --dpi 100
+pngcheck clear.png | grep -q 'RGB+alpha' || fail "$(pngcheck clear.png)"
+run 0 figure strip engine.npz -o large.png --font-size 12 --width 120.5 --dpi 150
+pngcheck large.png | grep -q '(712x' || fail "$(pngcheck large.png)"
+rm ./*.png ./*.svg ./*.pdf
+
+# refused MESSAGE ARGUMENT...
+refused() {
+    local message=$1
+    shift
+    run 2 figure "$@"
+    complains "$message"
+}
+refused "'stripes' is no kind of figure; there are strip, annotated, divergence, strobe, network, narrow-phase" \
+    stripes engine.npz -o a.png
+refused "a.gif: error: a figure's name ends in .png, .svg or .pdf" strip engine.npz -o a.gif
+refused "error: a figure's name ends in" strip engine.npz -o ./png
+refused "needed" strip engine.npz
+refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
+refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
+refused "network needs 1 network (.npz), not 0" network -o a.png
+refused "at most 6 runs" strip 1 2 3 4 5 6 7 -o a.png
+refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
+refused "--width: error: '39'" strip engine.npz -o a.png --width 39
+refused "--dpi: error: '1201'" strip engine.npz -o a.png --dpi 1201
+refused "--font-size: error: '0'" strip engine.npz -o a.png --font-size 0
+refused "dots an inch are" strip engine.npz -o a.png --width 400 --dpi 1200
+refused "dots an inch are" strip engine.npz -o a.svg --width 400 --dpi 1200
+refused "--at: error: '0.5,0.2' does not rise" strip engine.npz -o a.png --at 0.5,0.2
+refused "--at: error: '0.5,' is no list" strip engine.npz -o a.png --at 0.5,
+refused "--at: error: 'nan' is no list" strip engine.npz -o a.png --at nan
+refused "--at: error: more than 60 moments" strip engine.npz -o a.png --at "$(seq -s, 0 0.01 0.7)"
+refused "--moments: error: '61'" strip engine.npz -o a.png --moments 61
+refused "--moments: error: --at says already" strip engine.npz -o a.png --moments 3 --at 0.5
+refused "engine.npz: error: shows no moment at 2 s: it goes from 0 to 1 s" strip engine.npz -o a.png --at 2
+refused "--scene: error: is not for the kind strip" strip engine.npz -o a.png --scene "$scenes/stack.yaml"
+refused "--bodies: error: is not for the kind strobe" strobe engine.npz -o a.png --bodies 1,2
+refused "--bodies: error: '1' is no pair" narrow-phase engine.npz -o a.png --bodies 1
+refused "--bodies: error: '1,1' is no pair" narrow-phase engine.npz -o a.png --bodies 1,1
+refused "there is no body 99" narrow-phase engine.npz -o a.png --bodies 1,99
+refused "cannot be shown beside engine.npz: bodies: 12 and 3" strip engine.npz "$sources/golden/trajectories/single-engine.npz" -o a.png
+refused "never parts from engine.npz" divergence engine.npz engine.npz -o a.png
+refused "single.yaml: error: is not the scene" divergence engine.npz momentum.npz --scene "$scenes/single.yaml" -o a.png
+refused "engine.npz: error: holds no network" network engine.npz -o a.png
+head -c 900 "$scenes/networks/pair-net.npz" >cut.npz
+refused "cut.npz: error:" network cut.npz -o a.png
+head -c 900 engine.npz >cut.npz
+refused "cut.npz: error:" strip cut.npz -o a.png
+refused "nowhere.npz" strip nowhere.npz -o a.png
+
+/usr/bin/python3 - <<'PYTHON'
+# Runs that no program made: without contacts, a body at the end of the world, impulses that are none, nobody there.
+import numpy
+run = dict(numpy.load("engine.npz", allow_pickle=False))
+none = {key: value[:0] for key, value in run.items() if key.startswith("contact_") and key != "contact_start"}
+numpy.savez("bare.npz", **{**run, **none, "contact_start": run["contact_start"] * 0})
+far = run["position"].copy()
+far[20:, 4] = 3e38
+numpy.savez("far.npz", **{**run, "position": far})
+numpy.savez("wild.npz", **{**run, "contact_impulse": run["contact_impulse"] * numpy.float32("nan")})
+PYTHON
+refused "bare.npz: error: the run has no contacts" annotated bare.npz -o a.png
+refused "bare.npz: error: no two bodies that can move touch" narrow-phase bare.npz -o a.png
+run 0 figure strip bare.npz -o bare.png
+run 0 figure strip far.npz --at 0.5 -o far.png
+run 0 figure strobe far.npz -o far.svg
+run 0 figure divergence engine.npz far.npz -o far.pdf
+refused "wild.npz: error: step 4, contact 0: not finite" annotated wild.npz -o a.png
+
+mkdir folder.png
+run 3 figure strip engine.npz -o folder.png
+run 3 figure strip engine.npz -o nowhere/a.png
+complains "nowhere/a.png: error:"
+rm bare.png far.*
+equal "left behind" "$(echo ./*.png ./*.svg ./*.pdf)" "./folder.png ./*.svg ./*.pdf"
+equal "in it" "$(ls -A folder.png)" ""
+finish

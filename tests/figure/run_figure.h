@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What tests of figures of runs share. Include testing.h first. */
+#pragma once
+#include "figure/run_figures.h"
+#include "render/runs.h"
+
+static inline FigureSpec spec_of(Trajectory *const *runs, int count) {
+    static const char *const paths[] = {"a.npz", "b.npz", "c.npz"};
+    FigureSpec spec = {.width = FIGURE_PAGE, .points = FIGURE_POINTS, .dpi = 100, .run_count = count};
+    for (int i = 0; i < count; i++) spec.runs[i] = runs[i], spec.paths[i] = paths[i];
+    return spec;
+}
+
+static inline void draw_kind(Sketch *sketch, const char *name, const FigureSpec *spec) {
+    Error error = {0};
+    const FigureKind *kind = figure_kind(name, &error);
+    *sketch = (Sketch){0};
+    assert_ok(kind != NULL && kind->draw(sketch, spec, &error) && !sketch->failed, error);
+}
+
+static inline void expect_kind_refused(const char *name, const FigureSpec *spec, const char *message) {
+    Error error = {0};
+    Sketch sketch = {0};
+    const FigureKind *kind = figure_kind(name, &error);
+    assert_ok(kind != NULL, error);
+    assert_false(kind->draw(&sketch, spec, &error));
+    assert_error(error, ERROR_INPUT, message);
+    sketch_free(&sketch);
+}
+
+/* How many of the sketch's texts are this one. */
+static inline int count_words(const Sketch *sketch, const char *words) {
+    int count = 0;
+    for (size_t i = 0; i < sketch->mark_count; i++)
+        count += sketch->marks[i].kind == MARK_TEXT && strcmp(sketch->texts + sketch->marks[i].text, words) == 0;
+    return count;
+}
+
+static inline int count_marks(const Sketch *sketch, SketchMarkKind kind) {
+    int count = 0;
+    for (size_t i = 0; i < sketch->mark_count; i++) count += sketch->marks[i].kind == kind;
+    return count;
+}
+
+static inline const SketchMark *nth_mark(const Sketch *sketch, SketchMarkKind kind, int n) {
+    for (size_t i = 0; i < sketch->mark_count; i++)
+        if (sketch->marks[i].kind == kind && n-- == 0) return &sketch->marks[i];
+    fail_msg("the sketch has no such mark");
+    return NULL;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "figure/run_figure.h"
+#include "figure/type.h"
+#include "render/mesa.h"
+
+static void every_run_has_a_row_and_every_moment_a_column(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 31)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.time_count = 3;
+    spec.times[0] = 0, spec.times[1] = 0.1, spec.times[2] = 0.5;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_marks(&sketch, MARK_IMAGE), 6);
+    assert_int_equal(count_words(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_words(&sketch, "0.10 s"), 1);
+    assert_int_equal(count_words(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_words(&sketch, "engine"), 1);
+    assert_int_equal(count_words(&sketch, "pair-net"), 1);
+    /* Rows in the order of the runs, columns in that of the moments, all of a size, none over another or the edge. */
+    const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0);
+    double height = first->width * first->image->height / first->image->width;
+    for (int i = 0; i < 6; i++) {
+        const SketchMark *mark = nth_mark(&sketch, MARK_IMAGE, i);
+        assert_near(mark->width, first->width, 1e-9);
+        assert_near(mark->at.x, first->at.x + i % 3 * (first->width + 1.2), 1e-9);
+        assert_near(mark->at.y, first->at.y - i / 3 * (height + 1.2), 1e-9);
+        assert_true(mark->at.x > 0 && mark->at.x + mark->width < sketch.width);
+    }
+    assert_near(sketch.width, FIGURE_PAGE, 0);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 121), run_make("engine", 61)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 3;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_words(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_words(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_words(&sketch, "1.00 s"), 1);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+/* The window is that of what moves: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
+static void the_window_holds_what_moves(void **state) {
+    (void)state;
+    Trajectory *run = run_make("engine", 3);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 1;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const SketchMark *mark = nth_mark(&sketch, MARK_IMAGE, 0);
+    double turned = 0.5 * (2 * cos(0.2) + sin(0.2)), bomb = 0.75 * (cos(0.2) + sin(0.2));
+    double wide = 2 + turned + 2.5 + 0.8, low = 0.5 - 0.5 * (cos(0.2) + 2 * sin(0.2)), high = 5.6 + bomb - low + 0.8;
+    assert_near((double)mark->image->height / mark->image->width, high / wide, 0.01);
+    sketch_free(&sketch);
+    trajectory_destroy(run);
+}
+
+static void who_has_left_is_counted(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 3), run_make("pair-net", 3)};
+    *run_position(runs[1], 2, FIRST_BOX) = vec2(-50, 3);
+    *run_position(runs[1], 2, BOMB_BODY) = vec2(1e30f, -1e30f);
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 2;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_words(&sketch, "2 outside"), 1);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+static void long_names_are_cut_to_their_row(void **state) {
+    (void)state;
+    Trajectory *run = run_make("pair-net:network=some/where/a/very/long/name/of/a/network/that/fits/nowhere.npz", 61);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 6;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const SketchMark *cell = nth_mark(&sketch, MARK_IMAGE, 0);
+    const char *name = sketch.texts + nth_mark(&sketch, MARK_TEXT, 0)->text;
+    assert_memory_equal(name, "pair-net:", 9);
+    assert_non_null(strstr(name, "\xE2\x80\xA6"));
+    assert_true(type_width(name, spec.points) <= cell->width * cell->image->height / cell->image->width);
+    sketch_free(&sketch);
+    trajectory_destroy(run);
+}
+
+static void what_cannot_be_shown_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.time_count = 1;
+    spec.times[0] = 0.3;
+    expect_kind_refused("strip", &spec, "b.npz: error: shows no moment at 0.3 s: it goes from 0 to 0.16666");
+    spec.times[0] = -1;
+    expect_kind_refused("strip", &spec, "a.npz: error: shows no moment at -1 s");
+    spec.time_count = 0, spec.moments = 60;
+    expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
+    spec.moments = 1;
+    runs[1]->size[2] = vec2(3, 3);
+    expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
+    assert_null(figure_kind("stripe", &error));
+    assert_error(error, ERROR_INPUT, "'stripe' is no kind of figure; there are strip");
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_run_has_a_row_and_every_moment_a_column),
+        cmocka_unit_test(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run),
+        cmocka_unit_test(the_window_holds_what_moves),
+        cmocka_unit_test(who_has_left_is_counted),
+        cmocka_unit_test(long_names_are_cut_to_their_row),
+        cmocka_unit_test(what_cannot_be_shown_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "image/mask.h"
+
+enum { WIDTH = 6, HEIGHT = 4 };
+static Mask mask;
+
+static int clear(void **state) {
+    (void)state;
+    mask_free(&mask);
+    return 0;
+}
+
+static uint8_t *made(void) {
+    Error error = {0};
+    uint8_t *masked = mask_make(&mask, WIDTH, HEIGHT, "frame.png", &error);
+    assert_ok(masked != NULL, error);
+    return masked;
+}
+
+static void rectangles_are_cut_at_the_edges(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(mask_add_rectangle(&mask, -2, -1, 3, 2, &error), error);
+    assert_ok(mask_add_rectangle(&mask, 4, 2, 1000000, 1000000, &error), error);
+    assert_ok(mask_add_rectangle(&mask, 100, 100, 5, 5, &error), error);
+    uint8_t *masked = made();
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            assert_int_equal(masked[y * WIDTH + x], (x == 0 && y == 0) || (x >= 4 && y >= 2));
+    free(masked);
+}
+
+/* White, dark, black; the last two with nothing of them to be seen, of which the file, opaque, knows nothing. */
+static void pictures_mask_where_they_are_not_black(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = temporary_path("mask.png");
+    Image *image = image_create(WIDTH, HEIGHT, &error);
+    image->pixels[4 * 3 + 1] = 1;
+    memset(image->pixels + 4 * 7, 255, 3);
+    assert_ok(image_write_png(image, path, NULL, 0, &error), error);
+    assert_ok(mask_add_picture(&mask, path, &error), error);
+    uint8_t *masked = made();
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(masked[i], i == 3 || i == 7);
+    free(masked);
+    assert_null(mask_make(&mask, WIDTH + 1, HEIGHT, "frame.png", &error));
+    assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png 7 x 4");
+    image_destroy(image);
+}
+
+static void masked_pixels_do_not_count(void **state) {
+    (void)state;
+    Error error = {0};
+    ImageDifference difference;
+    Image *a = image_create(WIDTH, HEIGHT, &error), *b = image_create(WIDTH, HEIGHT, &error);
+    uint8_t masked[WIDTH * HEIGHT] = {[8] = 1, [9] = 1};
+    a->pixels[4 * 8] = 200, a->pixels[4 * 10] = 3, a->pixels[4 * 22 + 2] = 7;
+    image_compare_masked(a, b, masked, &difference);
+    assert_int_equal(difference.counted, WIDTH * HEIGHT - 2);
+    assert_int_equal(difference.pixels, 2);
+    assert_int_equal(difference.largest, 7);
+    assert_true(difference.first_x == 4 && difference.first_y == 1);
+    assert_true(difference.left == 4 && difference.top == 1 && difference.right == 5 && difference.bottom == 4);
+    image_cover(b, a, masked);
+    assert_true(a->pixels[4 * 8] == 0 && a->pixels[4 * 10] == 3);
+    masked[10] = masked[22] = 1;
+    image_compare_masked(a, b, masked, &difference);
+    assert_true(difference.equal);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+static void there_is_an_end_of_masks(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int i = 0; i < MASK_PARTS; i++) assert_ok(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), error);
+    assert_false(mask_add_rectangle(&mask, 0, 0, 1, 1, &error));
+    assert_error(error, ERROR_INPUT, "at most 64 masks");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
+        cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
+        cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
+        cmocka_unit_test_teardown(there_is_an_end_of_masks, clear),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

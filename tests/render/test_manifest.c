@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The manifest says what was drawn, and an interrupted sequence goes on to the same bytes as one that was not. */
+#include "testing.h"
+
+#include "common/hash.h"
+#include "common/json.h"
+#include "folders.h"
+#include "mesa.h"
+#include "render/render.h"
+#include "runs.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+enum { FRAMES = 12, PICTURES = FRAMES + 2 * 11 + 3, WIDTH = 160, HEIGHT = 90 };
+
+static Trajectory *runs[2];
+static const Trajectory *panels[2];
+static char whole[256]; /* folder of a sequence that nothing interrupted */
+
+/* The impact is in step 5, and all is slow; three pictures are held at the end. */
+static RenderOptions options_for(const char *directory) {
+    return (RenderOptions){
+        .width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = directory, .slow = 3, .hold = 0.05};
+}
+
+static int make(void **state) {
+    (void)state;
+    Error error = {0};
+    TrajectoryContact contact = {.a = FIRST_BOX, .b = BOMB_BODY, .normal = {0, 1}};
+    panels[0] = runs[0] = run_make("engine", FRAMES);
+    panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
+    assert_ok(trajectory_add_contact(runs[0], 5, &contact, &error), error);
+    trajectory_end_contacts(runs[0]);
+    snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
+    RenderOptions options = options_for(whole);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+    return 0;
+}
+
+static const char *manifest_of(const char *directory) {
+    static char path[512];
+    snprintf(path, sizeof path, "%s/manifest.json", directory);
+    return path;
+}
+
+/* Resumes in a folder, which must become as if nothing had happened; returns how many pictures were kept. */
+static int resume(const char *directory, char why[256]) {
+    Error error = {0};
+    RenderResult result;
+    RenderOptions options = options_for(directory);
+    options.resume = true;
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_true(result.first == 0 && result.last == PICTURES - 1 && result.all);
+    free(result.hashes);
+    if (why != NULL) memcpy(why, result.why, sizeof result.why);
+    assert_same_folder(whole, directory);
+    return result.kept;
+}
+
+/* A copy of the whole sequence. */
+static const char *copied(const char *name) {
+    Error error = {0};
+    const char *directory = temporary_path(name);
+    assert_ok(file_make_directory(directory, &error), error);
+    for (int i = -1; i < PICTURES; i++) {
+        size_t size;
+        char to[512];
+        char *data = read_whole(i < 0 ? manifest_of(whole) : frame_path(whole, i), &size);
+        snprintf(to, sizeof to, "%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
+        assert_ok(file_write_soon(to, data, size, &error), error);
+        free(data);
+    }
+    return directory;
+}
+
+static uint64_t hash_of(const Json *json, const JsonValue *object, const char *key) {
+    Error error = {0};
+    const JsonValue *text = json_need(json, object, key, JSON_STRING, &error);
+    assert_ok(text != NULL, error);
+    return strtoull(text->text, NULL, 16);
+}
+
+static void check_states(const JsonValue *states, int frame) {
+    int panel = 0;
+    for (const JsonValue *state = json_first(states); state != NULL; state = json_next(states, state), panel++) {
+        int last = panels[panel]->frames - 1;
+        uint64_t hash = trajectory_frame_hash(panels[panel], frame < last ? frame : last);
+        assert_true(strtoull(state->text, NULL, 16) == hash);
+    }
+    assert_int_equal(panel, 2);
+}
+
+static void a_manifest_tells_of_every_picture(void **state) {
+    (void)state;
+    Error error = {0};
+    Json json;
+    assert_ok(json_read(&json, manifest_of(whole), 1 << 20, &error), error);
+    const JsonValue *pictures = json_need(&json, json.values, "pictures", JSON_ARRAY, &error);
+    assert_int_equal(pictures->count, PICTURES);
+    int index = 0;
+    for (const JsonValue *it = json_first(pictures); it != NULL; it = json_next(pictures, it), index++) {
+        int64_t frame;
+        size_t size;
+        const char *path = frame_path(whole, index),
+                   *part = json_member(it, "part") ? json_member(it, "part")->text : "";
+        char *data = read_whole(path, &size), text[64] = "";
+        Image *image = image_read_png(path, &error);
+        assert_true(hash_of(&json, it, "pixels") == image_hash(image));
+        assert_true(hash_of(&json, it, "file_hash") == hash_xxh3(data, size));
+        assert_non_null(strstr(path, json_member(it, "file")->text));
+        assert_ok(json_need_int(&json, it, "frame", 0, FRAMES - 1, &frame, &error), error);
+        check_states(json_member(it, "states"), (int)frame);
+        /* The picture's own texts say the same. */
+        assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
+        assert_int_equal(atoi(text), frame);
+        text[0] = '\0';
+        image_read_text(path, "Part", text, sizeof text, &(Error){0});
+        assert_string_equal(text, part);
+        image_destroy(image);
+        free(data);
+    }
+    assert_int_equal(index, PICTURES);
+    json_free(&json);
+}
+
+static void a_manifest_names_no_place(void **state) {
+    (void)state;
+    size_t size;
+    char *text = read_whole(manifest_of(whole), &size);
+    assert_null(strstr(text, temporary_folder));
+    free(text);
+}
+
+static void nothing_is_drawn_twice(void **state) {
+    (void)state;
+    char why[256];
+    assert_int_equal(resume(copied("again"), why), PICTURES);
+    assert_string_equal(why, "");
+    assert_int_equal(resume(temporary_path("fresh"), why), 0);
+    assert_non_null(strstr(why, "fresh/manifest.json: error: cannot open"));
+}
+
+static void put(const char *path, const char *data, size_t size) {
+    Error error = {0};
+    assert_ok(file_write_soon(path, data, size, &error), error);
+}
+
+static void what_is_missing_or_damaged_is_drawn_again(void **state) {
+    (void)state;
+    size_t size, other_size;
+    const char *directory = copied("damaged");
+    char *data = read_whole(frame_path(directory, 4), &size),
+         *other = read_whole(frame_path(directory, 5), &other_size);
+    assert_int_equal(unlink(frame_path(directory, 0)), 0);
+    put(frame_path(directory, 1), data, size / 2);    /* cut */
+    put(frame_path(directory, 2), data, 0);           /* empty */
+    put(frame_path(directory, 4), other, other_size); /* each other's */
+    put(frame_path(directory, 5), data, size);
+    data[size / 2] ^= 1;
+    put(frame_path(directory, 7), data, size); /* a bit */
+    other = realloc(other, other_size + 1);
+    put(frame_path(directory, PICTURES - 1), other, other_size + 1); /* a byte behind the end */
+    assert_int_equal(unlink(frame_path(directory, 9)), 0);
+    free(data);
+    free(other);
+    assert_int_equal(resume(directory, NULL), PICTURES - 8);
+}
+
+typedef struct Stop {
+    double at;
+    bool kill;
+} Stop;
+
+static bool stop(void *context, double done, double total) {
+    const Stop *how = context;
+    (void)total;
+    if (done >= how->at && how->kill) kill(getpid(), SIGKILL);
+    return done < how->at;
+}
+
+static void a_stopped_sequence_goes_on(void **state) {
+    (void)state;
+    for (int at = 1; at < PICTURES; at += 30) {
+        Error error = {0};
+        RenderOptions options = options_for(temporary_path("stopped"));
+        assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
+        assert_error(error, ERROR_INPUT, "stopped");
+        assert_int_equal(access(manifest_of(options.directory), F_OK), -1);
+        assert_true(resume(options.directory, NULL) >= at);
+    }
+}
+
+static void a_killed_sequence_goes_on(void **state) {
+    (void)state;
+    RenderOptions options = options_for(temporary_path("killed"));
+    for (int at = 1; at < PICTURES; at += 30) {
+        int status;
+        pid_t child = fork();
+        if (child == 0) {
+            setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+            render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, true}}, &(Error){0});
+            _exit(0);
+        }
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_true(resume(options.directory, NULL) >= at);
+    }
+}
+
+/* A write was cut off by the end of the machine: the last line is a part of one, and pictures may be as well. */
+static void every_cut_of_the_journal_is_survived(void **state) {
+    (void)state;
+    Error error = {0};
+    char journal[600];
+    RenderOptions options = options_for(temporary_path("cut"));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
+    snprintf(journal, sizeof journal, "%s.part", manifest_of(options.directory));
+    size_t size;
+    char *text = read_whole(journal, &size);
+    /* In the head, in the first line, in and behind the last. */
+    const size_t cuts[] = {0,        50,  (size_t)(strstr(text, "{\"file\"") - text) + 30, size - 90, size - 20,
+                           size - 1, size};
+    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
+        assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
+        put(journal, text, cuts[i]);
+        resume(options.directory, NULL);
+    }
+    free(text);
+}
+
+/* The pictures of another sequence pass for none of this. */
+static void another_sequence_is_drawn_anew(void **state) {
+    (void)state;
+    static const struct {
+        RenderOptions options;
+        const char *why;
+    } others[] = {{{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 is of other runs"},
+                  {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "is of other runs"},
+                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 is of"},
+                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 is of"},
+                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "is of other runs"}};
+    char why[256];
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        Error error = {0};
+        char name[16];
+        snprintf(name, sizeof name, "other%zu", i);
+        RenderOptions options = others[i].options;
+        options.directory = temporary_path(name);
+        options.last = -1;
+        options.jobs = 1;
+        RenderResult result;
+        assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+        free(result.hashes);
+        for (int k = PICTURES; k <= result.last; k++) unlink(frame_path(options.directory, k));
+        assert_int_equal(resume(options.directory, why), 0);
+        if (strstr(why, others[i].why) == NULL) fail_msg("\"%s\" lacks \"%s\"", why, others[i].why);
+    }
+}
+
+/* One bit of a run, of which no picture tells, is another run. */
+static void another_run_is_drawn_anew(void **state) {
+    (void)state;
+    const char *directory = copied("run");
+    char why[256];
+    runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 1e-9F;
+    RenderOptions options = options_for(directory);
+    options.resume = true;
+    RenderResult result;
+    Error error = {0};
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_int_equal(result.kept, 0);
+    free(result.hashes);
+    runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
+    assert_int_equal(resume(directory, why), 0);
+    assert_non_null(strstr(why, "is of other runs"));
+}
+
+static char *replaced(const char *text, const char *from, const char *to) {
+    const char *at = strstr(text, from);
+    char *result = malloc(strlen(text) + strlen(to) + 1);
+    assert_non_null(at);
+    sprintf(result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    return result;
+}
+
+/* Whatever a manifest says, the pictures become what they must be. */
+static void a_manifest_is_not_trusted(void **state) {
+    (void)state;
+    static const char *const changes[][2] = {
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_000004.png\""},
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_999999999999999999999.png\""},
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"../frame_000003.png\""},
+        {"\"frame\": 1,", "\"frame\": 2,"},
+        {"\"pixels\": \"", "\"pixels\": \"0"},
+        {"\"file_hash\": \"", "\"file_hash\": \"ABCDEF"},
+        {"\"shows\": \"between\"", "\"shows\": \"frame\""},
+        {"\n", "\n\n"},
+    };
+    size_t size;
+    char *text = read_whole(manifest_of(whole), &size);
+    const char *directory = copied("changed");
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        char *changed = replaced(text, changes[i][0], changes[i][1]);
+        bool ours = strncmp(changed, text, 12) == 0;
+        put(manifest_of(directory), changed, strlen(changed));
+        free(changed);
+        if (ours) assert_true(resume(directory, NULL) < PICTURES);
+    }
+    char *large = calloc(1, 1 << 20);
+    memcpy(large, text, size);
+    put(manifest_of(directory), large, 1 << 20);
+    assert_int_equal(resume(directory, NULL), 0);
+    free(large);
+    free(text);
+}
+
+/* Nor is what somebody else keeps there touched. */
+static void what_is_no_manifest_stays(void **state) {
+    (void)state;
+    static const char foreign[] = "{\"name\": \"my own\"}";
+    Error error = {0};
+    RenderOptions options = options_for(copied("foreign"));
+    for (int again = 0; again < 2; again++) {
+        options.resume = again == 1;
+        put(manifest_of(options.directory), foreign, sizeof foreign - 1);
+        error = (Error){0};
+        assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is no manifest of twinbox");
+        size_t size;
+        char *text = read_whole(manifest_of(options.directory), &size);
+        assert_string_equal(text, foreign);
+        free(text);
+    }
+    assert_int_equal(unlink(manifest_of(options.directory)), 0);
+    assert_int_equal(mkdir(manifest_of(options.directory), 0700), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(rmdir(manifest_of(options.directory)), 0);
+    assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(unlink(manifest_of(options.directory)), 0);
+    put(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
+    assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(count_files(options.directory, ".png"), PICTURES);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_manifest_tells_of_every_picture),
+        cmocka_unit_test(a_manifest_names_no_place),
+        cmocka_unit_test(nothing_is_drawn_twice),
+        cmocka_unit_test(what_is_missing_or_damaged_is_drawn_again),
+        cmocka_unit_test(a_stopped_sequence_goes_on),
+        cmocka_unit_test(a_killed_sequence_goes_on),
+        cmocka_unit_test(every_cut_of_the_journal_is_survived),
+        cmocka_unit_test(another_sequence_is_drawn_anew),
+        cmocka_unit_test(another_run_is_drawn_anew),
+        cmocka_unit_test(a_manifest_is_not_trusted),
+        cmocka_unit_test(what_is_no_manifest_stays),
+    };
+    return cmocka_run_group_tests(tests, make, destroy);
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The smallest changes there can be, each with its verdict: who changed, and where first. */
+#include "testing.h"
+
+#include "common/file.h"
+#include "render/mesa.h"
+#include "render/render.h"
+#include "render/runs.h"
+#include "report/regression.h"
+
+#include <math.h>
+
+/* The camera sees 10 m in a picture of 320 pixels, so a metre is at most 32 pixels, and a 512th of one a 16th of a pixel. */
+enum { FRAMES = 6, WIDTH = 320, HEIGHT = 180, SEEN = 10 };
+static const float SIXTEENTH = 1.0F / 512;
+
+static char expected[256], actual[256];
+static Trajectory *run;
+
+static const char *in(const char *folder, const char *name) {
+    static char paths[4][512];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static const char *frame_path(const char *folder, int frame) {
+    char name[32];
+    snprintf(name, sizeof name, "frame_%06d.png", frame);
+    return in(folder, name);
+}
+
+/* The frames of the run as it now is, and the run itself. */
+static void render_into(const char *folder) {
+    Error error = {0};
+    const Trajectory *const panels[] = {run};
+    const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
+    assert_ok(render_sequence(panels, 1, &options, NULL, NULL, &error), error);
+    assert_ok(trajectory_write(run, in(folder, "two.npz"), &error), error);
+}
+
+static Trajectory *make_run(void) {
+    Trajectory *made = run_make("engine", FRAMES);
+    made->camera_center = vec2(0, 2);
+    made->camera_size = vec2(SEEN, SEEN * HEIGHT / WIDTH);
+    return made;
+}
+
+/* Drawn once, copied for each test. */
+static int draw_expected(void **state) {
+    (void)state;
+    snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
+    snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
+    run = make_run();
+    render_into(in(expected, "kept"));
+    trajectory_destroy(run);
+    return 0;
+}
+
+static int make(void **state) {
+    (void)state;
+    char command[2048];
+    run = make_run();
+    snprintf(command, sizeof command, "mkdir %s && cp %s/kept/* %s && cp %s/kept/* %s", actual, expected, actual,
+             expected, expected);
+    return system(command);
+}
+
+static int remove_folders(void **state) {
+    (void)state;
+    char command[1024];
+    trajectory_destroy(run);
+    snprintf(command, sizeof command, "rm -r %s %s/*.*", actual, expected);
+    return system(command);
+}
+
+static Regression compared(void) {
+    Error error = {0};
+    Regression regression;
+    const RegressionOptions options = {.max_pixels = IMAGE_MAX_PIXELS};
+    assert_ok(regression_run(&regression, expected, actual, &options, NULL, &error), error);
+    assert_int_equal(regression.count, FRAMES);
+    return regression;
+}
+
+/* One verdict for each frame, a letter each: (e)qual, (r)enderer, (p)hysics; and that of the whole. */
+static void assert_verdicts(const Regression *regression, const char *letters, const char *whole) {
+    char found[FRAMES + 1] = "";
+    for (int i = 0; i < FRAMES; i++) found[i] = frame_verdict(&regression->frames[i])[0];
+    assert_string_equal(found, letters);
+    assert_string_equal(regression_verdict(regression).text, whole);
+    assert_true(regression_passed(regression) == (strcmp(whole, "equal") == 0));
+}
+
+static void remove_runs(void) {
+    assert_int_equal(remove(in(expected, "two.npz")), 0);
+    assert_int_equal(remove(in(actual, "two.npz")), 0);
+}
+
+/* A picture of another renderer: its pixels, but the texts that the frame had. */
+static void replace_pixels(int frame, const Image *image) {
+    static const char *const keys[] = {"Scene", "Frame", "State"};
+    char values[3][512];
+    ImageText texts[3];
+    Error error = {0};
+    const char *path = frame_path(actual, frame);
+    for (int i = 0; i < 3; i++) {
+        assert_ok(image_read_text(path, keys[i], values[i], sizeof values[i], &error), error);
+        texts[i] = (ImageText){keys[i], values[i]};
+    }
+    assert_ok(image_write_png(image, path, texts, 3, &error), error);
+}
+
+static Image *drawn(int frame) {
+    Error error = {0};
+    const Trajectory *const panels[] = {run};
+    const RenderOptions options = {.width = WIDTH, .height = HEIGHT};
+    Renderer *renderer = renderer_create(panels, 1, &options, &error);
+    Image *image = image_create(WIDTH, HEIGHT, &error);
+    assert_ok(renderer != NULL && image != NULL && renderer_draw(renderer, frame, image, &error), error);
+    renderer_destroy(renderer);
+    return image;
+}
+
+static void nothing_changed(void **state) {
+    (void)state;
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeeeee", "equal");
+    assert_string_equal(regression_begin(&regression).text, "");
+    regression_free(&regression);
+}
+
+static void a_box_drawn_a_sixteenth_of_a_pixel_aside(void **state) {
+    (void)state;
+    run_position(run, 3, FIRST_BOX)->x += SIXTEENTH;
+    Image *image = drawn(3);
+    replace_pixels(3, image);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeeree", "renderer changed");
+    assert_string_equal(regression_begin(&regression).text, "renderer changed first in frame_000003.png");
+    image_destroy(image);
+    regression_free(&regression);
+}
+
+static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
+    (void)state;
+    run_position(run, 3, FIRST_BOX)->x += SIXTEENTH;
+    render_into(actual);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeepee", "physics changed");
+    assert_int_equal(regression.frames[3].pixels, PIXELS_DIFFER);
+    assert_int_equal(regression.runs[0].difference.frame, 3);
+    assert_int_equal(regression.runs[0].difference.body, FIRST_BOX);
+    regression_free(&regression);
+    /* The pictures alone know the frame, and the panel. */
+    remove_runs();
+    regression = compared();
+    assert_verdicts(&regression, "eeepee", "physics changed");
+    assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000003.png, panel 1");
+    regression_free(&regression);
+}
+
+/* One channel of one pixel of the caption, by one. */
+static void one_pixel_of_a_label(void **state) {
+    (void)state;
+    Image *image = drawn(4);
+    uint8_t *pixel = image->pixels + (12 * WIDTH + 20) * 4;
+    pixel[1] = (uint8_t)(pixel[1] > 0 ? pixel[1] - 1 : 1);
+    replace_pixels(4, image);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeeere", "renderer changed");
+    const ImageDifference *difference = &regression.frames[4].difference;
+    assert_true(difference->pixels == 1 && difference->largest == 1);
+    assert_true(difference->first_x == 20 && difference->first_y == 12);
+    image_destroy(image);
+    regression_free(&regression);
+}
+
+static void two_frames_swapped(void **state) {
+    (void)state;
+    char second[512], third[512];
+    snprintf(second, sizeof second, "%s", frame_path(actual, 2));
+    snprintf(third, sizeof third, "%s", frame_path(actual, 3));
+    const char *aside = in(actual, "aside");
+    assert_true(rename(second, aside) == 0 && rename(third, second) == 0 && rename(aside, third) == 0);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeppee", "physics changed");
+    regression_free(&regression);
+}
+
+/* No pixel shows it; the run beside the frames does. */
+static void the_last_bit_of_one_body(void **state) {
+    (void)state;
+    Error error = {0};
+    float *angle = run_angle(run, 4, SECOND_BOX);
+    *angle = nextafterf(*angle, 10);
+    assert_ok(trajectory_write(run, in(actual, "two.npz"), &error), error);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeeepe", "physics changed");
+    assert_int_equal(regression.frames[4].pixels, PIXELS_EQUAL);
+    assert_int_equal(regression.runs[0].difference.frame, 4);
+    assert_int_equal(regression.runs[0].difference.body, SECOND_BOX);
+    assert_non_null(
+        strstr(regression_begin(&regression).text, "physics changed first in two.npz: from frame 4, body 2"));
+    regression_free(&regression);
+    /* Frames that were drawn of it tell the same by themselves. */
+    render_into(actual);
+    remove_runs();
+    regression = compared();
+    assert_verdicts(&regression, "eeeepe", "physics changed");
+    assert_int_equal(regression.frames[4].pixels, PIXELS_EQUAL);
+    regression_free(&regression);
+}
+
+static void both_at_once(void **state) {
+    (void)state;
+    run_position(run, 5, FIRST_BOX)->y += 1;
+    render_into(actual);
+    Image *image = drawn(1);
+    image->pixels[0] ^= 1;
+    replace_pixels(1, image);
+    Regression regression = compared();
+    assert_verdicts(&regression, "ereeep", "physics and renderer changed");
+    assert_non_null(strstr(regression_begin(&regression).text, "\nrenderer changed first in frame_000001.png"));
+    image_destroy(image);
+    regression_free(&regression);
+}
+
+/* A run of another length, and of other bodies: from where the one ends, and everywhere. */
+static void other_runs_beside_the_frames(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *other = run_make("engine", 4);
+    assert_ok(trajectory_write(other, in(actual, "two.npz"), &error), error);
+    Regression regression = compared();
+    assert_verdicts(&regression, "eeeepp", "physics changed");
+    regression_free(&regression);
+    other->size[FIRST_BOX].x = 3;
+    assert_ok(trajectory_write(other, in(actual, "two.npz"), &error), error);
+    regression = compared();
+    assert_verdicts(&regression, "pppppp", "physics changed");
+    trajectory_destroy(other);
+    regression_free(&regression);
+}
+
+/* What a run does later moves the camera of its first frames, without any fault of the renderer. */
+static void a_camera_that_follows_the_run(void **state) {
+    (void)state;
+    run->camera_size = vec2(0, 0);
+    render_into(expected);
+    run_position(run, 5, FIRST_BOX)->y += 30;
+    render_into(actual);
+    Regression regression = compared();
+    assert_int_equal(regression.by_verdict[PIXELS_DIFFER], FRAMES);
+    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
+    assert_int_equal(regression.runs[0].difference.frame, 5);
+    regression_free(&regression);
+    remove_runs();
+    regression = compared();
+    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
+    assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000005.png, panel 1");
+    regression_free(&regression);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(nothing_changed, make, remove_folders),
+        cmocka_unit_test_setup_teardown(a_box_drawn_a_sixteenth_of_a_pixel_aside, make, remove_folders),
+        cmocka_unit_test_setup_teardown(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders),
+        cmocka_unit_test_setup_teardown(one_pixel_of_a_label, make, remove_folders),
+        cmocka_unit_test_setup_teardown(two_frames_swapped, make, remove_folders),
+        cmocka_unit_test_setup_teardown(the_last_bit_of_one_body, make, remove_folders),
+        cmocka_unit_test_setup_teardown(both_at_once, make, remove_folders),
+        cmocka_unit_test_setup_teardown(other_runs_beside_the_frames, make, remove_folders),
+        cmocka_unit_test_setup_teardown(a_camera_that_follows_the_run, make, remove_folders),
+    };
+    return cmocka_run_group_tests(tests, draw_expected, NULL);
+}
