@@ -45,6 +45,7 @@ static const VideoFormat *find_format(const char *path) {
     return NULL;
 }
 
+/* A folder that is missing is made now: after all has been drawn is no time to hear that it cannot be. */
 static bool check_place(const char *path, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
@@ -52,7 +53,9 @@ static bool check_place(const char *path, Error *error) {
     if (length >= PATH_MAX - REST) return error_input(error, path, "the name is too long");
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is no regular file");
     snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
-    return access(folder, W_OK) == 0 || error_system(error, path, "cannot write there: %s", strerror(errno));
+    if (access(folder, W_OK) == 0) return true;
+    if (errno == ENOENT) return file_make_directory(folder, error);
+    return error_system(error, path, "cannot write there: %s", strerror(errno));
 }
 
 bool video_check(const char *path, int width, int height, Error *error) {

@@ -96,7 +96,9 @@ complains "--hold"
 run 2 render single.yaml -o x --hold 61
 [ -e x ] && fail "a refused command made a folder"
 run 3 render short.npz -o /proc/nowhere --size 192x108
-run 3 render short.npz -o part --size 192x108 --video nowhere/clip.mp4
+run 3 render short.npz -o part --size 192x108 --video /proc/nowhere/clip.mp4
+run 0 render short.npz -o part --size 192x108 --frames 0:1 --video films/clip.mp4 # a folder that is not there yet
+[ -s films/clip.mp4 ] || fail "no video in a new folder"
 [ -z "$(ls | grep part.mp4)" ] || fail "half a video left behind"
 
 # No ffmpeg: told before anything is drawn.
