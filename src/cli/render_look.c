@@ -90,28 +90,33 @@ bool render_look_read(const RenderLookOptions *options, RenderLook *look, Error 
     return true;
 }
 
-/* "momentum:k=20" is method "momentum" with setting "k=20". A run without settings has the scene's, which a trajectory does
-   not tell: any setting fits it, if there is but one in the table. The network is no setting of the chart's. */
-static bool is_of(const ChartRow *row, const Trajectory *run) {
-    size_t length = strcspn(run->method, ":");
-    if (strncmp(row->method, run->method, length) != 0 || row->method[length] != '\0') return false;
-    const char *settings = run->method[length] == ':' ? run->method + length + 1 : "";
-    if (settings[0] == '\0' || strncmp(settings, "network=", 8) == 0) return true;
-    return strcmp(row->setting, settings) == 0;
+/* "momentum:k=20" is method "momentum" with setting "k=20". The network is no setting of the chart's. */
+static const char *settings_of(const Trajectory *run) {
+    const char *colon = strchr(run->method, ':');
+    return colon == NULL || strncmp(colon + 1, "network=", 8) == 0 ? "" : colon + 1;
 }
 
-/* NULL where there is none, or where two could be meant. */
+static bool is_of(const ChartRow *row, const Trajectory *run) {
+    size_t length = strcspn(run->method, ":");
+    return strncmp(row->method, run->method, length) == 0 && row->method[length] == '\0';
+}
+
+/* The row of these settings. A run without any has the scene's, which a trajectory does not tell: if no row is without,
+   that of any setting, if there is but one. NULL where there is none. */
 static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run) {
     const ChartRow *found = NULL;
+    const char *settings = settings_of(run);
+    int fitting = 0;
     for (int i = 0; i < table->count; i++) {
         const ChartRow *row = &table->rows[i];
         if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
             isnan(row->us_solver) || !is_of(row, run))
             continue;
-        if (found != NULL) return NULL;
+        if (strcmp(row->setting, settings) == 0) return row;
         found = row;
+        fitting++;
     }
-    return found;
+    return settings[0] == '\0' && fitting == 1 ? found : NULL;
 }
 
 static bool read_costs(RenderLookOptions *options, RenderLook *look, const Panels *panels, Error *error) {
@@ -121,7 +126,8 @@ static bool read_costs(RenderLookOptions *options, RenderLook *look, const Panel
     for (int i = 0; i < panels->count; i++) {
         const ChartRow *row = find_cost(&table, panels->runs[i]);
         if (row == NULL) continue;
-        snprintf(options->cost_texts[i], sizeof options->cost_texts[i], "%.3g \xC2\xB5s a step at the impact",
+        const int decimals = row->us_solver < 1 ? 2 : row->us_solver < 100 ? 1 : 0;
+        snprintf(options->cost_texts[i], sizeof options->cost_texts[i], "%.*f \xC2\xB5s a step at the impact", decimals,
                  row->us_solver);
         look->costs[i] = options->cost_texts[i];
         found++;
