@@ -92,7 +92,7 @@ cat >probe.html <<'PROBE'
 PROBE
 browse() {
     cat report/report.html probe.html >probed.html
-    timeout 120 chromium --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --window-size=1280,900 \
+    timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$folder/profile" --window-size=1280,900 \
         --virtual-time-budget=60000 --dump-dom "file://$folder/probed.html" >dom 2>chromium.err || fail "chromium: $(tail -n 3 chromium.err)"
     sed -n '/BEGIN/,/END/p' dom | sed 's/&lt;/</g; s/&gt;/>/g; s/&amp;/\&/g' >out
     grep -q END out || fail "the page's script did not come to its end: $(tail -n 3 chromium.err)"
