@@ -102,6 +102,7 @@ static const Column columns[] = {
     FIGURE(error_mean, 0, INFINITY),
     FIGURE(error_median, 0, INFINITY),
     FIGURE(error_p95, 0, INFINITY),
+    FIGURE(error_worst, 0, INFINITY),
     FIGURE(share_right, 0, 1),
     FIGURE(penetration_max, 0, INFINITY),
     FIGURE(drift, -INFINITY, INFINITY),

@@ -11,7 +11,10 @@ typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
 
 enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
 
-/* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve. */
+/* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve; mean,
+   median and p95 are of all steps scored, whatever their launch. error_worst is of launches in closed loop: the largest
+   of their own mean errors in the phase, each over the steps scored of its run (until it left the finite numbers, where
+   it did; a launch without such a step has no say). Frozen rows have none: their steps are of no run of the method. */
 typedef struct ChartRow {
     char scene[CHART_NAME_SIZE], method[CHART_NAME_SIZE];
     char setting[CHART_SETTING_SIZE]; /* "k=20,warm=off" */
@@ -22,6 +25,7 @@ typedef struct ChartRow {
     double us_step;                               /* of the whole step, median; microseconds */
     double instructions;                          /* in the solver per step */
     double error_mean, error_median, error_p95;   /* m/s */
+    double error_worst;                           /* mean of the worst launch, m/s */
     double share_right;                           /* of bodies, 0 to 1 */
     double penetration_max, drift;                /* m */
     double energy;                                /* above the converged run's, J */

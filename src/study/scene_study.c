@@ -4,6 +4,7 @@
 #include "common/parallel.h"
 #include "scene/launch.h"
 #include "study/scene_rows.h"
+#include "study/statistics.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -81,7 +82,8 @@ bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *err
 /* What the launches of one contender gave. */
 typedef struct Scores {
     StepScores frozen[PHASES], closed[PHASES];
-    RunFigures *figures; /* [launch_count] */
+    RunFigures *figures;  /* [launch_count] */
+    double worst[PHASES]; /* m/s: largest of the launches' mean errors in closed loop; NAN without a step scored */
 } Scores;
 
 static void scores_free(Scores *scores) {
@@ -92,13 +94,26 @@ static void scores_free(Scores *scores) {
     free(scores->figures);
 }
 
+/* A launch's own steps are those behind the ones that the launches before it left: scored[PHASES] of them. */
+static void keep_worst(Scores *scores, const int scored[PHASES]) {
+    for (int phase = 0; phase < PHASES; phase++) {
+        const StepScores *closed = &scores->closed[phase];
+        if (closed->count == scored[phase]) continue;
+        double mean = statistics_mean(closed->error + scored[phase], closed->count - scored[phase]);
+        scores->worst[phase] = fmax(scores->worst[phase], mean); /* passes over NAN */
+    }
+}
+
 static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, Error *error) {
     Rollout rollout = {0};
     bool ok = true;
     for (int i = 0; ok && i < study->launch_count; i++) {
         const Scene *launched = &study->launches[i];
+        int scored[PHASES];
+        for (int phase = 0; phase < PHASES; phase++) scored[phase] = scores->closed[phase].count;
         ok = rollout_run(&rollout, stepper, launched, &study->size->closed, scores->closed, error);
         if (ok) scores->figures[i] = run_figures(&rollout.log, &study->converged[i], launched);
+        if (ok) keep_worst(scores, scored);
         ok = ok && snapshots_score(&study->snapshots[i], stepper, rollout.world, scores->frozen, error);
     }
 #pragma omp critical(study_residual)
@@ -111,7 +126,7 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
 }
 
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error) {
-    Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures))};
+    Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures)), .worst = {NAN, NAN, NAN}};
     if (scores.figures == NULL) return error_memory(error, "study");
     const Contender *who = study->contenders[contender];
     Stepper *stepper = stepper_create(&who->method, study->scene, error);
@@ -123,6 +138,7 @@ bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *
         *closed = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_CLOSED, phase);
         scene_row_errors(frozen, &scores.frozen[phase]);
         scene_row_errors(closed, &scores.closed[phase]);
+        closed->error_worst = scores.worst[phase];
         scene_row_figures(closed, scores.figures, study->launch_count);
     }
     scores_free(&scores);

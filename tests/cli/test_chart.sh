@@ -47,7 +47,7 @@ cp "part/$name" part.csv
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 without_times part/chart.csv | cmp -s - figures.csv || fail "a chart gone on with has other figures"
 mkdir changed
-sed '3s/^single,\([^,]*\),\([^,]*\),frozen,after,5,\(.*\),[^,]*,[^,]*,[^,]*,[^,]*,,,,$/single,\1,\2,frozen,after,5,\3,0.375,0.25,0.5,1,,,,/' \
+sed '3s/^single,\([^,]*\),\([^,]*\),frozen,after,5,\(.*\),[^,]*,[^,]*,[^,]*,,[^,]*,,,,$/single,\1,\2,frozen,after,5,\3,0.375,0.25,0.5,,1,,,,/' \
     part.csv >"changed/$name"
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o changed --quick
 without_times changed/chart.csv | diff - figures.csv >difference
@@ -56,10 +56,32 @@ equal "other differences" "$(grep -c '^[<>]' difference)" 2
 equal "what was done is gone" "$(ls part | grep -c '\.part\.csv$')" 0
 
 # Launches of one's own.
-printf 'x,spin\n1.02,5\n-2.02,-5\n' >launches.csv
+printf 'x,spin\n1.02,5\n-2.02,-5\n0.3,0\n' >launches.csv
 run 0 chart "$scenes/single.yaml" -o own --quick --methods engine:k=10,reference --launches launches.csv
-says "single: 2 methods and settings, 2 launches -> own/chart-single.png"
+says "single: 2 methods and settings, 3 launches -> own/chart-single.png"
 equal "rows" "$(wc -l <own/chart.csv)" 13
+
+# The worst launch is the one that is worst on its own; frozen steps are no launch's.
+for number in 2 3 4; do
+    sed -n "1p;${number}p" launches.csv >one.csv
+    run 0 chart "$scenes/single.yaml" -o "own$number" --quick --methods engine:k=10,reference --launches one.csv
+done
+/usr/bin/python3 - <<'PYTHON' || fail "another launch is the worst"
+import csv
+together, *alone = (list(csv.DictReader(open(f"{name}/chart.csv"))) for name in ("own", "own2", "own3", "own4"))
+worst = set()
+for row, *single in zip(together, *alone, strict=True):
+    if row["protocol"] == "frozen":
+        assert row["error_worst"] == "" != row["error_mean"], row
+        continue
+    errors = [one["error_mean"] for one in single]
+    assert [one["error_worst"] for one in single] == errors, single
+    assert row["error_worst"] == max(errors, key=float), (row, errors)
+    worst.add(errors.index(row["error_worst"]))
+# Neither the first nor the last, so that neither could pass for it.
+assert 1 in worst, worst
+PYTHON
+checks=$((checks + 1))
 
 printf 'x,colour\n1,red\n' >bad.csv
 run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv

@@ -74,7 +74,7 @@ static void the_same_table_gives_the_same_files(void **state) {
 
 #define HEADER                                                                                               \
     "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
-    "error_mean,error_median,error_p95,share_right,penetration_max,drift,energy,moved\n"
+    "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
 
 static const char *write_rows(const char *lines) {
     Error error = {0};
@@ -95,26 +95,27 @@ static void expect_refused(const char *lines, const char *scene, const char *mes
 static void tables_without_a_mark_are_refused(void **state) {
     (void)state;
     static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
-    expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,\n", "single", none);
-    expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,\n"
-                   "single,engine,k=10,closed,rest,40,5,4,6,,,1,,,,,,,\n"
-                   "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,\n"
-                   "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,\n"
-                   "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,\n",
+    expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
+    expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=10,closed,rest,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,,\n"
+                   "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
+                   "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
                    "single", none);
-    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,\n", "single", "error_mean cannot be -1");
-    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,\n", "../x", "cannot be the name of a scene");
+    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean cannot be -1");
+    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "cannot be the name of a scene");
     char many[8000] = "";
     for (int i = 0; i < 25; i++)
-        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,\n", i);
+        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
     expect_refused(many, "single", "more than 24 methods");
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
     (void)state;
     Error error = {0};
-    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,\n"), "stack", folder(), &error),
-              error);
+    assert_ok(
+        chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
+        error);
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
@@ -125,7 +126,7 @@ static void a_full_chart_is_drawn(void **state) {
     char lines[20000] = "";
     for (int i = 0; i < 24 * 5; i++)
         snprintf(lines + strlen(lines), 200,
-                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,\n", i % 24,
+                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n", i % 24,
                  i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
     assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
 }
@@ -150,9 +151,9 @@ static void names_cannot_become_commands(void **state) {
     assert_non_null(file);
     for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
         for (int k = 1; k <= 2; k++) {
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,\n", names[i], k, names[i],
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,,\n", names[i], k, names[i],
                     5 * k, 4 * k, 6 * k, i + 1);
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,\n", names[i], k, names[i]);
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,,\n", names[i], k, names[i]);
         }
     fclose(file);
     char here[256];
@@ -187,12 +188,12 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     Error error = {0};
     ChartTable table;
     assert_ok(chart_csv_read(&table,
-                             write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,\n"
-                                        "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,\n"
-                                        "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,\n"
-                                        "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,\n"
-                                        "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,\n"
-                                        "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,\n"),
+                             write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
+                                        "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
+                                        "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n"),
                              &error),
               error);
     Chart chart;
@@ -222,9 +223,9 @@ static void long_names_stay_apart(void **state) {
     (void)state;
     Error error = {0};
     ChartTable table;
-    const char *path =
-        write_rows("stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,\n"
-                   "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,\n");
+    const char *path = write_rows(
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
     assert_ok(chart_csv_read(&table, path, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
@@ -243,7 +244,7 @@ static void a_missing_gnuplot_is_named(void **state) {
     setenv("PATH", "/nonexistent", 1);
     Error error = {0};
     bool drawn =
-        chart_plot(write_rows("bare,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,\n"), "bare", folder(), &error);
+        chart_plot(write_rows("bare,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "bare", folder(), &error);
     setenv("PATH", path, 1);
     assert_false(drawn);
     assert_error(error, ERROR_SYSTEM, "gnuplot-nox");

@@ -5,7 +5,7 @@
 
 #define CHART_HEADER                                                                                         \
     "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
-    "error_mean,error_median,error_p95,share_right,penetration_max,drift,energy,moved\n"
+    "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
 
 /* Writes a table with the header of a chart; the lines follow it as they are. */
 static inline const char *write_chart(const char *lines) {

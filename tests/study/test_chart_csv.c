@@ -8,14 +8,16 @@
 #include <math.h>
 
 static const ChartRow full = {
-    "stack", "momentum", "k=20,warm=off", PROTOCOL_CLOSED, PHASE_AFTER, 40,  10.5,  9.25,     11.75,
-    52.5,    123456,     0.0625,          0.03125,         0.25,        0.5, 0.001, -0.00025, -2.5,
-    1.5};
+    "stack", "momentum", "k=20,warm=off", PROTOCOL_CLOSED, PHASE_AFTER, 40,    10.5, 9.25,  11.75,
+    52.5,    123456,     0.0625,          0.03125,         0.25,        0.125, 0.5,  0.001, -0.00025,
+    -2.5,    1.5};
 
 static ChartRow bare(void) {
-    return (ChartRow){
-        "stack", "playback", "", PROTOCOL_FROZEN, PHASE_IMPACT, 0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN,
-        NAN,     NAN,        NAN};
+    return (ChartRow){"stack",      "playback", "",  PROTOCOL_FROZEN,
+                      PHASE_IMPACT, 0,          NAN, NAN,
+                      NAN,          NAN,        NAN, NAN,
+                      NAN,          NAN,        NAN, NAN,
+                      NAN,          NAN,        NAN, NAN};
 }
 
 static void rows_are_written_as_the_header_says(void **state) {
@@ -29,8 +31,8 @@ static void rows_are_written_as_the_header_says(void **state) {
     assert_ok(text != NULL, error);
     assert_string_equal(text,
                         CHART_HEADER "stack,momentum,\"k=20,warm=off\",closed,after,40,10.5,9.25,11.75,52.5,123456,"
-                                     "0.0625,0.03125,0.25,0.5,0.001,-0.00025,-2.5,1.5\n"
-                                     "stack,playback,,frozen,impact,0,,,,,,,,,,,,,\n");
+                                     "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5\n"
+                                     "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,\n");
     free(text);
 }
 
@@ -83,7 +85,7 @@ static void what_could_not_be_read_is_not_written(void **state) {
     assert_int_equal(access(path, F_OK), -1);
 }
 
-#define GOOD "stack,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,,,,\n"
+#define GOOD "stack,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,,,,,\n"
 
 static void broken_tables_are_refused_with_their_place(void **state) {
     (void)state;
@@ -91,24 +93,26 @@ static void broken_tables_are_refused_with_their_place(void **state) {
         const char *lines, *message;
     } cases[] = {
         {"", "chart.csv:2:1: error: no line behind the header"},
-        {"stack,engine\n", "chart.csv:2:1: error: 2 fields where the header has 19"},
+        {"stack,engine\n", "chart.csv:2:1: error: 2 fields where the header has 20"},
         {GOOD GOOD, "chart.csv:3:1: error: this row is there twice"},
-        {"stack,engine,k=10,open,impact,40,5,4,6,50,,0.5,,,,,,,\n",
+        {"stack,engine,k=10,open,impact,40,5,4,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:19: error: unknown protocol (got open)"},
-        {"stack,engine,k=10,closed,,40,5,4,6,50,,0.5,,,,,,,\n", "chart.csv:2:26: error: unknown phase (got nothing)"},
-        {"stack,engine,k=10,closed,impact,-1,5,4,6,50,,0.5,,,,,,,\n",
+        {"stack,engine,k=10,closed,,40,5,4,6,50,,0.5,,,,,,,,\n", "chart.csv:2:26: error: unknown phase (got nothing)"},
+        {"stack,engine,k=10,closed,impact,-1,5,4,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:33: error: launches must be a whole number (got -1)"},
-        {"stack,engine,k=10,closed,impact,40,five,4,6,50,,0.5,,,,,,,\n",
+        {"stack,engine,k=10,closed,impact,40,five,4,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:36: error: us_solver must be a number (got five)"},
-        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,nan,,,,,,,\n",
+        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,nan,,,,,,,,\n",
          "chart.csv:2:46: error: error_mean must be a number (got nan)"},
-        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,-0.5,,,,,,,\n",
+        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,-0.5,,,,,,,,\n",
          "chart.csv:2:46: error: error_mean cannot be -0.5"},
-        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,1.5,,,,\n",
-         "chart.csv:2:52: error: share_right cannot be 1.5"},
-        {"stack,engine,k=10,closed,impact,40,5,5.5,6,50,,0.5,,,,,,,\n",
+        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,-1,,,,,\n",
+         "chart.csv:2:52: error: error_worst cannot be -1"},
+        {"stack,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,1.5,,,,\n",
+         "chart.csv:2:53: error: share_right cannot be 1.5"},
+        {"stack,engine,k=10,closed,impact,40,5,5.5,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:36: error: the median time is not within its quartiles"},
-        {"stack,engine,k=10,closed,impact,40,,7,6,50,,0.5,,,,,,,\n",
+        {"stack,engine,k=10,closed,impact,40,,7,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:36: error: the median time is not within its quartiles"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -122,7 +126,7 @@ static void broken_tables_are_refused_with_their_place(void **state) {
 static void long_names_are_refused(void **state) {
     (void)state;
     char lines[512];
-    snprintf(lines, sizeof lines, "%0128d,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,,,,\n", 0);
+    snprintf(lines, sizeof lines, "%0128d,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,,,,,\n", 0);
     Error error = {0};
     ChartTable table;
     assert_false(chart_csv_read(&table, write_chart(lines), &error));
@@ -135,7 +139,7 @@ static void other_headers_are_refused(void **state) {
         const char *text, *message;
     } cases[] = {
         {"scene,name\na,b\n", "other.csv:1:7: error: column 2 of a chart is method (got name)"},
-        {"scene,method\na,b\n", "other.csv:1:1: error: a chart has 19 columns (got 2)"},
+        {"scene,method\na,b\n", "other.csv:1:1: error: a chart has 20 columns (got 2)"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
