@@ -31,6 +31,13 @@ static inline Floats load(const int8_t *bytes) {
 
 static inline int64_t row_at(const int32_t *index, int i) { return index != NULL ? index[i] : i; }
 
+static inline __attribute__((always_inline)) void add_row(Floats held[GROUP], const PackedRows *rows, int64_t row,
+                                                          float number, int at, const int vectors) {
+    const int8_t *from = rows->numbers + row * rows->width + at;
+    const float by = number * rows->units[row];
+    for (int v = 0; v < vectors; v++) held[v] += by * load(from + v * FLOATS);
+}
+
 /* The columns from `at` on, as many as `vectors` registers hold, in CHAINS sums each: an addition waits for the one
    before it, and one chain of them would leave the processor idle. */
 static inline __attribute__((always_inline)) void add_columns(float *sums, const PackedRows *rows, const int32_t *index,
@@ -41,13 +48,11 @@ static inline __attribute__((always_inline)) void add_columns(float *sums, const
         held[0][v] = ((const Floats *)(sums + at))[v];
         for (int c = 1; c < CHAINS; c++) held[c][v] = (Floats){0};
     }
-    for (int i = 0; i < count; i += CHAINS)
-        for (int c = 0; c < CHAINS && i + c < count; c++) {
-            const int64_t row = row_at(index, i + c);
-            const int8_t *from = rows->numbers + row * rows->width + at;
-            const float number = numbers[i + c] * rows->units[row];
-            for (int v = 0; v < vectors; v++) held[c][v] += number * load(from + v * FLOATS);
-        }
+    int i = 0;
+    for (; i + CHAINS <= count; i += CHAINS)
+        for (int c = 0; c < CHAINS; c++) add_row(held[c], rows, row_at(index, i + c), numbers[i + c], at, vectors);
+    for (int c = 0; c < CHAINS - 1; c++)
+        if (i + c < count) add_row(held[c], rows, row_at(index, i + c), numbers[i + c], at, vectors);
     for (int v = 0; v < vectors; v++)
         ((Floats *)(sums + at))[v] = (held[0][v] + held[1][v]) + (held[2][v] + held[3][v]);
 }
@@ -56,6 +61,8 @@ static void add(float *sums, const PackedRows *rows, const int32_t *index, const
     int at = 0;
     for (; at + GROUP * FLOATS <= rows->width; at += GROUP * FLOATS)
         add_columns(sums, rows, index, numbers, count, at, GROUP);
+    for (; 2 * LANE_VECTORS < GROUP && at + 2 * ROW_LANES <= rows->width; at += 2 * ROW_LANES)
+        add_columns(sums, rows, index, numbers, count, at, 2 * LANE_VECTORS);
     for (; at < rows->width; at += ROW_LANES) add_columns(sums, rows, index, numbers, count, at, LANE_VECTORS);
 }
 

@@ -7,11 +7,12 @@
    is where sweep s + 1 begins; it brings the impulses back into their cones. Source: Nesterov, "A Method of Solving a
    Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); on contacts Mazhar, Heyn, Negrut, Tasora, "Using
    Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), there with whole gradient
-   steps where here are sweeps. Fails where the cones change from sweep to sweep: what is carried on is then wrong, so
+   steps where here are sweeps. Sweeps are in the order of colours: as near, and sooner (tests/bench/colours). Fails where the cones change from sweep to sweep: what is carried on is then wrong, so
    the first sweeps of an impact gain little. */
 #include "solvers/momentum.h"
 
 #include "common/array.h"
+#include "solvers/contact_velocity.h"
 #include "solvers/sequential_impulses.h"
 #include "solvers/solvers.h"
 
@@ -38,14 +39,26 @@ static void extrapolate_all(const ContactProblem *problem, float factor, Contact
     }
 }
 
-void momentum_solve_plain(const ContactProblem *problem, const float *factors, int count, ContactSolution *before,
-                          ContactSolution *solution) {
+static void begin_plain(const ContactProblem *problem, const int32_t *visits, ContactSolution *solution) {
+    static const SequentialOptions cold = {.accumulate = false};
+    sequential_impulses_begin(problem, &cold, solution);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[visits[i]];
+        const ContactImpulse warm = {contact->warm_normal, contact->warm_tangent};
+        solution->impulses[visits[i]] = warm;
+        contact_push(solution->velocities, contact, problem->bodies, warm);
+    }
+}
+
+void momentum_solve_plain(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
+                          ContactSolution *before, ContactSolution *solution) {
     static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
-    sequential_impulses_begin(problem, &options, solution);
-    sequential_impulses_begin(problem, &options, before);
+    begin_plain(problem, visits, solution);
+    begin_plain(problem, visits, before);
     for (int sweep = 0; sweep < count; sweep++) {
         extrapolate_all(problem, factors[sweep], before, solution);
-        sequential_impulses_sweep(problem, &options, solution);
+        for (int i = 0; i < problem->contact_count; i++)
+            sequential_impulses_visit(problem, &options, visits[i], 1, solution);
     }
 }
 
@@ -63,7 +76,7 @@ void momentum_free(Momentum *momentum) {
 
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
                     ContactSolution *solution, Error *error) {
-    if (!sweeps_begin(&momentum->sweeps, sweeps_best_kernel(), problem, true, 1.0f) ||
+    if (!sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) ||
         !sweeps_run_momentum(&momentum->sweeps, factors, count))
         return error_memory(error, "momentum");
     if (sweeps_end(&momentum->sweeps, solution)) return true;
@@ -73,7 +86,7 @@ bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const flo
         !array_reserve((void **)&before->impulses, &momentum->contact_capacity, (size_t)problem->contact_count,
                        sizeof *before->impulses))
         return error_memory(error, "momentum");
-    momentum_solve_plain(problem, factors, count, before, solution);
+    momentum_solve_plain(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
     return true;
 }
 

@@ -20,7 +20,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { REST_SWEEPS = 20, MORE_SWEEPS = 48 };
+enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, LOOK_EVERY = 8 };
 
 /* The gap from which on a step goes on after the network and its sweeps; and, of it, the share that is still too much
    where there was little to do from the start: there all bodies are to be right. */
@@ -28,8 +28,8 @@ static const float near_default = 0.1f; /* m/s, RMS over the contacts */
 static const float calm_share = 0.15f;
 
 /* What is done of a step: as the method momentum does, `rest` sweeps; where the bomb is there, of the training's mass, but
-   the gap is below the gate, half as many, and as many again, twice at most, while that is not near enough; the network,
-   `after` sweeps, and up to MORE_SWEEPS more while that is not. */
+   the gap is below the gate, half as many, and up to CALM_MORE more while that is not near enough; the network, `after`
+   sweeps, and up to MORE_SWEEPS more while that is not. */
 typedef enum Way { BY_MOMENTUM, CALM, BY_NETWORK } Way;
 
 /* What is pushed beyond it cannot be taken back: rounding alone would leave more than 1e-3 m/s. */
@@ -45,8 +45,7 @@ typedef struct SceneNet {
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_plain;                     /* no factor of them does anything */
     float *rest_factors, *half_factors;   /* [rest], [half] */
-    const float *more_factors;            /* [more] of those that a step goes on by: one of the above */
-    int more;
+    float more_factors[MORE_SWEEPS];      /* of those that a step goes on by */
 } SceneNet;
 
 static const SettingSpec settings[] = {
@@ -79,9 +78,7 @@ static void choose_factors(SceneNet *solver) {
                                                                     : 0;
     for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_by_hand(s, solver->rest);
     for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_by_hand(s, solver->half);
-    learned &= solver->after > 0;
-    solver->more_factors = learned ? solver->after_factors : solver->rest_factors;
-    solver->more = learned ? solver->after : solver->rest;
+    for (int s = 0; s < MORE_SWEEPS; s++) solver->more_factors[s] = momentum_factor_by_hand(s, MORE_SWEEPS);
 }
 
 static SceneNet *make(const SlotNetwork *network, int after, int rest, float near, Error *error) {
@@ -154,25 +151,26 @@ static bool run_after(SceneNet *solver) {
                                : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* What is left tells how near a step is: as many sweeps again while that is above `near`, `most` in all. */
-static bool go_on(SceneNet *solver, const ContactProblem *problem, float near, const float *factors, int count,
-                  int most) {
+/* What is left tells how near a step is: sweeps go on while that is `near` or more, `most` in all. What is far off then is
+   so in long waves, a heavy bomb on all boxes under it, and those take momentum that has had time to gather: one run,
+   looked at now and then, and not many. */
+static bool go_on(SceneNet *solver, const ContactProblem *problem, float near, int most) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    for (int done = 0; done < most && impact_gap_reaches(sweeps, problem->contact_count, near); done += count)
-        if (!sweeps_run_momentum(sweeps, factors, count)) return false;
+    const float *factors = solver->more_factors;
+    for (int done = 0; done < most && impact_gap_reaches(sweeps, problem->contact_count, near); done += LOOK_EVERY)
+        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, LOOK_EVERY)
+                        : sweeps_continue_momentum(sweeps, factors + done, LOOK_EVERY)))
+            return false;
     return true;
 }
 
 static bool run(SceneNet *solver, const ContactProblem *problem, Way way) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    const int half = solver->half;
     switch (way) {
     case CALM:
-        return sweeps_run_momentum(sweeps, solver->half_factors, half) &&
-               go_on(solver, problem, calm_share * solver->near, solver->half_factors, half, 2 * half);
-    case BY_NETWORK:
-        return run_after(solver) &&
-               go_on(solver, problem, solver->near, solver->more_factors, solver->more, MORE_SWEEPS);
+        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) &&
+               go_on(solver, problem, calm_share * solver->near, CALM_MORE);
+    case BY_NETWORK: return run_after(solver) && go_on(solver, problem, solver->near, MORE_SWEEPS);
     case BY_MOMENTUM: break;
     }
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
@@ -203,9 +201,8 @@ static bool solve_without(SceneNet *solver, const ContactProblem *problem, Conta
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SceneNet *solver = state;
     Sweeps *sweeps = &solver->momentum.sweeps;
-    const SweepKernel kernel = sweeps_best_kernel();
     if (!fits(solver->network, problem, error)) return false;
-    if (!sweeps_begin(sweeps, kernel, problem, true, 1)) return error_memory(error, "scene-net");
+    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
     Way way;
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_way(solver, problem, &way, &solution->fallbacks, error)) return false;

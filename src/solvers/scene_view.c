@@ -70,17 +70,22 @@ static uint32_t turn_feature(uint32_t feature, bool of_a, int turns) {
 /* 0 .. 3 */
 static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns / 4)); }
 
-uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
+/* With the bomb turned back by so many quarters. */
+static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
     if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
-    const int turns = turns_modulo_4(turns_of(&problem->bodies[problem->bomb]));
     return turn_feature(contact->feature, contact->a == problem->bomb, turns);
 }
 
-static void put_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int i) {
+uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
+    const int bomb = problem->bomb;
+    return feature_of(problem, contact, bomb < 0 ? 0 : turns_modulo_4(turns_of(&problem->bodies[bomb])));
+}
+
+static void put_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int turns, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     ContactImpulse *base = &view->base[i];
     *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
-    const int slot = slot_network_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
+    const int slot = slot_network_find(network, contact->a, contact->b, feature_of(problem, contact, turns));
     if (slot < 0) return;
     const int k = view->slots.slot_count++;
     view->contacts[k] = i;
@@ -98,10 +103,11 @@ bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactP
     if (!reserve(view, problem)) return false;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     put_body(view->bomb, bomb);
-    view->bomb[2] -= quarter_turn * turns_of(bomb);
+    const float turns = turns_of(bomb);
+    view->bomb[2] -= quarter_turn * turns;
     for (int i = 0, k = 0; i < problem->body_count; i++)
         if (i != network->bomb) put_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
     view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
-    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, i);
+    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, turns_modulo_4(turns), i);
     return true;
 }

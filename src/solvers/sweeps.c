@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum {
+    COLOURED_AT_ONCE = 2,     /* sweeps in a schedule by colours: more would share few levels */
     VISITS_AT_ONCE = 1 << 12, /* visits in one schedule: it should stay in the cache */
     LEVEL_PAYS = 3            /* visits a level from which on lanes are faster than one by one */
 };
@@ -35,6 +36,8 @@ void sweeps_free(Sweeps *sweeps) {
     free(sweeps->ready);
     free(sweeps->seen);
     free(sweeps->sums);
+    free(sweeps->first);
+    colours_free(&sweeps->colours);
     *sweeps = (Sweeps){0};
 }
 
@@ -51,6 +54,7 @@ static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
     return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, 2 * bodies, sizeof *sweeps->bodies) &&
            array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
            array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
+           array_reserve((void **)&sweeps->first, &sweeps->first_capacity, pairs, sizeof *sweeps->first) &&
            array_reserve((void **)&sweeps->pairs, &sweeps->pair_capacity, pairs, sizeof *sweeps->pairs) &&
            array_reserve((void **)&sweeps->quiet_since, &sweeps->quiet_capacity, pairs, sizeof *sweeps->quiet_since) &&
            array_reserve((void **)&sweeps->changed_at, &sweeps->changed_capacity, bodies, sizeof *sweeps->changed_at) &&
@@ -95,31 +99,49 @@ static void load_point(SweepPair *pair, int k, const ContactPoint *contact, floa
     point->extra = extra;
 }
 
-static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, bool warm, float relaxation) {
+/* The pair that begins with the problem's contact number `first`; returns how many points it has. */
+static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, bool warm, float relaxation) {
     static const ContactPoint none = {0};
+    const ContactPoint *contact = &problem->contacts[first], *next = contact + 1;
+    const bool two = first + 1 < problem->contact_count && contact_shares_surface(contact, next);
+    SweepPair *pair = &sweeps->pairs[sweeps->pair_count];
+    pair->normal = contact->normal;
+    pair->friction = contact->friction;
+    pair->inv_inertia_a = problem->bodies[contact->a].inv_inertia;
+    load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm, relaxation);
+    load_point(pair, 1, two ? next : &none, two ? -1.0f : 0.0f, warm, relaxation);
+    sweeps->first[sweeps->pair_count] = first;
+    sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
+    return two ? 2 : 1;
+}
+
+/* visits: the order of contacts, the two of a pair together; or NULL, as they are given. */
+static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int32_t *visits, bool warm,
+                       float relaxation) {
     sweeps->pair_count = 0;
-    for (int i = 0; i < problem->contact_count;) {
-        const ContactPoint *contact = &problem->contacts[i], *next = contact + 1;
-        bool two = i + 1 < problem->contact_count && contact_shares_surface(contact, next);
-        SweepPair *pair = &sweeps->pairs[sweeps->pair_count];
-        pair->normal = contact->normal;
-        pair->friction = contact->friction;
-        pair->inv_inertia_a = problem->bodies[contact->a].inv_inertia;
-        load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm, relaxation);
-        load_point(pair, 1, two ? next : &none, two ? -1.0f : 0.0f, warm, relaxation);
-        sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
-        i += two ? 2 : 1;
-    }
+    for (int i = 0; i < problem->contact_count;)
+        i += load_pair(sweeps, problem, visits != NULL ? visits[i] : i, warm, relaxation);
     sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
 }
 
-bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation) {
+static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits, bool warm,
+                  float relaxation) {
     if (!reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
+    sweeps->coloured = visits != NULL;
     load_bodies(sweeps, problem);
-    load_pairs(sweeps, problem, warm, relaxation);
+    load_pairs(sweeps, problem, visits, warm, relaxation);
     sweeps_warm_start(sweeps);
     return true;
+}
+
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation) {
+    return begin(sweeps, kernel, problem, NULL, warm, relaxation);
+}
+
+bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
+    return colours_order(&sweeps->colours, problem) &&
+           begin(sweeps, kernel, problem, sweeps->colours.visits, true, 1.0f);
 }
 
 /* Makes both schedules, unless those of the step before are for the same pairs. turns: with extrapolation. */
@@ -142,9 +164,10 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
 
 /* The number of sweeps in one schedule: equal parts of them all, if possible. With extrapolation an even one, where
    it is run more than once: each run begins in the same half of the bodies and sums. */
-static int sweeps_at_once(int pair_count, int count, bool turns) {
-    int most = VISITS_AT_ONCE / pair_count;
-    if (most > SWEEPS_AT_ONCE) most = SWEEPS_AT_ONCE;
+static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
+    const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
+    int most = VISITS_AT_ONCE / sweeps->pair_count;
+    if (most > limit) most = limit;
     if (most < 1) most = 1;
     if (count <= most) return count;
     int equal = count / ((count + most - 1) / most);
@@ -154,7 +177,7 @@ static int sweeps_at_once(int pair_count, int count, bool turns) {
 /* By lanes, where the processor has them and enough visits share a level. */
 static bool run(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
-    int at_once = sweeps_at_once(sweeps->pair_count, count, turns);
+    int at_once = sweeps_at_once(sweeps, count, turns);
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
@@ -182,7 +205,7 @@ bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem) {
 
 bool sweeps_run_blocks(Sweeps *sweeps, int count) {
     if (sweeps->pair_count == 0) return true;
-    int at_once = sweeps_at_once(sweeps->pair_count, count, false);
+    int at_once = sweeps_at_once(sweeps, count, false);
     if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
     for (int done = 0; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
     sweeps_run_blocks_avx2(sweeps, &sweeps->rest);
@@ -203,11 +226,19 @@ static bool begin_turns(Sweeps *sweeps) {
     return true;
 }
 
-/* Back from the half that the last sweep worked in. */
+static void swap_halves(Sweeps *sweeps) {
+    const size_t bodies = (size_t)sweeps->body_count + 1;
+    for (size_t i = 0; i < bodies; i++) {
+        const SweepBody first = sweeps->bodies[i];
+        sweeps->bodies[i] = sweeps->bodies[bodies + i];
+        sweeps->bodies[bodies + i] = first;
+    }
+}
+
+/* The half that the last sweep worked in becomes the first; the sums of both stay where they are. */
 static void end_turns(Sweeps *sweeps, int count) {
-    size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
-    size_t last = (size_t)(count + 1) % 2;
-    if (last == 1) memcpy(sweeps->bodies, sweeps->bodies + bodies, bodies * sizeof *sweeps->bodies);
+    const size_t half = (size_t)sweeps->pair_count + 1, last = (size_t)(count + 1) % 2;
+    if (last == 1) swap_halves(sweeps);
     const ContactImpulse *sums = sweeps->sums + last * 2 * half;
     for (size_t i = 0; i < half; i++) memcpy(sweeps->pairs[i].sums, sums + 2 * i, sizeof sweeps->pairs[i].sums);
 }
@@ -219,6 +250,14 @@ bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
+bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
+    if (sweeps->pair_count == 0) return true;
+    swap_halves(sweeps);
+    if (!run(sweeps, factors, count)) return false;
+    end_turns(sweeps, count);
+    return true;
+}
+
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
     bool finite = true;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -226,10 +265,11 @@ bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
         solution->velocities[i] = (BodyVelocity){vec2(body->x, body->y), body->spin};
         finite &= isfinite(body->x) && isfinite(body->y) && isfinite(body->spin);
     }
-    for (int i = 0, contact = 0; i < sweeps->pair_count; i++) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
         const SweepPair *pair = &sweeps->pairs[i];
-        solution->impulses[contact++] = pair->sums[0];
-        if (pair->points[1].extra < 0.0f) solution->impulses[contact++] = pair->sums[1];
+        ContactImpulse *impulses = &solution->impulses[sweeps->first[i]];
+        impulses[0] = pair->sums[0];
+        if (pair->points[1].extra < 0.0f) impulses[1] = pair->sums[1];
     }
     return finite;
 }

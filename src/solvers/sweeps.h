@@ -4,12 +4,14 @@
    Contacts that share no moving body commute exactly. So a sweep need not visit them one by one: sweeps_schedule.c
    sorts the visits of several sweeps into levels, each of visits that do not depend on each other, and a level is
    solved in the lanes of a vector, one pair of bodies a lane (sweeps_lanes.h). Few contacts, or a processor without
-   such vectors: one after the other, from the same packed records.
+   such vectors: one after the other, from the same packed records. Visits come in the order of the problem's contacts,
+   which is the engine's, or by colours (colours.h): fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end tells where they are not. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "solvers/block.h"
+#include "solvers/colours.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -97,11 +99,14 @@ typedef struct Sweeps {
     SweepKernel kernel;
     int body_count, pair_count;
     SweepBody *bodies;    /* [2, body_count + 1]; the second half is for extrapolation only */
-    SweepPair *pairs;     /* [pair_count + 1] */
+    SweepPair *pairs;     /* [pair_count + 1] in the order of visits */
+    int32_t *first;       /* [pair_count] the problem's contact that each begins with */
     SweepEnds *ends;      /* [pair_count] */
     SweepEnds *scheduled; /* [scheduled_count] the ends that the schedules are made for */
     int scheduled_count, scheduled_bodies;
     bool scheduled_turns; /* are they made for extrapolation? */
+    bool coloured;        /* are the pairs in the order of colours? */
+    Colours colours;
     ContactImpulse *sums; /* [2, pair_count + 1, 2] with extrapolation: of this sweep and the one before, in turns */
     SweepSchedule whole, rest; /* of as many sweeps as fit, run again and again, and of those left over */
     bool *moves;               /* [body_count] can an impulse change the body's velocity? */
@@ -111,6 +116,7 @@ typedef struct Sweeps {
     int32_t *seen;        /* [body_count] while scheduling with extrapolation: sweeps that have met the body */
     size_t sums_capacity, seen_capacity, quiet_capacity, changed_capacity;
     size_t body_capacity, pair_capacity, ends_capacity, scheduled_capacity, moves_capacity, ready_capacity;
+    size_t first_capacity;
 } Sweeps;
 
 void sweeps_free(Sweeps *sweeps);
@@ -119,12 +125,19 @@ void sweeps_free(Sweeps *sweeps);
    False when memory is short. */
 bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
 
+/* The same, but for visits in the order of colours (colours.h): sooner done, and other bits. Warm, not relaxed. */
+bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
+
 /* Sweeps `count` times over all contacts. False when memory is short. */
 bool sweeps_run(Sweeps *sweeps, int count);
 
 /* The same with an extrapolation before each sweep but the first, bit by bit the plain text of momentum.c: velocities
    and sums go on by factors[sweep] (>= 0) times what the sweep before changed, extrapolation included. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
+
+/* Goes on where sweeps_run_momentum, or this, has ended, as if that had been one run: factors[0] counts here. Both counts
+   are even. */
+bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
 
 /* The same for sweeps over blocks, bit by bit the plain text of block.c. Only where the processor can sweep by lanes. */
 bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem);

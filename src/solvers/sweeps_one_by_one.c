@@ -43,10 +43,11 @@ void sweeps_warm_start(Sweeps *sweeps) {
 void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses) {
     for (int i = 0; i < sweeps->pair_count; i++) {
         SweepPair *pair = &sweeps->pairs[i];
-        push_pair(sweeps, i, impulses);
-        for (int k = 0; k < sweep_pair_points(pair); k++, impulses++) {
-            pair->sums[k].normal += impulses->normal;
-            pair->sums[k].tangent += impulses->tangent;
+        const ContactImpulse *by = &impulses[sweeps->first[i]];
+        push_pair(sweeps, i, by);
+        for (int k = 0; k < sweep_pair_points(pair); k++) {
+            pair->sums[k].normal += by[k].normal;
+            pair->sums[k].tangent += by[k].tangent;
         }
     }
 }

@@ -48,7 +48,7 @@ static bool run_launch(void *context, int i, Error *error) {
         if (phase == PHASE_AFTER) return true;
         if (phase != PHASE_IMPACT) continue;
         Sweeps *sweeps = &runs->sweeps[thread];
-        if (!sweeps_begin(sweeps, sweeps_best_kernel(), &problem, true, 1)) return error_memory(error, "samples");
+        if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), &problem)) return error_memory(error, "samples");
         if (impact_gap_reaches(sweeps, problem.contact_count, rollout->gate) &&
             !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
             return error_memory(error, "samples");

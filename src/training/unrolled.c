@@ -10,6 +10,7 @@
 #include "training/unrolled.h"
 
 #include "common/array.h"
+#include "solvers/colours.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,11 +53,25 @@ static UnrolledContact make_contact(const ContactPoint *point, const ProblemBody
 
 bool unrolled_problem_make(UnrolledProblem *unrolled, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    UnrolledContact *block = malloc(contacts * sizeof *block + (5 * bodies + 1) * sizeof(double));
-    if (block == NULL) return false;
+    Colours colours = {0};
+    UnrolledContact *block =
+        malloc(contacts * (sizeof *block + sizeof *unrolled->visits) + (5 * bodies + 1) * sizeof(double));
+    if (block == NULL || !colours_order(&colours, problem)) {
+        free(block);
+        colours_free(&colours);
+        return false;
+    }
     double *numbers = (double *)(block + contacts);
-    *unrolled = (UnrolledProblem){problem->body_count, problem->contact_count, block, numbers,
-                                  numbers + bodies,    numbers + 2 * bodies};
+    int32_t *visits = (int32_t *)(numbers + 5 * bodies);
+    *unrolled = (UnrolledProblem){.body_count = problem->body_count,
+                                  .contact_count = problem->contact_count,
+                                  .contacts = block,
+                                  .visits = visits,
+                                  .inv_mass = numbers,
+                                  .inv_inertia = numbers + bodies,
+                                  .free = numbers + 2 * bodies};
+    if (contacts > 0) memcpy(visits, colours.visits, contacts * sizeof *visits);
+    colours_free(&colours);
     for (size_t i = 0; i < contacts; i++) block[i] = make_contact(&problem->contacts[i], problem->bodies);
     for (size_t i = 0; i < bodies; i++) {
         const ProblemBody *body = &problem->bodies[i];
@@ -177,7 +192,10 @@ bool unrolled_run(Unrolled *unrolled, const UnrolledProblem *problem, const doub
         for (size_t i = 0; i < size; i++) next[i] = now[i] + factor * (now[i] - before[i]);
         uint8_t *pieces = unrolled->pieces + (s + 1) * contacts;
         double *impulses = next + 3 * problem->body_count;
-        for (size_t i = 0; i < contacts; i++) pieces[i] = visit(problem, &problem->contacts[i], next, impulses + 2 * i);
+        for (size_t i = 0; i < contacts; i++) {
+            const int32_t at = problem->visits[i];
+            pieces[at] = visit(problem, &problem->contacts[at], next, impulses + 2 * at);
+        }
     }
     unrolled->sweeps = sweeps;
     unrolled->velocities = now;
@@ -205,8 +223,10 @@ static void sweeps_back(Unrolled *unrolled, const UnrolledProblem *problem, doub
     double *later = adjoint + size; /* what the sweep after next took from this state */
     for (size_t s = (size_t)unrolled->sweeps; s-- > 0;) {
         const uint8_t *pieces = unrolled->pieces + (s + 1) * contacts;
-        for (size_t i = contacts; i-- > 0;)
-            visit_back(problem, &problem->contacts[i], pieces[i], adjoint, impulses + 2 * i);
+        for (size_t i = contacts; i-- > 0;) {
+            const int32_t at = problem->visits[i];
+            visit_back(problem, &problem->contacts[at], pieces[at], adjoint, impulses + 2 * at);
+        }
         if (by_factors != NULL && s > 0) by_factors[s] += by_factor(unrolled, problem, s, adjoint);
         const double factor = unrolled->factors[s];
         for (size_t i = 0; i < size; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps with momentum (solvers/momentum.h) in double, and their derivative: how a loss of the velocities after so many
+/* Sweeps with momentum (solvers/momentum.h, in the order of colours) in double, and their derivative: how a loss of the velocities after so many
    sweeps changes with the impulses that they start from, and with their factors. So what predicts the start of a solve
    can be trained on where the solve ends.
 
@@ -29,6 +29,7 @@ typedef struct UnrolledContact {
 typedef struct UnrolledProblem {
     int body_count, contact_count;
     UnrolledContact *contacts; /* [contact_count] */
+    int32_t *visits;           /* [contact_count] the contacts in the order of visits */
     double *inv_mass;          /* [body_count] 1/kg */
     double *inv_inertia;       /* [body_count] 1/(kg m^2) */
     double *free;              /* [3 body_count] x, y (m/s), spin (rad/s) of each body before any impulse */

@@ -18,7 +18,7 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
                                       0.9f, 0.9f, 0.9f, 0,    0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
     Kernels *kernels = context;
     assert_kernels_agree(kernels->engine, problem, &engine_options, 10);
-    assert_momentum_kernels_agree(kernels->momentum, problem, factors, 19);
+    assert_momentum_kernels_agree(kernels->momentum, problem, true, factors, 19);
     assert_reference_kernels_agree(&kernels->reference, problem, 6);
     return true;
 }

@@ -62,18 +62,24 @@ static inline void assert_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const Cont
     free_solution(&fast);
 }
 
-/* The same for sweeps with momentum. */
+/* The same for sweeps with momentum, in the order of colours or as the contacts are given. */
 static inline void assert_momentum_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const ContactProblem *problem,
-                                                 const float *factors, int iterations) {
+                                                 bool coloured, const float *factors, int iterations) {
     ContactSolution plain = make_solution(problem), before = make_solution(problem), fast = make_solution(problem);
-    momentum_solve_plain(problem, factors, iterations, &before, &plain);
+    Colours colours = {0};
+    assert_true(colours_order(&colours, problem));
+    if (!coloured)
+        for (int i = 0; i < problem->contact_count; i++) colours.visits[i] = i;
+    momentum_solve_plain(problem, colours.visits, factors, iterations, &before, &plain);
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
-        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem, true, 1.0f));
+        assert_true(coloured ? sweeps_begin_coloured(&sweeps[kernel], kernel, problem)
+                             : sweeps_begin(&sweeps[kernel], kernel, problem, true, 1.0f));
         assert_true(sweeps_run_momentum(&sweeps[kernel], factors, iterations));
         assert_true(sweeps_end(&sweeps[kernel], &fast));
         assert_same_bits(problem, &fast, &plain, kernel == SWEEP_ONE_BY_ONE ? "momentum one by one" : "momentum lanes");
     }
+    colours_free(&colours);
     free_solution(&plain);
     free_solution(&before);
     free_solution(&fast);

@@ -142,11 +142,14 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     ContactSolution plain = make_solution(&problem), before = make_solution(&problem), fast = make_solution(&problem);
     float factors[10];
     for (int s = 0; s < 10; s++) factors[s] = momentum_factor_by_hand(s, 10);
-    momentum_solve_plain(&problem, factors, 10, &before, &plain);
+    Colours colours = {0};
+    assert_true(colours_order(&colours, &problem));
+    momentum_solve_plain(&problem, colours.visits, factors, 10, &before, &plain);
     solve(&solver_momentum, "", &problem, &fast);
     bool finite = isfinite(plain.velocities[1].linear.y);
     assert_false(finite);
     assert_memory_equal(fast.velocities, plain.velocities, (size_t)problem.body_count * sizeof *plain.velocities);
+    colours_free(&colours);
     free_solution(&plain);
     free_solution(&before);
     free_solution(&fast);

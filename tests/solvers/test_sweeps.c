@@ -39,7 +39,39 @@ static void random_problems_with_momentum_have_the_bits_of_the_plain_text(void *
         if (i % 5 == 0) calm_down(&random, &seed);
         float factors[40];
         for (int k = 0; k < 40; k++) factors[k] = fabsf(any_number(&seed, 0.7f));
-        assert_momentum_kernels_agree(sweeps, &random.problem, factors, iterations[i % 8]);
+        assert_momentum_kernels_agree(sweeps, &random.problem, i % 2 == 0, factors, iterations[i / 2 % 8]);
+    }
+    free_kernels(sweeps);
+}
+
+/* In parts of an even number of sweeps as in one run; the first factor of a part but the first counts. */
+static void a_run_in_parts_has_the_bits_of_one(void **state) {
+    (void)state;
+    enum { SWEEPS = 30 };
+    static RandomProblem random;
+    Sweeps sweeps[SWEEP_KERNELS] = {{0}};
+    uint32_t seed = 14;
+    for (int i = 0; i < 200; i++) {
+        const int bodies = 2 + i % (BODIES_MAX - 1), parts[] = {2 + 2 * (i % 6), 8, 20 - 2 * (i % 6)};
+        make_random(&random, &seed, bodies, i % 2 == 0 ? 0.5f : 4.0f / (float)bodies, 2);
+        if (i % 5 == 0) calm_down(&random, &seed);
+        float factors[SWEEPS];
+        for (int k = 0; k < SWEEPS; k++) factors[k] = fabsf(any_number(&seed, 0.7f));
+        ContactSolution whole = make_solution(&random.problem), found = make_solution(&random.problem);
+        for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
+            if (!sweeps_can(kernel)) continue;
+            assert_true(sweeps_begin_coloured(&sweeps[kernel], kernel, &random.problem));
+            assert_true(sweeps_run_momentum(&sweeps[kernel], factors, SWEEPS));
+            assert_true(sweeps_end(&sweeps[kernel], &whole));
+            assert_true(sweeps_begin_coloured(&sweeps[kernel], kernel, &random.problem));
+            assert_true(sweeps_run_momentum(&sweeps[kernel], factors, parts[0]));
+            assert_true(sweeps_continue_momentum(&sweeps[kernel], factors + parts[0], parts[1]));
+            assert_true(sweeps_continue_momentum(&sweeps[kernel], factors + parts[0] + parts[1], parts[2]));
+            assert_true(sweeps_end(&sweeps[kernel], &found));
+            assert_same_bits(&random.problem, &found, &whole, "in parts");
+        }
+        free_solution(&whole);
+        free_solution(&found);
     }
     free_kernels(sweeps);
 }
@@ -48,13 +80,15 @@ static void momentum_of_factor_zero_has_the_bits_of_the_engine(void **state) {
     (void)state;
     static RandomProblem random;
     static const float zeros[17];
+    int32_t as_given[CONTACTS_MAX];
+    for (int i = 0; i < CONTACTS_MAX; i++) as_given[i] = i;
     uint32_t seed = 6;
     for (int i = 0; i < 100; i++) {
         make_random(&random, &seed, 10 + i % 60, 0.1f, 2.0f);
         ContactSolution engine = make_solution(&random.problem), before = make_solution(&random.problem);
         ContactSolution momentum = make_solution(&random.problem);
         sequential_impulses_solve(&random.problem, &engine_options, 17, &engine);
-        momentum_solve_plain(&random.problem, zeros, 17, &before, &momentum);
+        momentum_solve_plain(&random.problem, as_given, zeros, 17, &before, &momentum);
         assert_same_bits(&random.problem, &momentum, &engine, "factors 0");
         free_solution(&engine);
         free_solution(&before);
@@ -131,6 +165,7 @@ static void one_by_one_works_everywhere(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
                                        cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
+                                       cmocka_unit_test(a_run_in_parts_has_the_bits_of_one),
                                        cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
                                        cmocka_unit_test(a_kept_schedule_serves_the_same_pairs),
                                        cmocka_unit_test(no_contacts_leave_the_velocities),

@@ -56,7 +56,7 @@ static void assert_equals_plain(Unrolled *unrolled, const ContactProblem *proble
     warm_start(problem, start);
     assert_true(unrolled_problem_make(&rows, problem));
     assert_true(unrolled_run(unrolled, &rows, start, factors, sweeps));
-    momentum_solve_plain(problem, in_float, sweeps, &before, &plain);
+    momentum_solve_plain(problem, rows.visits, in_float, sweeps, &before, &plain);
     assert_same_solution(problem, unrolled, &plain, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
     free_solution(&plain);

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Microseconds a step of 20 sweeps with momentum in the order of colours, beside the same in the order in which contacts
+   are given, and the velocity error of both, as sooner done must not mean worse. On the steps of impacts, from the
+   engine's runs. Problems come in the order of the steps, so that schedules are made anew as often as in a run. A sample
+   is the mean over all steps, some times over; the orders take turns. */
+#include "report.h"
+
+#include "solvers/momentum.h"
+#include "solvers/solution_error.h"
+#include "training/impact_problems.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SCENES = 2, ORDERS = 2, SAMPLES = 31, SWEEPS = 20 };
+enum { PASSES = 20 }; /* in a sample: one alone takes less than a millisecond */
+
+static const char *const scenes[SCENES] = {"stack", "pyramid_settled"};
+static const char *const orders[ORDERS] = {"order of colours", "order given"};
+static const FloatRange bomb_x = {-4.5, 1.6, 6}; /* m: never 0, where a bomb on a stack is an exact tie */
+
+typedef struct Ratios {
+    double time, error; /* order of colours / order given */
+} Ratios;
+
+/* One order, and room for what it finds. */
+typedef struct Solver {
+    int order;
+    float factors[SWEEPS];
+    Sweeps sweeps;
+    ContactSolution solution;
+} Solver;
+
+static void give_up(const char *reason) {
+    fprintf(stderr, "%s\n", reason);
+    exit(3);
+}
+
+/* The problems of impacts go to the front, in the order of the steps; returns how many there are. The few whose reference
+   does not converge are not among them. */
+static size_t record(ImpactProblems *problems, const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    if (scene == NULL || !impact_problems_record(problems, scene, &bomb_x, NULL, &error)) give_up(error.message);
+    scene_destroy(scene);
+    size_t count = 0;
+    for (size_t i = 0; i < problems->count; i++) {
+        if (!problems->items[i].impact) continue;
+        ImpactProblem impact = problems->items[i];
+        problems->items[i] = problems->items[count];
+        problems->items[count++] = impact;
+    }
+    return count;
+}
+
+static void solver_begin(Solver *solver, int order, const ImpactProblem *items, size_t count) {
+    size_t bodies = 0, contacts = 0;
+    for (size_t i = 0; i < count; i++) {
+        const ContactProblem *problem = &items[i].problem;
+        if ((size_t)problem->body_count > bodies) bodies = (size_t)problem->body_count;
+        if ((size_t)problem->contact_count > contacts) contacts = (size_t)problem->contact_count;
+    }
+    *solver = (Solver){.order = order};
+    for (int s = 0; s < SWEEPS; s++) solver->factors[s] = momentum_factor_by_hand(s, SWEEPS);
+    solver->solution.velocities = malloc(bodies * sizeof *solver->solution.velocities);
+    solver->solution.impulses = malloc(contacts * sizeof *solver->solution.impulses);
+    if (solver->solution.velocities == NULL || solver->solution.impulses == NULL) give_up("out of memory");
+}
+
+static void solver_end(Solver *solver) {
+    sweeps_free(&solver->sweeps);
+    free(solver->solution.velocities);
+    free(solver->solution.impulses);
+}
+
+static void solve(Solver *solver, const ContactProblem *problem) {
+    Sweeps *sweeps = &solver->sweeps;
+    const SweepKernel kernel = sweeps_best_kernel();
+    bool ok = solver->order == 0 ? sweeps_begin_coloured(sweeps, kernel, problem)
+                                 : sweeps_begin(sweeps, kernel, problem, true, 1.0f);
+    if (!ok || !sweeps_run_momentum(sweeps, solver->factors, SWEEPS)) give_up("out of memory");
+    if (!sweeps_end(sweeps, &solver->solution)) give_up("a velocity is not finite");
+}
+
+static double microseconds_a_step(Solver *solver, const ImpactProblem *items, size_t count) {
+    double start = processor_seconds();
+    for (int pass = 0; pass < PASSES; pass++)
+        for (size_t i = 0; i < count; i++) solve(solver, &items[i].problem);
+    return 1e6 * (processor_seconds() - start) / (double)count / PASSES;
+}
+
+static double mean_error(Solver *solver, const ImpactProblem *items, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        solve(solver, &items[i].problem);
+        sum += solution_error(&items[i].problem, solver->solution.velocities, items[i].reference).rms;
+    }
+    return sum / (double)count;
+}
+
+static Ratios measure(const char *name) {
+    ImpactProblems problems;
+    const size_t count = record(&problems, name);
+    Solver solvers[ORDERS];
+    Samples errors[ORDERS] = {0}, times[ORDERS] = {0}, ratios = {0};
+    for (int k = 0; k < ORDERS; k++) {
+        solver_begin(&solvers[k], k, problems.items, count);
+        samples_add(&errors[k], mean_error(&solvers[k], problems.items, count));
+    }
+    for (int i = 0; i < SAMPLES; i++) {
+        for (int k = 0; k < ORDERS; k++)
+            samples_add(&times[k], microseconds_a_step(&solvers[k], problems.items, count));
+        samples_add(&ratios, times[0].values[i] / times[1].values[i]);
+    }
+    char figure[64];
+    for (int k = 0; k < ORDERS; k++) report_line("colours", orders[k], name, "us/step", &times[k]);
+    snprintf(figure, sizeof figure, "%s mean velocity error", name);
+    for (int k = 0; k < ORDERS; k++) report_line("colours", orders[k], figure, "m/s", &errors[k]);
+    for (int k = 0; k < ORDERS; k++) solver_end(&solvers[k]);
+    impact_problems_free(&problems);
+    return (Ratios){samples_median(&ratios), errors[0].values[0] / errors[1].values[0]};
+}
+
+int main(void) {
+    Ratios ratios[SCENES];
+    report_header();
+    for (int i = 0; i < SCENES; i++) ratios[i] = measure(scenes[i]);
+    for (int i = 0; i < SCENES; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "colours %s, time / order given", scenes[i]);
+        report_target(name, ratios[i].time, "at most", 0.8);
+        snprintf(name, sizeof name, "colours %s, error / order given", scenes[i]);
+        report_target(name, ratios[i].error, "at most", 1.05);
+    }
+    return 0;
+}
