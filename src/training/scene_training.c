@@ -19,7 +19,7 @@ enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_
 static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
 /* RMS over the contacts: at rest they miss their bias by less, where a shock runs through them by more. */
 static const float gate = 0.3f; /* m/s */
-static const double near_weight = 0.02, first_rate = 8e-3;
+static const double near_weight = 0.02, first_rate = 3e-3;
 
 typedef struct Trainer {
     const Scene *scene;
