@@ -31,9 +31,8 @@ typedef struct Json {
 } Json;
 
 /* Reads a file of at most max_size bytes; memory stays below 100 times that. Refused, with file:line:column: all that
-   the standard forbids, keys that come twice in an object, \u0000, numbers beyond the reach of float32, too much depth, too many
-   members.
-   On failure nothing is to be freed. */
+   the standard forbids, keys that come twice in an object, \u0000, numbers beyond the reach of float32, too much depth,
+   too many members. On failure nothing is to be freed. */
 bool json_read(Json *json, const char *path, size_t max_size, Error *error);
 void json_free(Json *json);
 

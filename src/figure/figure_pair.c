@@ -38,8 +38,8 @@ static int rate_pair(const FigureSpec *spec, int step, int a, int b, int points)
     return points == 2 && tilt(run, step - 1, a, b) >= least_tilt ? SHOWS_ALL : SHOWS_BOMB;
 }
 
-/* Of the first step from `first` on in which the bomb touches, or the pair asked for, the pair that shows most; where there is
-   none, the first pair. */
+/* Of the first step from `first` on in which the bomb touches, or the pair asked for, the pair that shows most; where
+   there is none, the first pair. */
 static int find_pair(const FigureSpec *spec, int first, int end, Collision *collision) {
     const Trajectory *run = spec->runs[0];
     int best = SHOWS_NOTHING;

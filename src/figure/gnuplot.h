@@ -16,7 +16,7 @@ typedef struct GnuplotDrawing {
 } GnuplotDrawing;
 
 /* Draws stem.png (300 dots an inch), stem.svg and, unless told not to, stem.pdf, with 8 pt Inter as the default font
-   (the SVG: whatever sans-serif the reader has). The files are put in place whole, and only when all are drawn. The same script
-   gives the same PNG and SVG with the same gnuplot and cairo; a PDF holds its date. ERROR_SYSTEM where gnuplot is
-   missing or fails. */
+   (the SVG: whatever sans-serif the reader has). The files are put in place whole, and only when all are drawn. The
+   same script gives the same PNG and SVG with the same gnuplot and cairo; a PDF holds its date. ERROR_SYSTEM where
+   gnuplot is missing or fails. */
 bool gnuplot_draw(const GnuplotDrawing *drawing, const char *stem, Error *error);

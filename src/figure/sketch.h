@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawings made of boxes, lines, arrows and words, for a page: kept as a list, then written as PNG, SVG or PDF (sketch_files.h).
-   All lengths on the page in mm, from its lower left corner; what comes later lies above what came before, pictures
-   below all and arrows and words above all. */
+/* Drawings made of boxes, lines, arrows and words, for a page: kept as a list, then written as PNG, SVG or PDF
+   (sketch_files.h). All lengths on the page in mm, from its lower left corner; what comes later lies above what came
+   before, pictures below all and arrows and words above all. */
 #pragma once
 #include "collision/manifold.h"
 #include "common/error.h"

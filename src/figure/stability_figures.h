@@ -10,6 +10,6 @@
      borders    each study: how far each method holds (figure/stability_borders.h)
    into the folder. Told apart by the colour-blind, in grey and in black and white. The same tables give the same files.
 
-   Of a table without rows there is none. A table that is not in order is refused with "path:line:column: error: text" before anything is drawn. ERROR_SYSTEM
-   where gnuplot is missing or fails; figures already drawn stay. */
+   Of a table without rows there is none. A table that is not in order is refused with "path:line:column: error: text"
+   before anything is drawn. ERROR_SYSTEM where gnuplot is missing or fails; figures already drawn stay. */
 bool stability_figures_write(const char *folder, Error *error);

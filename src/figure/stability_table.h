@@ -39,8 +39,9 @@ typedef struct BorderTable {
     BorderRow *rows; /* [count] */
 } BorderTable;
 
-/* Reads folder/maps.csv; one without rows has no cells. Refused, as "path:line:column: error: what": what csv_columns_read() refuses, a map whose name is
-   no file name, maps, or methods of a map, whose rows do not stand together, and more than STABILITY_MAX_PANELS of these. */
+/* Reads folder/maps.csv; one without rows has no cells. Refused, as "path:line:column: error: what": what
+   csv_columns_read() refuses, a map whose name is no file name, maps, or methods of a map, whose rows do not stand
+   together, and more than STABILITY_MAX_PANELS of these. */
 bool map_table_read(MapTable *table, const char *folder, Error *error);
 void map_table_free(MapTable *table);
 
@@ -63,8 +64,8 @@ void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 /* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part alone; and "Height (boxes)", for an
-   axis. */
+/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part alone; and "Height (boxes)",
+   for an axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * CSV_TEXT_SIZE + 8 };
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sigmoid, tanh and the rectifier in fixed operations, so that they have the same bits whatever the maths library, compiler or
-   instruction set; and without calls or branches, so that a loop over them becomes vector instructions.
+/* Sigmoid, tanh and the rectifier in fixed operations, so that they have the same bits whatever the maths library,
+   compiler or instruction set; and without calls or branches, so that a loop over them becomes vector instructions.
 
    float32 for inference: within 3 units in the last place of a normal result (a sigmoid below 2^-127 is 0). In
    double a correctly rounded activation would cost more than the rest of a network. double for training: within

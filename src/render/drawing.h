@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a frame consists of, before OpenGL sees it: rectangles, above them shapes, above these glyphs, each in
-   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the upper
-   left corner of the picture; colours 0xRRGGBB. */
+   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the
+   upper left corner of the picture; colours 0xRRGGBB. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* manifest.json beside the pictures of a sequence: what was drawn (version, runs, look, order) and, a line for each file,
-   the frame it shows, the state hashes of the runs there (trajectory_frame_hash), the hash of its pixels (image_hash) and that
-   of its bytes. No dates and no paths: the same runs and options give the same bytes.
+   the frame it shows, the state hashes of the runs there (trajectory_frame_hash), the hash of its pixels (image_hash)
+   and that of its bytes. No dates and no paths: the same runs and options give the same bytes.
 
    While pictures are drawn it grows as manifest.json.part, a line for each that is there, so that a program that was killed
-   leaves what the next needs to go on. Neither file is trusted: a line counts only where it is, but for its own two hashes, the
-   line that belongs there. */
+   leaves what the next needs to go on. Neither file is trusted: a line counts only where it is, but for its own two
+   hashes, the line that belongs there. */
 #pragma once
 #include "render/moments.h"
 #include "render/picture.h"

@@ -12,8 +12,8 @@ typedef struct MomentPlan {
     int title, hold, end;      /* pictures of each */
 } MomentPlan;
 
-/* For these frames. The impact is the first in any panel; where none has one, nothing is slow. ERROR_INPUT for options out of
-   range. */
+/* For these frames. The impact is the first in any panel; where none has one, nothing is slow. ERROR_INPUT for options
+   out of range. */
 bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, int first, int last,
                   const RenderOptions *options, Error *error);
 

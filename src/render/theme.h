@@ -19,6 +19,6 @@ const Theme *theme_get(LookTheme theme);
 /* `share` of the way from one colour to another, 0 to 1. */
 uint32_t theme_mix(uint32_t from, uint32_t to, double share);
 
-/* A place on the colour scale, 0 to 1: yellow, green, teal, blue, violet, as light as 95 down to 13 in equal steps (CIE L*),
-   so that it reads in grey and under every common colour blindness. */
+/* A place on the colour scale, 0 to 1: yellow, green, teal, blue, violet, as light as 95 down to 13 in equal steps (CIE
+   L*), so that it reads in grey and under every common colour blindness. */
 uint32_t theme_ramp(const Theme *theme, double share);

@@ -11,8 +11,8 @@ typedef struct VideoOptions {
     const char *path;            /* ends in .mp4, .webm or .gif */
 } VideoOptions;
 
-/* True where a video may have that name and size: its folder is there, or could be made, no folder has its name. ERROR_INPUT or ERROR_SYSTEM
-   says why not. */
+/* True where a video may have that name and size: its folder is there, or could be made, no folder has its name.
+   ERROR_INPUT or ERROR_SYSTEM says why not. */
 bool video_check(const char *path, int width, int height, Error *error);
 
 /* True where ffmpeg and ffprobe can be run. */

@@ -27,8 +27,8 @@ typedef enum PixelVerdict {
     PIXELS_EXTRA    /* there is no expected one */
 } PixelVerdict;
 
-/* What is drawn of one frame may hang on the whole run: the camera, a scale. So where the run differs elsewhere, and no frame
-   of the sequence has equal states and equal pixels, the renderer is not blamed for a frame of equal states. */
+/* What is drawn of one frame may hang on the whole run: the camera, a scale. So where the run differs elsewhere, and no
+   frame of the sequence has equal states and equal pixels, the renderer is not blamed for a frame of equal states. */
 typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
 
 /* What a file was when it was read. */

@@ -15,8 +15,8 @@ typedef struct StepObserver {
     void *context;
 } StepObserver;
 
-/* One step of a run: the scene's, and the bomb where it comes after this one, or the body that goes. On failure the error names scene and
-   step. */
+/* One step of a run: the scene's, and the bomb where it comes after this one, or the body that goes. On failure the
+   error names scene and step. */
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
 /* NULL with error set when the method cannot be created, memory is short, a body leaves the finite numbers, or

@@ -6,8 +6,8 @@
    Greedy, from the last pair to the first: each takes the lowest colour that neither of its moving bodies has yet. Bodies
    are numbered from the ground up and the bomb last, so a blow is visited before what it reaches. Source: Harada, "A
    Parallel Constraint Solver for a Rigid Body Simulation" (2011), which batches contacts so for a graphics processor. Fails
-   sooner than the engine's order, from the ground up, where a tall stack stands under a load: momentum with 20 sweeps holds 30
-   times a box's weight on ten and not 53. The engine keeps its order, as its bits are Box2D-Lite's. */
+   sooner than the engine's order, from the ground up, where a tall stack stands under a load: momentum with 20 sweeps
+   holds 30 times a box's weight on ten and not 53. The engine keeps its order, as its bits are Box2D-Lite's. */
 #pragma once
 #include "dynamics/contact_problem.h"
 

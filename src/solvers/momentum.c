@@ -7,8 +7,9 @@
    is where sweep s + 1 begins; it brings the impulses back into their cones. Source: Nesterov, "A Method of Solving a
    Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); on contacts Mazhar, Heyn, Negrut, Tasora, "Using
    Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), there with whole gradient
-   steps where here are sweeps. Sweeps are in the order of colours: as near, and sooner (tests/bench/colours). Fails where the cones change from sweep to sweep: what is carried on is then wrong, so
-   the first sweeps of an impact gain little. */
+   steps where here are sweeps. Sweeps are in the order of colours: as near, and sooner (tests/bench/colours). Fails
+   where the cones change from sweep to sweep: what is carried on is then wrong, so the first sweeps of an impact gain
+   little. */
 #include "solvers/momentum.h"
 
 #include "common/array.h"

@@ -6,10 +6,11 @@
    Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
    bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c). The gap
    that is left after the sweeps goes up and down with the error, on launches that the network never saw, too: so few
-   sweeps do at first, and a step that they did not bring near goes on. Impulses act on both bodies alike, and the sweeps bring
-   them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network for the whole
-   problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization Algorithms" (2024),
-   which trains through the iterations that follow, too. Fails on other scenes, which have no slots; it says so. */
+   sweeps do at first, and a step that they did not bring near goes on. Impulses act on both bodies alike, and the
+   sweeps bring them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network
+   for the whole problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
+   Algorithms" (2024), which trains through the iterations that follow, too. Fails on other scenes, which have no slots;
+   it says so. */
 #include "solvers/scene_net.h"
 
 #include "solvers/impact_gap.h"

@@ -32,8 +32,8 @@ typedef struct Border {
 } Border;
 
 /* Never empty. Without a border it has one entry. All holds: holds_at is the last value, the verdict the worst found. All
-   fails: fails_at is the first value, and its verdict. Where luck decides up to the end, a last entry has the last value that
-   holds, and how it fails beyond; NAN on both sides where luck decides over all. */
+   fails: fails_at is the first value, and its verdict. Where luck decides up to the end, a last entry has the last
+   value that holds, and how it fails beyond; NAN on both sides where luck decides over all. */
 typedef struct BorderList {
     int count;
     Border items[BORDERS_MAX]; /* from where it is expected to hold to where it is expected to fail */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where each method fails: borders between holding and failing along a number (stability.csv), maps of two numbers
-   (maps.csv), why a method does not go with a scene (refusals.csv), what networks said and was not done (fallbacks.csv), and how
-   far what is left alone drifts (rest.csv). */
+   (maps.csv), why a method does not go with a scene (refusals.csv), what networks said and was not done
+   (fallbacks.csv), and how far what is left alone drifts (rest.csv). */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"

@@ -18,9 +18,10 @@ typedef struct StabilityScan {
     const ContenderList *methods;
 } StabilityScan;
 
-/* Writes the lines of the tables "stability", "refusals", "fallbacks" (of each run by a network, without a shift) and "rest"
-   (of each run of a study that rests, without a shift) in the order of the methods, which are studied in parallel. A method that has its own number of iterations has no row
-   where those are scanned. `scan` is a StabilityScan. */
+/* Writes the lines of the tables "stability", "refusals", "fallbacks" (of each run by a network, without a shift) and
+   "rest" (of each run of a study that rests, without a shift) in the order of the methods, which are studied in
+   parallel. A method that has its own number of iterations has no row where those are scanned. `scan` is a
+   StabilityScan. */
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error);
 
 /* The verdict on one run of a study; seed: stability_shift. False with error set where the method does not go with the

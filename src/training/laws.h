@@ -25,7 +25,8 @@
    change in world axes; not six outputs. */
 bool laws_check(const Dataset *dataset, int outputs, const LawNumbers *weights, Error *error);
 
-/* The laws for the rows to train on, in their order, where laws_check() lets them; the network for its output normalisation, which must outlive it. */
+/* The laws for the rows to train on, in their order, where laws_check() lets them; the network for its output
+   normalisation, which must outlive it. */
 typedef struct Laws Laws;
 Laws *laws_create(const Dataset *dataset, const Network *network, const LawNumbers *weights, Error *error);
 void laws_destroy(Laws *laws);

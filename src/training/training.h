@@ -43,8 +43,8 @@ typedef struct TrainingOptions {
    Going on, a network keeps the normalisation that it has, whatever the rows: what it has learned would mean something
    else in another. Scores of it are in its own units.
 
-   NULL with error set: shapes or words that do not fit, laws that the dataset cannot say (laws_check), no rows to train on or to test on, memory, or training that
-   diverged: left the finite numbers (with the iteration). */
+   NULL with error set: shapes or words that do not fit, laws that the dataset cannot say (laws_check), no rows to train
+   on or to test on, memory, or training that diverged: left the finite numbers (with the iteration). */
 Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error);
 
 /* Scores of a network, in the units of its own normalisation, by a loss in words (NULL: mse); iteration 0. The scores

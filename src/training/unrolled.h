@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps with momentum (solvers/momentum.h, in the order of colours) in double, and their derivative: how a loss of the velocities after so many
-   sweeps changes with the impulses that they start from, and with their factors. So what predicts the start of a solve
-   can be trained on where the solve ends.
+/* Sweeps with momentum (solvers/momentum.h, in the order of colours) in double, and their derivative: how a loss of the
+   velocities after so many sweeps changes with the impulses that they start from, and with their factors. So what
+   predicts the start of a solve can be trained on where the solve ends.
 
    A sweep is piecewise linear. The way back takes at each visit the piece that the way there took, so the derivative is
    exact but where a clamp stands on its edge; there it is that of one of the two pieces. Source of going back through

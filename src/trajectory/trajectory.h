@@ -63,8 +63,8 @@ int trajectory_impact(const Trajectory *trajectory);
    rising index: the definition of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
-/* Every step'th frame from frame 0 on, dt as much longer, with the contacts of the steps that led to these frames. The caller
-   destroys it. step >= 1. */
+/* Every step'th frame from frame 0 on, dt as much longer, with the contacts of the steps that led to these frames. The
+   caller destroys it. step >= 1. */
 Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
 
 /* .npz: version, scene, method, scene_hash, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],

@@ -45,8 +45,8 @@ static double flip_plain(uint32_t first, uint32_t second) {
     return flip(NULL);
 }
 
-/* CIELab of a grey is its lightness alone, so the paper's equations are a few lines. The largest distance, between green and
-   blue, was computed apart, in double precision. */
+/* CIELab of a grey is its lightness alone, so the paper's equations are a few lines. The largest distance, between
+   green and blue, was computed apart, in double precision. */
 static double expected_grey(double first, double second) {
     const double largest = 41.27609828519836;
     double light[2], value[2] = {first / 255, second / 255};

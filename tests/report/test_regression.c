@@ -10,7 +10,8 @@
 
 #include <math.h>
 
-/* The camera sees 10 m in a picture of 320 pixels, so a metre is at most 32 pixels, and a 512th of one a 16th of a pixel. */
+/* The camera sees 10 m in a picture of 320 pixels, so a metre is at most 32 pixels, and a 512th of one a 16th of a
+   pixel. */
 enum { FRAMES = 6, WIDTH = 320, HEIGHT = 180, SEEN = 10 };
 static const float SIXTEENTH = 1.0F / 512;
 

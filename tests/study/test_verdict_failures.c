@@ -161,8 +161,8 @@ static void what_comes_back_within_a_second_was_not_lost(void **state) {
     assert_reading(run_with_dip(90), VERDICT_EXPLODES, 1, 121, 25, 1e-4, "J");
 }
 
-/* The box has 5 J, and so many more until frame 90; after frame 100 a bomb joins with 10. Then the bomb has 5 left and the box
-   is given so many. */
+/* The box has 5 J, and so many more until frame 90; after frame 100 a bomb joins with 10. Then the bomb has 5 left and
+   the box is given so many. */
 static VerdictReading run_with_bomb(double before, double given) {
     Trial trial;
     trial_begin(&trial);

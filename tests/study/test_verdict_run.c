@@ -30,8 +30,8 @@ static void an_energy_log_knows_what_there_was_to_lose(void **state) {
     energy_log_free(&log);
 }
 
-/* Ten boxes one on the other, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. The bomb that joins is 9 m above the lowest with
-   2 kg: 180 J; one further down has nothing to lose. */
+/* Ten boxes one on the other, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. The bomb that joins is 9 m above the
+   lowest with 2 kg: 180 J; one further down has nothing to lose. */
 static void what_stands_has_its_height_to_lose(void **state) {
     (void)state;
     Error error = {0};
@@ -136,8 +136,8 @@ static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
     scene = shot_at_slab(&slab, 2);
     converge(&converged, &scene);
     assert_verdict(judge(&scene, false, &converged), VERDICT_SETTLES);
-    /* What it brings, 1.5 m and 2 m/s, less the 0.625 m above the middle where it ends: 8.75 + 2 J. It is found overlapping,
-       by less than a step's way at its 4.6 m/s: at most 0.8 J more. */
+    /* What it brings, 1.5 m and 2 m/s, less the 0.625 m above the middle where it ends: 8.75 + 2 J. It is found
+       overlapping, by less than a step's way at its 4.6 m/s: at most 0.8 J more. */
     assert_near(converged.to_lose, 10.75 + 0.4, 0.4);
     energy_log_free(&converged);
 }
