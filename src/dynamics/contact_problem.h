@@ -5,6 +5,7 @@
 #pragma once
 #include "common/vec2.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* m: overlap that is left as it is. */
@@ -18,6 +19,11 @@ typedef struct ProblemBody {
     Vec2 velocity;               /* m/s, after gravity, before the warm start */
     float angular_velocity;      /* rad/s */
 } ProblemBody;
+
+/* Can an impulse move it? */
+static inline bool problem_body_moves(const ProblemBody *body) {
+    return body->inv_mass != 0.0f || body->inv_inertia != 0.0f;
+}
 
 typedef struct ContactPoint {
     int a, b;                        /* bodies, a < b; the points of one pair are adjacent, pairs rise by (a, b) */

@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An order of visits by colours: pairs of bodies of one colour share no moving body, so their visits commute and a sweep
    over them has as many levels (sweeps.h) as there are colours, not as many as the longest chain of bodies. Two sweeps
-   are schedule enough then, and made in a tenth of the time.
+   are schedule enough then.
 
    Greedy, from the last pair to the first: each takes the lowest colour that neither of its moving bodies has yet. Bodies
    are numbered from the ground up and the bomb last, so a blow is visited before what it reaches. Source: Harada, "A
-   Parallel Constraint Solver for a Rigid Body Simulation" (2011), which batches contacts so for a graphics processor. Fails
-   sooner than the engine's order, from the ground up, where a tall stack stands under a load: momentum with 20 sweeps
-   holds 30 times a box's weight on ten and not 53. The engine keeps its order, as its bits are Box2D-Lite's. */
+   Parallel Constraint Solver for a Rigid Body Simulation" (2011), which batches contacts so for a graphics processor.
+   Fails sooner than the engine's order, from the ground up, where a tall stack stands under a heavy load. The engine
+   keeps its order, as its bits are Box2D-Lite's. */
 #pragma once
 #include "dynamics/contact_problem.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+enum { COLOURS = 64 };
 
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Colours {
@@ -25,6 +27,10 @@ typedef struct Colours {
 } Colours;
 
 void colours_free(Colours *colours);
+
+/* The lowest colour that neither moving body of the contact has taken [body_count, a bit for each colour], and takes it
+   for both. What finds none free gets the last: it commutes no more, but has its place. */
+int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact);
 
 /* Fills colours->visits. False when memory is short. */
 bool colours_order(Colours *colours, const ContactProblem *problem);

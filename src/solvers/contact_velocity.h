@@ -14,6 +14,12 @@ static inline bool contact_shares_surface(const ContactPoint *first, const Conta
            memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
 }
 
+/* The points, two at most, of the surface that the problem's contact number `first` begins. */
+static inline int contact_surface_points(const ContactProblem *problem, int first) {
+    const ContactPoint *contact = &problem->contacts[first];
+    return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
+}
+
 /* Adds impulse to b and takes it from a. */
 static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
                                  const ProblemBody *bodies, Vec2 impulse) {

@@ -13,21 +13,12 @@ void forest_free(Forest *forest) {
     *forest = (Forest){0};
 }
 
-static bool is_static(const ContactProblem *problem, int body) {
-    return problem->bodies[body].inv_mass == 0.0f && problem->bodies[body].inv_inertia == 0.0f;
-}
-
-static int point_count(const ContactProblem *problem, int first) {
-    const ContactPoint *contact = &problem->contacts[first];
-    return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
-}
-
 static void link_bodies(Forest *forest, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
         forest->bodies[i] = (ForestBody){.after = {body->velocity, body->angular_velocity}};
     }
-    for (int i = 0; i < problem->contact_count; i += point_count(problem, i)) {
+    for (int i = 0; i < problem->contact_count; i += contact_surface_points(problem, i)) {
         ForestBody *ends[] = {&forest->bodies[problem->contacts[i].a], &forest->bodies[problem->contacts[i].b]};
         for (int k = 0; k < 2; k++) {
             ends[k]->pairs++;
@@ -40,11 +31,12 @@ static void link_bodies(Forest *forest, const ContactProblem *problem) {
 static void take_off(Forest *forest, const ContactProblem *problem) {
     forest->pair_count = 0;
     for (int i = 0; i < problem->body_count; i++)
-        for (int above = i; forest->bodies[above].pairs == 1 && !is_static(problem, above);) {
+        for (int above = i; forest->bodies[above].pairs == 1 && problem_body_moves(&problem->bodies[above]);) {
             int first = forest->bodies[above].links;
             const ContactPoint *contact = &problem->contacts[first];
             int below = contact->a == above ? contact->b : contact->a;
-            forest->pairs[forest->pair_count++] = (ForestPair){first, point_count(problem, first), above, below};
+            forest->pairs[forest->pair_count++] =
+                (ForestPair){first, contact_surface_points(problem, first), above, below};
             forest->bodies[above].pairs = 0;
             forest->bodies[below].pairs--;
             forest->bodies[below].links ^= first;
@@ -65,7 +57,7 @@ static bool carry(Forest *forest, const ContactProblem *problem, const ForestPai
     const ContactPoint *contact = &problem->contacts[pair->first];
     const ForestBody *below = &forest->bodies[pair->below];
     ForestBody *above = &forest->bodies[pair->above];
-    above->grounded = pair->points == 2 && (below->grounded || is_static(problem, pair->below));
+    above->grounded = pair->points == 2 && (below->grounded || !problem_body_moves(&problem->bodies[pair->below]));
     if (!above->grounded) return false;
     const float side = side_of(pair, contact);
     const Vec2 arm = arm_above(side, contact);

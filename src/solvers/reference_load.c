@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact problems into the groups of the reference's sweeps. */
 #include "common/array.h"
+#include "solvers/colours.h"
 #include "solvers/reference_units.h"
 
 #include <math.h>
@@ -8,7 +9,6 @@
 #include <string.h>
 
 enum {
-    ROUNDS = 64,       /* bits of Reference.taken */
     SECOND_POINT = -1, /* in Reference.rounds: visited with the contact before it */
     NUMBERS = 4        /* for each impulse */
 };
@@ -40,32 +40,19 @@ static bool reserve_groups(Reference *r, int count) {
            array_reserve((void **)&r->numbers, &r->number_capacity, NUMBERS * groups, sizeof *r->numbers);
 }
 
-static bool moves(const ProblemBody *body) { return body->inv_mass != 0.0f || body->inv_inertia != 0.0f; }
-
-/* The first round in which neither moving body is taken yet; the last round takes all that are left over. */
-static int find_round(Reference *r, const ContactProblem *problem, const ContactPoint *contact) {
-    uint64_t none = 0, *taken_a = moves(&problem->bodies[contact->a]) ? &r->taken[contact->a] : &none;
-    uint64_t also_none = 0, *taken_b = moves(&problem->bodies[contact->b]) ? &r->taken[contact->b] : &also_none;
-    int round = 0;
-    while (round < ROUNDS - 1 && ((*taken_a | *taken_b) >> round & 1) != 0) round++;
-    *taken_a |= (uint64_t)1 << round;
-    *taken_b |= (uint64_t)1 << round;
-    return round;
-}
-
 static bool same_pair(const ContactPoint *x, const ContactPoint *y) { return x->a == y->a && x->b == y->b; }
 
 /* Pairs of the last round may share bodies: one a group there. */
-static int lanes_of(int round) { return round < ROUNDS - 1 ? REFERENCE_LANES : 1; }
+static int lanes_of(int round) { return round < COLOURS - 1 ? REFERENCE_LANES : 1; }
 
-/* Rounds of pairs that share no moving body. Returns the number of groups that they fill. */
+/* A round is a colour: of pairs that share no moving body. Returns the number of groups that they fill. */
 static int find_rounds(Reference *r, const ContactProblem *problem) {
-    int pairs[ROUNDS] = {0}, groups = 0;
+    int pairs[COLOURS] = {0}, groups = 0;
     memset(r->taken, 0, (size_t)problem->body_count * sizeof *r->taken);
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         bool second = i > 0 && same_pair(contact, contact - 1) && r->rounds[i - 1] != SECOND_POINT;
-        r->rounds[i] = second ? SECOND_POINT : find_round(r, problem, contact);
+        r->rounds[i] = second ? SECOND_POINT : colours_take(r->taken, problem, contact);
         if (!second && pairs[r->rounds[i]]++ % lanes_of(r->rounds[i]) == 0) groups++;
     }
     return groups;
@@ -147,7 +134,7 @@ bool reference_load(Reference *r, const ContactProblem *problem) {
     ReferenceNumbers **rows[NUMBERS] = {&r->sums, &r->sums_before, &r->steps, &r->direction};
     for (int i = 0; i < NUMBERS; i++) *rows[i] = r->numbers + i * r->group_count;
     ReferenceGroup *group = r->groups;
-    for (int round = 0; round < ROUNDS && group < r->groups + r->group_count; round++)
+    for (int round = 0; round < COLOURS && group < r->groups + r->group_count; round++)
         load_round(r, problem, round, &group);
     return true;
 }

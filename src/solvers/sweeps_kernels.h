@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts that sweeps.c is put together from. */
+/* The parts that sweeps.c and sweeps_load.c are put together from. */
 #pragma once
 #include "solvers/sweeps.h"
 
