@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-bool array_reserve(void **items, size_t *capacity, size_t wanted, size_t item_size) {
+bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size) {
     if (wanted <= *capacity) return true;
     size_t room = *capacity < 8 ? 8 : *capacity;
     while (room < wanted) {

@@ -104,10 +104,11 @@ bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactP
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     put_body(view->bomb, bomb);
     const float turns = turns_of(bomb);
+    const int features_turn = turns_modulo_4(turns);
     view->bomb[2] -= quarter_turn * turns;
     for (int i = 0, k = 0; i < problem->body_count; i++)
         if (i != network->bomb) put_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
     view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
-    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, turns_modulo_4(turns), i);
+    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, features_turn, i);
     return true;
 }

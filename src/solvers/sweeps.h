@@ -94,6 +94,9 @@ typedef struct SweepEnds {
     int32_t a, b;
 } SweepEnds;
 
+/* The body of an end, whether it moves or not. */
+static inline int32_t sweep_body_at(int32_t end) { return end < 0 ? ~end : end; }
+
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Sweeps {
     SweepKernel kernel;

@@ -4,9 +4,6 @@
 
 #include <string.h>
 
-/* The body of an end, whether it moves or not. */
-static int32_t body_at(int32_t end) { return end < 0 ? ~end : end; }
-
 static Vec2 relative_velocity(const SweepBody *a, const SweepBody *b, const SweepPoint *point) {
     return vec2(((b->x - b->spin * point->arm_b.y) - a->x) + a->spin * point->arm_a.y,
                 ((b->y + b->spin * point->arm_b.x) - a->y) - a->spin * point->arm_a.x);
@@ -30,7 +27,7 @@ static void push_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k,
 static void push_pair(Sweeps *sweeps, int i, const ContactImpulse impulses[2]) {
     const SweepPair *pair = &sweeps->pairs[i];
     SweepEnds ends = sweeps->ends[i];
-    SweepBody a = sweeps->bodies[body_at(ends.a)], b = sweeps->bodies[body_at(ends.b)];
+    SweepBody a = sweeps->bodies[sweep_body_at(ends.a)], b = sweeps->bodies[sweep_body_at(ends.b)];
     for (int k = 0; k < sweep_pair_points(pair); k++) push_point(&a, &b, pair, k, impulses[k]);
     if (ends.a >= 0) sweeps->bodies[ends.a] = a;
     if (ends.b >= 0) sweeps->bodies[ends.b] = b;
@@ -99,7 +96,7 @@ static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
 
 /* Not 0 where the visit changed anything. */
 static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums, SweepEnds ends) {
-    SweepBody *body_a = &bodies[body_at(ends.a)], *body_b = &bodies[body_at(ends.b)];
+    SweepBody *body_a = &bodies[sweep_body_at(ends.a)], *body_b = &bodies[sweep_body_at(ends.b)];
     SweepBody a = *body_a, b = *body_b;
     uint32_t changed = 0;
     int points = pair->points[1].extra < 0.0f ? 2 : 1;
@@ -117,7 +114,7 @@ static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactIm
 static bool may_rest(const Sweeps *sweeps, int pair) {
     int64_t quiet = sweeps->quiet_since[pair];
     SweepEnds ends = sweeps->ends[pair];
-    return quiet > sweeps->changed_at[body_at(ends.a)] && quiet > sweeps->changed_at[body_at(ends.b)];
+    return quiet > sweeps->changed_at[sweep_body_at(ends.a)] && quiet > sweeps->changed_at[sweep_body_at(ends.b)];
 }
 
 /* Notes what visit number `now` did. */

@@ -129,8 +129,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     random.problem.bomb = network->bomb;
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
     network->sweeps = 6;
-    fill(network->low, (size_t)slot_network_inputs(network), -1e30f, -1e30f, &seed);
-    fill(network->high, (size_t)slot_network_inputs(network), 1e30f, 1e30f, &seed);
+    let_know_all(network);
     assert_ok(scene_net_make(&solver, network, &error), error);
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
