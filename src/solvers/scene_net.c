@@ -25,7 +25,7 @@ enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, LOOK_EVERY = 8 };
 
 /* The gap from which on a step goes on after the network and its sweeps; and, of it, the share that is still too much
    where there was little to do from the start: there all bodies are to be right. */
-static const float near_default = 0.1f; /* m/s, RMS over the contacts */
+static const float near_default = 0.02f; /* m/s, RMS over the contacts */
 static const float calm_share = 0.15f;
 
 /* What is done of a step: as the method momentum does, `rest` sweeps; where the bomb is there, of the training's mass, but
@@ -52,7 +52,7 @@ typedef struct SceneNet {
 static const SettingSpec settings[] = {
     {"network", "file of the trained network (the scene's own)"},
     {"after", "sweeps after the network (as it was trained for)"},
-    {"near", "m/s that contacts may miss their aim by before more sweeps follow (0.1)"},
+    {"near", "m/s that contacts may miss their aim by before more sweeps follow (0.02)"},
     {"rest", "sweeps with momentum where it is not asked (20; half where calm)"},
     {NULL, NULL}};
 
@@ -224,8 +224,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_scene_net = {
     "scene-net", "a network of the whole scene where the bomb strikes, then sweeps", settings, create, solve, destroy};
 
-bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, Error *error) {
+bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
-    solver->state = make(network, network->sweeps, REST_SWEEPS, near_default, error);
+    solver->state = make(network, network->sweeps, REST_SWEEPS, near, error);
     return solver->state != NULL;
 }

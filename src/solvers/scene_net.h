@@ -4,5 +4,5 @@
 #include "dynamics/contact_solver.h"
 #include "network/slot_network.h"
 
-/* The network stays the caller's, and lasts as long as the solver. */
-bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, Error *error);
+/* The network stays the caller's, and lasts as long as the solver. near: the setting, m/s. */
+bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error);

@@ -24,7 +24,7 @@ static const Entry entries[] = {
     {"pair-net", NULL, NULL},
     {"contact-net", NULL, NULL},
     {"scene-net", NULL, NULL},
-    {"scene-net", "near=1 near=0.5 near=0.02", ""},
+    {"scene-net", "near=3 near=0.5 near=0.1", ""},
     {"constant", NULL, NULL},
     {"playback", "launches=25 launches=100", "launches=25"},
     {"reference", NULL, NULL}};

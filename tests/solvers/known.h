@@ -8,6 +8,8 @@
 
 enum { RUNS = 40, AFTER = 6, REST = 20 };
 
+static const float near_aim = 0.05f; /* m/s, of the solver */
+
 /* A problem whose step a network knows. */
 typedef struct Known {
     RandomProblem random;
@@ -41,7 +43,7 @@ static inline void free_known(Known *known) {
 static inline void solve_by_network(Known *known) {
     Error error = {0};
     ContactSolver solver;
-    assert_ok(scene_net_make(&solver, known->network, &error), error);
+    assert_ok(scene_net_make(&solver, known->network, near_aim, &error), error);
     assert_ok(solver.kind->solve(solver.state, &known->random.problem, &known->found, &error), error);
     free_solver(&solver);
 }

@@ -130,7 +130,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
     network->sweeps = 6;
     let_know_all(network);
-    assert_ok(scene_net_make(&solver, network, &error), error);
+    assert_ok(scene_net_make(&solver, network, 0.05f, &error), error);
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
     assert_true(allocations > 5);

@@ -71,7 +71,7 @@ static void momentum_and_cones_are_kept(void **state) {
 static void assert_refused(Known *known, const char *text) {
     Error error = {0};
     ContactSolver solver;
-    assert_ok(scene_net_make(&solver, known->network, &error), error);
+    assert_ok(scene_net_make(&solver, known->network, near_aim, &error), error);
     assert_false(solver.kind->solve(solver.state, &known->random.problem, &known->found, &error));
     assert_error(error, ERROR_INPUT, text);
     free_solver(&solver);

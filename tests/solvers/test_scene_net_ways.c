@@ -50,7 +50,7 @@ static int sweep_from_the_warm_start(Known *known) {
     assert_true(impact_gap_reaches(&sweeps, problem->contact_count, network->gate));
     assert_true(network->factors[1] > 0 ? sweeps_run_momentum(&sweeps, network->factors, AFTER)
                                         : sweeps_run(&sweeps, AFTER));
-    const int times = go_on(&sweeps, problem, 0.1f, MORE);
+    const int times = go_on(&sweeps, problem, near_aim, MORE);
     assert_true(sweeps_end(&sweeps, &known->expected));
     sweeps_free(&sweeps);
     return times;
@@ -65,7 +65,7 @@ static void assert_same_velocities(const Known *known) {
     }
 }
 
-/* 10 sweeps, and 8, 16 or 24 more while the gap is 0.015 m/s or more. */
+/* 10 sweeps, and 8, 16 or 24 more while the gap is 0.0075 m/s or more. */
 static int sweep_calmly(Known *known) {
     const ContactProblem *problem = &known->random.problem;
     Sweeps sweeps = {0};
@@ -73,7 +73,7 @@ static int sweep_calmly(Known *known) {
     for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_by_hand(s, REST / 2);
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(&sweeps, factors, REST / 2));
-    const int times = go_on(&sweeps, problem, 0.1f * 0.15f, CALM_MORE);
+    const int times = go_on(&sweeps, problem, near_aim * 0.15f, CALM_MORE);
     assert_true(sweeps_end(&sweeps, &known->expected));
     sweeps_free(&sweeps);
     return times;
