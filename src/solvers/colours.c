@@ -17,7 +17,7 @@ void colours_free(Colours *colours) {
 
 static bool reserve(Colours *colours, size_t contacts, size_t bodies) {
     return array_reserve((void **)&colours->visits, &colours->visit_capacity, contacts, sizeof *colours->visits) &&
-           array_reserve((void **)&colours->pairs, &colours->pair_capacity, contacts, sizeof *colours->pairs) &&
+           array_reserve((void **)&colours->pairs, &colours->pair_capacity, contacts + 1, sizeof *colours->pairs) &&
            array_reserve((void **)&colours->colour, &colours->colour_capacity, contacts, sizeof *colours->colour) &&
            array_reserve((void **)&colours->taken, &colours->taken_capacity, bodies, sizeof *colours->taken);
 }
@@ -26,16 +26,8 @@ static bool reserve(Colours *colours, size_t contacts, size_t bodies) {
 static int find_pairs(Colours *colours, const ContactProblem *problem) {
     int count = 0;
     for (int i = 0; i < problem->contact_count; i += contact_surface_points(problem, i)) colours->pairs[count++] = i;
+    colours->pairs[count] = problem->contact_count;
     return count;
-}
-
-int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact) {
-    uint64_t *a = &taken[contact->a], *b = &taken[contact->b];
-    const uint64_t open = ~(*a | *b);
-    const int colour = open != 0 ? __builtin_ctzll(open) : COLOURS - 1;
-    *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
-    *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
-    return colour;
 }
 
 /* points[colour + 1]: how many contacts have it. Returns how many colours there are. */
@@ -45,7 +37,7 @@ static int paint(Colours *colours, const ContactProblem *problem, int pairs, int
     for (int i = pairs - 1; i >= 0; i--) {
         const int colour = colours_take(colours->taken, problem, &problem->contacts[colours->pairs[i]]);
         colours->colour[i] = (uint8_t)colour;
-        points[colour + 1] += contact_surface_points(problem, colours->pairs[i]);
+        points[colour + 1] += colours->pairs[i + 1] - colours->pairs[i];
         if (colour >= most) most = colour + 1;
     }
     return most;
@@ -58,8 +50,9 @@ bool colours_order(Colours *colours, const ContactProblem *problem) {
     const int count = paint(colours, problem, pairs, begin);
     for (int i = 0; i < count; i++) begin[i + 1] += begin[i];
     for (int i = 0; i < pairs; i++) {
-        const int first = colours->pairs[i], points = contact_surface_points(problem, first);
-        for (int k = 0; k < points; k++) colours->visits[begin[colours->colour[i]]++] = first + k;
+        int32_t *visit = &colours->visits[begin[colours->colour[i]]];
+        begin[colours->colour[i]] += colours->pairs[i + 1] - colours->pairs[i];
+        for (int first = colours->pairs[i]; first < colours->pairs[i + 1]; first++) *visit++ = first;
     }
     return true;
 }

@@ -20,7 +20,7 @@ enum { COLOURS = 64 };
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Colours {
     int32_t *visits; /* [contact_count] the contacts in the order of visits; the two of a surface stay together */
-    int32_t *pairs;  /* [pairs] the first contact of each */
+    int32_t *pairs;  /* [pairs + 1] the first contact of each, and the end */
     uint8_t *colour; /* [pairs] */
     uint64_t *taken; /* [body_count] a bit for each colour */
     size_t visit_capacity, pair_capacity, colour_capacity, taken_capacity;
@@ -30,7 +30,14 @@ void colours_free(Colours *colours);
 
 /* The lowest colour that neither moving body of the contact has taken [body_count, a bit for each colour], and takes it
    for both. What finds none free gets the last: it commutes no more, but has its place. */
-int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact);
+static inline int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact) {
+    uint64_t *a = &taken[contact->a], *b = &taken[contact->b];
+    const uint64_t open = ~(*a | *b);
+    const int colour = open != 0 ? __builtin_ctzll(open) : COLOURS - 1;
+    *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
+    *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
+    return colour;
+}
 
 /* Fills colours->visits. False when memory is short. */
 bool colours_order(Colours *colours, const ContactProblem *problem);
