@@ -137,13 +137,22 @@ static bool fits(const SlotNetwork *network, const ContactProblem *problem, Erro
                        network->scene, network->bomb, problem->bomb);
 }
 
+static int within(float speed) { return fabsf(speed) <= speed_max; }
+
+/* The bodies, and what an impulse by itself does to the lightest: pushes that cancel each other round as much. */
 static bool is_bounded(const Sweeps *sweeps) {
-    bool bounded = true;
+    int bounded = 1;
+    float lightest = 0; /* 1/kg */
     for (int i = 0; i < sweeps->body_count; i++) {
         const SweepBody *body = &sweeps->bodies[i];
-        bounded &= fabsf(body->x) <= speed_max && fabsf(body->y) <= speed_max && fabsf(body->spin) <= speed_max;
+        bounded &= within(body->x) & within(body->y) & within(body->spin);
+        lightest = body->inv_mass > lightest ? body->inv_mass : lightest;
     }
-    return bounded;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const ContactImpulse *sums = sweeps->pairs[i].sums;
+        for (int k = 0; k < 2; k++) bounded &= within(lightest * sums[k].normal) & within(lightest * sums[k].tangent);
+    }
+    return bounded != 0;
 }
 
 static bool run_after(SceneNet *solver) {

@@ -17,21 +17,26 @@ typedef struct Known {
     ContactSolution found, expected;
 } Known;
 
-static inline void make_known(Known *known, uint32_t *seed, int run, float share) {
-    known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
-    while (known->random.problem.contact_count < 2) {
-        slot_network_destroy(known->network);
-        known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
-    }
+/* The problem, whose bomb is the network's, is like its training. */
+static inline void let_know(Known *known) {
     SlotNetwork *network = known->network;
     strcpy(network->scene, "random");
-    known->random.problem.bomb = network->bomb;
     network->bomb_inv_mass = known->random.bodies[network->bomb].inv_mass;
     network->gate = 0.01f;
     network->sweeps = AFTER;
     let_know_all(network);
     known->found = make_solution(&known->random.problem);
     known->expected = make_solution(&known->random.problem);
+}
+
+static inline void make_known(Known *known, uint32_t *seed, int run, float share) {
+    known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+    while (known->random.problem.contact_count < 2) {
+        slot_network_destroy(known->network);
+        known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+    }
+    known->random.problem.bomb = known->network->bomb;
+    let_know(known);
 }
 
 static inline void free_known(Known *known) {

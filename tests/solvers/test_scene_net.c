@@ -173,12 +173,40 @@ static void no_answer_throws_a_body_away(void **state) {
         }
 }
 
+/* A bomb between two walls, pushed by both alike: nothing is left of that, nor of its own speed, which was rounded away. */
+static void pushes_that_cancel_are_no_answer(void **state) {
+    (void)state;
+    static Known known;
+    static const Slot slots[] = {{0, 1, 0}, {1, 2, 1}};
+    static const SlotShape shape = {3, 1, 2, 16, 16, 16, 16};
+    uint32_t seed = 12;
+    make_random(&known.random, &seed, 3, 0, 1);
+    for (int i = 0; i < 3; i++) known.random.bodies[i] = (ProblemBody){.inv_mass = i == 1, .inv_inertia = i == 1};
+    known.random.bodies[1].velocity = vec2(3, 1);
+    for (int k = 0; k < 2; k++)
+        known.random.contacts[k] = (ContactPoint){
+            .a = k, .b = k + 1, .normal = {1, 0}, .mass_normal = 1, .mass_tangent = 1, .feature = (uint32_t)k};
+    known.random.problem.contact_count = 2;
+    known.random.problem.bomb = 1;
+    known.network = make_slot_network(&shape, slots, &seed);
+    let_know(&known);
+    known.network->biases[0] = known.network->biases[2] = 1e9f;
+    known.network->scale[0] = known.network->scale[1] = 1;
+    assert_momentums_bits(&known, "pushes that cancel");
+    assert_int_equal(known.found.fallbacks.not_finite, 1);
+    known.network->biases[0] = known.network->biases[2] = 100;
+    solve_by_network(&known);
+    assert_int_equal(known.found.fallbacks.not_finite, 0);
+    free_known(&known);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(momentum_and_cones_are_kept),
         cmocka_unit_test(another_scene_is_refused),
         cmocka_unit_test(a_step_unlike_the_training_is_momentums),
         cmocka_unit_test(no_answer_throws_a_body_away),
+        cmocka_unit_test(pushes_that_cancel_are_no_answer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
