@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size) {
-    if (wanted <= *capacity) return true;
     size_t room = *capacity < 8 ? 8 : *capacity;
     while (room < wanted) {
         if (room > SIZE_MAX / 2) return false;

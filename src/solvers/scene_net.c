@@ -142,15 +142,15 @@ static int within(float speed) { return fabsf(speed) <= speed_max; }
 /* The bodies, and what an impulse by itself does to the lightest: pushes that cancel each other round as much. */
 static bool is_bounded(const Sweeps *sweeps) {
     int bounded = 1;
-    float lightest = 0; /* 1/kg */
+    float inverse = 0; /* 1/kg, of the lightest */
     for (int i = 0; i < sweeps->body_count; i++) {
         const SweepBody *body = &sweeps->bodies[i];
         bounded &= within(body->x) & within(body->y) & within(body->spin);
-        lightest = body->inv_mass > lightest ? body->inv_mass : lightest;
+        inverse = body->inv_mass > inverse ? body->inv_mass : inverse;
     }
     for (int i = 0; i < sweeps->pair_count; i++) {
         const ContactImpulse *sums = sweeps->pairs[i].sums;
-        for (int k = 0; k < 2; k++) bounded &= within(lightest * sums[k].normal) & within(lightest * sums[k].tangent);
+        for (int k = 0; k < 2; k++) bounded &= within(inverse * sums[k].normal) & within(inverse * sums[k].tangent);
     }
     return bounded != 0;
 }

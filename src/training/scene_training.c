@@ -19,8 +19,7 @@ enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_
 static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
 /* RMS over the contacts: at rest they miss their bias by less, where a shock runs through them by more. */
 static const float gate = 0.3f; /* m/s */
-/* How near contacts are brought to their aim in runs with the network: so that these are nearly converged ones, as the runs
-   it is for should be, and still its own. */
+/* The setting `near` of the runs with the network: what they meet is what it is fitted to next. */
 static const float rollout_near = 0.05f; /* m/s */
 static const double near_weight = 0.02, first_rate = 3e-3;
 
