@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "chart/chart_plot.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "figure/chart_plot.h"
 #include "study/speed_accuracy.h"
 
 #include <stdio.h>

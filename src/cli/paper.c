@@ -3,10 +3,10 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
-#include "figure/engine_figures.h"
-#include "figure/result_figures.h"
-#include "report/paper_report.h"
-#include "study/paper.h"
+#include "paper/figures/engine_figures.h"
+#include "paper/figures/result_figures.h"
+#include "paper/report/paper_report.h"
+#include "paper/study/paper.h"
 
 #include <stdio.h>
 

@@ -86,12 +86,12 @@ static const struct argp argp = {
     NULL,
     NULL};
 
-static bool choose_context(const char *name, RenderContext *context, Error *error) {
+static bool choose_context(const char *name, ContextChoice *context, Error *error) {
     if (name == NULL) return true;
     if (strcmp(name, "osmesa") == 0)
-        *context = RENDER_CONTEXT_OSMESA;
+        *context = CONTEXT_OSMESA;
     else if (strcmp(name, "egl") == 0)
-        *context = RENDER_CONTEXT_EGL;
+        *context = CONTEXT_EGL;
     else
         return error_input(error, "--context", "'%s' is neither osmesa nor egl", name);
     return true;

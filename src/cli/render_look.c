@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/render_look.h"
 
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "study/chart_csv.h"
 
 #include <math.h>

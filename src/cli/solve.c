@@ -2,8 +2,8 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "dynamics/problem_file.h"
+#include "reference/solution_error.h"
 #include "simulate/method.h"
-#include "solvers/solution_error.h"
 
 #include <stdio.h>
 #include <stdlib.h>

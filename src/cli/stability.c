@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/stability.h"
+#include "stability/stability.h"
 
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
 #include "cli/stability_print.h"
-#include "figure/stability_figures.h"
-#include "study/stability_case.h"
-#include "study/stability_studies.h"
+#include "stability/stability_case.h"
+#include "stability/stability_figures.h"
+#include "stability/stability_studies.h"
 
 #include <stdio.h>
 #include <stdlib.h>

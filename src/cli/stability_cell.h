@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cell of a map of stability, as it is named on the command line. */
 #pragma once
-#include "figure/stability_table.h"
 #include "simulate/method.h"
+#include "stability/stability_table.h"
 
 /* "MAP:METHOD:X,Y". The method may have settings, so it goes up to the last ':'. */
 typedef struct StabilityCell {

@@ -2,7 +2,7 @@
 #include "cli/stability_print.h"
 
 #include "common/csv.h"
-#include "study/verdict.h"
+#include "stability/verdict.h"
 
 #include <stdio.h>
 #include <string.h>

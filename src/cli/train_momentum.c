@@ -2,7 +2,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/train_momentum.h"
-#include "training/momentum_fit.h"
+#include "impact_training/momentum_fit.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "training/scene_training.h"
+#include "impact_training/scene_training.h"
 
 #include <stdio.h>
 #include <string.h>

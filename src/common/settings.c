@@ -92,8 +92,8 @@ bool settings_float(const Settings *settings, const char *key, float minimum, fl
     if (text == NULL) return true;
     float number;
     if (!parse_float(text, &number) || number < minimum || number > maximum)
-        return error_input(error, key, "a number of %g to %g is needed (got '%.64s')", (double)minimum,
-                           (double)maximum, text);
+        return error_input(error, key, "a number of %g to %g is needed (got '%.64s')", (double)minimum, (double)maximum,
+                           text);
     *value = number;
     return true;
 }

@@ -33,7 +33,8 @@ bool settings_default(Settings *settings, const char *key, const char *value);
 bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error);
 
 /* The same for a number of [minimum, maximum]. */
-bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value, Error *error);
+bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value,
+                    Error *error);
 
 /* on|off, the same way. */
 bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error);

@@ -5,8 +5,8 @@
 #include "common/error.h"
 #include "common/parse.h"
 #include "common/progress.h"
-#include "dynamics/pair.h"
-#include "dynamics/pair_context.h"
+#include "pair/pair.h"
+#include "pair/pair_context.h"
 #include "scene/launch.h"
 
 #include <stddef.h>
@@ -15,7 +15,7 @@
 enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
 
 /* Where the changes come from: the engine's own solution, or the converged one of the same contact problem
-   (solvers/reference.h): the paper's more accurate source. */
+   (reference/reference.h): the paper's more accurate source. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
 extern const char *const dataset_label_names[DATASET_LABELS];

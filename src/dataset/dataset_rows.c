@@ -2,9 +2,9 @@
 #include "dataset/dataset_rows.h"
 
 #include "common/array.h"
+#include "reference/reference.h"
 #include "simulate/simulate.h"
-#include "solvers/reference.h"
-#include "solvers/sequential_impulses.h"
+#include "sweeps/sequential_impulses.h"
 
 #include <stdlib.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/contact_marks.h"
 
-#include "figure/label_place.h"
-#include "figure/type.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/label_place.h"
+#include "sketch/type.h"
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* The contacts of a step over a picture of its bodies: points, normals, and impulses as arrows and numbers. */
 #pragma once
 #include "common/error.h"
-#include "figure/sketch.h"
+#include "sketch/sketch.h"
 #include "trajectory/trajectory.h"
 
 typedef struct ContactLook {

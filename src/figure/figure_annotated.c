@@ -4,7 +4,7 @@
 #include "figure/contact_marks.h"
 #include "figure/run_kinds.h"
 #include "figure/run_view.h"
-#include "render/style.h"
+#include "picture/style.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest distance of any body from where the first run has it, over time; and the band in which the first run parts
    from itself when one body is shifted by a micrometre: inside it two runs part no faster than chance does. */
-#include "figure/chart_style.h"
-#include "figure/plot.h"
+#include "chart/chart_style.h"
 #include "figure/run_kinds.h"
 #include "figure/run_view.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/plot.h"
 #include "study/chaos.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "figure/network_drawing.h"
 #include "figure/run_kinds.h"
 #include "figure/run_view.h"
-#include "render/style.h"
+#include "picture/style.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 /* Moments of runs: a row for each run, a column for each moment, all by one camera. */
 #include "figure/run_kinds.h"
 #include "figure/run_view.h"
-#include "figure/type.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/type.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Many moments of one run in one picture: the last as it is, those before the paler the earlier. */
-#include "figure/label_place.h"
-#include "figure/raster.h"
 #include "figure/run_kinds.h"
 #include "figure/run_view.h"
-#include "figure/type.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/label_place.h"
+#include "sketch/raster.h"
+#include "sketch/type.h"
 
 #include <math.h>
 #include <stdlib.h>

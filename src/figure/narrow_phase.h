@@ -2,8 +2,8 @@
 /* A collision of two boxes, and the two halves of its picture. Of a window only its corners count. */
 #pragma once
 #include "figure/separating_axes.h"
-#include "figure/sketch.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/sketch.h"
 
 /* A pair in a step, as the narrow phase saw it. */
 typedef struct Collision {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/narrow_phase.h"
-#include "figure/type.h"
+#include "sketch/type.h"
 
 #include <math.h>
 #include <stdio.h>

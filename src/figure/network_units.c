@@ -3,8 +3,8 @@
 #include "common/file.h"
 #include "figure/network_drawing.h"
 #include "figure/run_view.h"
-#include "figure/type.h"
-#include "render/style.h"
+#include "picture/style.h"
+#include "sketch/type.h"
 
 #include <math.h>
 #include <stdlib.h>

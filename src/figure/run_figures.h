@@ -2,8 +2,8 @@
 /* Figures of stored runs, as papers print them: the scene as pixels, all else as lines and words. */
 #pragma once
 #include "common/progress.h"
-#include "figure/sketch_files.h"
 #include "render/render.h"
+#include "sketch/sketch_files.h"
 #include "trajectory/trajectory.h"
 
 enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/run_view.h"
 
-#include "figure/type.h"
-#include "render/font.h"
-#include "render/style.h"
+#include "gl/font.h"
+#include "picture/style.h"
+#include "sketch/type.h"
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>

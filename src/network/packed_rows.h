@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A matrix in a quarter of a float's room: each number a byte, times a unit of its row. Rounding a row to 127 steps of
-   its largest number moves what a network says by less than 1%, which training sees (training/slot_fit.h) and makes up
+   its largest number moves what a network says by less than 1%, which training sees (impact_training/slot_fit.h) and makes up
    for. */
 #pragma once
 #include <stdbool.h>

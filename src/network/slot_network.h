@@ -3,7 +3,7 @@
    far their impulses go beyond the warm start. A slot is a contact that may be there: two bodies and a feature, met in
    training; which of them there are, the step says.
 
-       x  = bomb's state; projections (training/principal.h) of the other bodies' state, of which slots there are, and
+       x  = bomb's state; projections (impact_training/principal.h) of the other bodies' state, of which slots there are, and
             of their warm impulses
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]

@@ -2,7 +2,7 @@
 /* What the file of a picture tells of its origin. No date: the same picture gives the same file. */
 #pragma once
 #include "image/image.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 
 enum {
     FRAME_TEXTS_MAX = 6,

@@ -7,8 +7,8 @@
    leaves what the next needs to go on. Neither file is trusted: a line counts only where it is, but for its own two
    hashes, the line that belongs there. */
 #pragma once
+#include "picture/picture.h"
 #include "render/moments.h"
-#include "render/picture.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
 /* Which moments a video shows, in which order: a card, the run with slow motion around the impact, its last frame held, a
    card. In closed form: a long run needs no list. */
 #pragma once
-#include "render/moment.h"
+#include "picture/moment.h"
 #include "render/render.h"
 
 typedef struct MomentPlan {

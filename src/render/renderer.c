@@ -2,9 +2,9 @@
 /* A picture, a context and a canvas: single frames. */
 #include "render/renderer.h"
 
-#include "render/canvas.h"
-#include "render/context.h"
-#include "render/damage.h"
+#include "gl/canvas.h"
+#include "gl/context.h"
+#include "gl/damage.h"
 
 #include <stdlib.h>
 #include <string.h>

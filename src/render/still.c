@@ -2,9 +2,9 @@
 /* The renderer's frames are opaque: drawn once on black and once on white, the difference is what nothing covers. */
 #include "render/still.h"
 
-#include "render/body.h"
-#include "render/canvas.h"
-#include "render/context.h"
+#include "gl/canvas.h"
+#include "gl/context.h"
+#include "picture/body.h"
 
 #include <stdlib.h>
 
@@ -21,7 +21,7 @@ static bool set_up(Still *still, int width, int height, Error *error) {
         return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be 1 to %d", width,
                            height, RENDER_LARGEST_SIDE);
     if ((still->on_white = image_create(width, height, error)) == NULL ||
-        !context_create(&still->context, RENDER_CONTEXT_AUTO, error) ||
+        !context_create(&still->context, CONTEXT_AUTO, error) ||
         !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
         return false;
     still->canvas = canvas_create(&still->gl, width, height, error);

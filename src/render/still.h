@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bodies of one frame without anything around them, on nothing: for figures, which bring their own words. */
 #pragma once
-#include "render/camera.h"
+#include "picture/camera.h"
 #include "render/render.h"
 
 /* What of a frame is drawn. */

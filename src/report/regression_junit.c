@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* junit.xml, as CI systems read it: a test case for each frame and trajectory. No times: the same comparison gives the same
    bytes. XML and HTML escape alike. */
-#include "report/document_write.h"
+#include "common/html_text.h"
 #include "report/regression_parts.h"
 
 static void put_case(FILE *file, const char *kind, const char *name, const char *verdict, const char *words) {

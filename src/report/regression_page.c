@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html. What is fixed of it lies in page/; pictures and figures stand in it as data, which its script reads. */
 #include "common/base64.h"
-#include "report/document_write.h"
+#include "common/html_text.h"
 #include "report/page.h"
 #include "report/regression_parts.h"
 

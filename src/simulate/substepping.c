@@ -12,7 +12,7 @@
 #include "common/array.h"
 #include "dynamics/contacts.h"
 #include "simulate/stepping.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sweeps.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "solvers/forest.h"
 
 #include "common/array.h"
-#include "solvers/contact_velocity.h"
+#include "sweeps/contact_velocity.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
    rest, metres a second while a shock runs through them; so it tells when a network is worth its time. After some
    sweeps: whether they have arrived. */
 #pragma once
-#include "solvers/sweeps.h"
+#include "sweeps/sweeps.h"
 
 /* Whether the root of the mean square over the contacts, of how far a contact's normal velocity is from its bias, reaches
    `gate` (m/s). What parts without being pushed is no miss. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sweeps with momentum (momentum.c) whose factors were learned: one number before each sweep, fitted to a scene and to
-   the number of sweeps (training/momentum_fit.h). Costs what momentum costs. Source: schedules learned for unrolled
+   the number of sweeps (impact_training/momentum_fit.h). Costs what momentum costs. Source: schedules learned for unrolled
    iterations, as in Gregor, LeCun, "Learning Fast Approximations of Sparse Coding" (2010). Fails on other scenes than
    its own: then the factors are no better than those by hand, or worse. */
 #include "network/momentum_schedule.h"

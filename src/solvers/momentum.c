@@ -13,9 +13,9 @@
 #include "solvers/momentum.h"
 
 #include "common/array.h"
-#include "solvers/contact_velocity.h"
-#include "solvers/sequential_impulses.h"
 #include "solvers/solvers.h"
+#include "sweeps/contact_velocity.h"
+#include "sweeps/sequential_impulses.h"
 
 #include <stdlib.h>
 

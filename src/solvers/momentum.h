@@ -3,7 +3,7 @@
    stands before which sweep is theirs to say. */
 #pragma once
 #include "common/error.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sweeps.h"
 
 /* The plain text: `count` sweeps over the contacts visits[contact_count], before sweep s (not the first) the extrapolation
    by factors[s] >= 0. `before` is room for another solution. sweeps_run_momentum gives the same bits. */

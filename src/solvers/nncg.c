@@ -17,7 +17,7 @@
    Bit-exact: the sweeps are the engine's (sweeps.h), and products are summed in a fixed order. */
 #include "common/array.h"
 #include "solvers/solvers.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sweeps.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,9 +7,9 @@
    Erleben, "Stable, Robust, and Versatile Multibody Dynamics Animation" (2005). omega < 1 damps, omega > 1 looks
    ahead. Fails as sequential impulses do, somewhat later: an impulse still travels one contact a sweep, and what is
    overshot at an impact has to be taken back. */
-#include "solvers/sequential_impulses.h"
 #include "solvers/solvers.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sequential_impulses.h"
+#include "sweeps/sweeps.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "solvers/pair_network.h"
 
 #include "common/array.h"
-#include "solvers/sequential_impulses.h"
+#include "sweeps/sequential_impulses.h"
 
 #include <stdio.h>
 #include <stdlib.h>

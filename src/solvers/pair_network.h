@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A network trained on pairs (training/training.h), ready to be asked: what it sees, what it says, and about what. */
 #pragma once
-#include "dynamics/pair.h"
 #include "network/network.h"
+#include "pair/pair.h"
 
 #include <stdbool.h>
 #include <stddef.h>

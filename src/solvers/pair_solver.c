@@ -2,8 +2,8 @@
 #include "solvers/pair_solver.h"
 
 #include "common/array.h"
-#include "solvers/contact_velocity.h"
-#include "solvers/sweeps.h"
+#include "sweeps/contact_velocity.h"
+#include "sweeps/sweeps.h"
 
 #include <math.h>
 #include <stdlib.h>

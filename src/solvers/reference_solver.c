@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reference (reference.h) as a contact solver: whole runs by converged steps. Slow; where a step does not
    converge, as far as its sweeps reach. */
-#include "solvers/reference.h"
+#include "reference/reference.h"
 #include "solvers/solvers.h"
 
 #include <stdlib.h>

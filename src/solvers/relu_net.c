@@ -16,10 +16,10 @@
    give it. Source of rectifier networks as piecewise linear maps, and these as networks: Arora, Basu, Mianjy, Mukherjee,
    "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
 #include "network/activation.h"
-#include "solvers/contact_velocity.h"
-#include "solvers/sequential_impulses.h"
 #include "solvers/solvers.h"
-#include "solvers/sweeps.h"
+#include "sweeps/contact_velocity.h"
+#include "sweeps/sequential_impulses.h"
+#include "sweeps/sweeps.h"
 
 #include <stdlib.h>
 

@@ -11,9 +11,9 @@
    as the engine does where it falls back to it: in walls, bridges and arches, on corners, and while boxes tip or slide; a
    stack that a blow has shaken may so be lost. */
 #include "solvers/forest.h"
-#include "solvers/sequential_impulses.h"
 #include "solvers/solvers.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sequential_impulses.h"
+#include "sweeps/sweeps.h"
 
 #include <stdlib.h>
 

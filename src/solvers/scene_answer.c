@@ -2,7 +2,7 @@
 #include "solvers/scene_answer.h"
 
 #include "common/array.h"
-#include "solvers/contact_velocity.h"
+#include "sweeps/contact_velocity.h"
 
 #include <stdlib.h>
 

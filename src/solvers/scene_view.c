@@ -3,7 +3,7 @@
 
 #include "collision/manifold.h"
 #include "common/array.h"
-#include "solvers/contact_velocity.h"
+#include "sweeps/contact_velocity.h"
 
 #include <math.h>
 #include <stdlib.h>

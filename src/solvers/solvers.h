@@ -3,7 +3,7 @@
 #pragma once
 #include "dynamics/contact_solver.h"
 
-extern const ContactSolverKind solver_sequential_impulses;
+extern const ContactSolverKind solver_engine;
 extern const ContactSolverKind solver_over_relaxation;
 extern const ContactSolverKind solver_momentum;
 extern const ContactSolverKind solver_learned_momentum;

@@ -3,7 +3,7 @@
 #pragma once
 #include "study/chart_csv.h"
 
-/* m/s: how far from converged the reference itself can be (solvers/reference.h). Smaller errors are equal. */
+/* m/s: how far from converged the reference itself can be (reference/reference.h). Smaller errors are equal. */
 #define FRONT_RESOLUTION 1e-4
 
 /* a is surely faster, and not less accurate: its upper quartile of time lies below b's lower one, and its mean error

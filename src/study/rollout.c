@@ -2,8 +2,8 @@
 #include "study/rollout.h"
 
 #include "common/array.h"
+#include "reference/solution_error.h"
 #include "simulate/simulate.h"
-#include "solvers/solution_error.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
    converged solution of that same step. */
 #pragma once
 #include "common/error.h"
+#include "reference/reference.h"
 #include "simulate/method.h"
-#include "solvers/reference.h"
 #include "study/run_log.h"
 
 /* Of the steps scored. Zero-initialise; freed by step_scores_free. */

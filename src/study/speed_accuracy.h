@@ -2,7 +2,7 @@
 /* Speed against accuracy: every method in every scene, on launches that nothing was trained on.
 
    Two protocols. Frozen: all methods take the same steps, sampled from the engine's runs. Closed: each runs on its own
-   trajectory. Either way a step is scored by its end velocities against the converged solution (solvers/reference.h) of
+   trajectory. Either way a step is scored by its end velocities against the converged solution (reference/reference.h) of
    the contact problem at its start. */
 #pragma once
 #include "common/progress.h"

@@ -9,8 +9,8 @@
        cone      N s by which the pair's impulse J leaves Coulomb's cone: max(0, |J.t| - mu max(J.n, 0)) across, and
                  max(0, -J.n) pulling. J is what b was given, or where b is static what a gave */
 #pragma once
-#include "dynamics/pair.h"
-#include "dynamics/pair_context.h"
+#include "pair/pair.h"
+#include "pair/pair_context.h"
 
 enum { LAW_MOMENTUM, LAW_ENERGY, LAW_APPROACH, LAW_CONE, LAWS };
 

@@ -1,36 +1,29 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Which folder of src/ may include from which: the direction of the dependencies. A folder may also include from what
-# its neighbours may, and from common.
+# Every #include in src/ keeps to the direction of dependencies in src/layers.txt.
 set -u
 source_dir=$2
 
-declare -A neighbours=(
-    [common]="" [collision]="" [network]="" [image]="" [trajectory]=""
-    [dynamics]="collision" [solvers]="dynamics network" [scene]="dynamics"
-    [simulate]="scene solvers trajectory" [dataset]="simulate" [training]="dataset network"
-    [render]="trajectory image" [study]="training simulate" [figure]="study render"
-    [report]="study figure image trajectory"
-    [cli]="common collision network image trajectory dynamics solvers scene simulate dataset training study render figure report"
-    [main.c]="cli"
-)
+declare -A neighbours
+while IFS=: read -r room names; do neighbours[$room]=$names; done < <(grep '^[a-z]' "$source_dir/src/layers.txt")
 
-# All folders that $1 may include from.
+# All rooms that $1 may include from.
 reach() {
-    local folder
+    local room
     echo "$1" common
-    for folder in ${neighbours[$1]}; do reach "$folder"; done
+    for room in ${neighbours[$1]}; do reach "$room"; done
 }
 
 status=0
 for path in "$source_dir"/src/*; do
-    folder=$(basename "$path")
-    if [ -z "${neighbours[$folder]+known}" ]; then
-        echo "src/$folder has no place in the table"
+    room=$(basename "$path")
+    [ -d "$path" ] || [ "$room" = main.c ] || continue
+    if [ -z "${neighbours[$room]+known}" ]; then
+        echo "src/$room is missing in src/layers.txt"
         status=1
         continue
     fi
-    allowed=" $(reach "$folder" | tr '\n' ' ') "
+    allowed=" $(reach "$room" | tr '\n' ' ') "
     while IFS=: read -r file line include; do
         target=$(sed -E 's/.*"([^"]*)".*/\1/' <<<"$include")
         # A header without a folder lies beside the file or is made by the build.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "figure/plot.h"
+#include "sketch/plot.h"
 #include "figure/run_figure.h"
 #include "simulate/simulate.h"
 

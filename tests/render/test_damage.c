@@ -5,7 +5,7 @@
 
 #include "image/png_encoder.h"
 #include "mesa.h"
-#include "render/damage.h"
+#include "gl/damage.h"
 #include "render/renderer.h"
 #include "runs.h"
 

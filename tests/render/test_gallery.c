@@ -80,7 +80,7 @@ static Runs read_runs(const char *const *names) {
     return runs;
 }
 
-static Image *draw(int i, bool dark, RenderContext context) {
+static Image *draw(int i, bool dark, ContextChoice context) {
     Error error = {0};
     Runs runs = read_runs(entries[i].runs);
     RenderOptions options = {.width = WIDTH, .height = HEIGHT, .context = context, .look = entries[i].look};
@@ -99,7 +99,7 @@ static void name_entry(char name[NAME_SIZE], int i, bool dark) {
     snprintf(name, NAME_SIZE, "%s%s", entries[i].name, dark ? "_dark" : "");
 }
 
-static bool is_equal(const Image *expected, int i, bool dark, RenderContext context) {
+static bool is_equal(const Image *expected, int i, bool dark, ContextChoice context) {
     char name[NAME_SIZE], path[PATH_MAX];
     Error error = {0};
     ImageDifference difference;
@@ -126,7 +126,7 @@ static void the_gallery_is_drawn_again(void **state) {
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
             Image *expected = image_read_png(path, &error);
             assert_ok(expected != NULL, error);
-            different += !is_equal(expected, i, dark, dark ? RENDER_CONTEXT_EGL : RENDER_CONTEXT_OSMESA);
+            different += !is_equal(expected, i, dark, dark ? CONTEXT_EGL : CONTEXT_OSMESA);
             image_destroy(expected);
         }
     assert_int_equal(different, 0);
@@ -139,7 +139,7 @@ static void write_all(void) {
             Error error = {0};
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *image = draw(i, dark, RENDER_CONTEXT_AUTO);
+            Image *image = draw(i, dark, CONTEXT_AUTO);
             if (!image_write_png(image, path, NULL, 0, &error)) print_error("%s\n", error.message);
             image_destroy(image);
         }

@@ -14,9 +14,9 @@ static const char FRAMES[] = SOURCE_DIR "/golden/frames", TRAJECTORIES[] = SOURC
 enum { PANELS = 2, DIGITS = 6 };
 
 static const struct {
-    RenderContext context;
+    ContextChoice context;
     const char *name;
-} contexts[] = {{RENDER_CONTEXT_OSMESA, "osmesa"}, {RENDER_CONTEXT_EGL, "egl"}};
+} contexts[] = {{CONTEXT_OSMESA, "osmesa"}, {CONTEXT_EGL, "egl"}};
 
 typedef struct Golden {
     char scene[256];
@@ -54,7 +54,7 @@ static void unload(Golden *golden) {
     for (int i = 0; i < PANELS; i++) trajectory_destroy(golden->panels[i]);
 }
 
-static Image *draw(const Golden *golden, RenderContext context) {
+static Image *draw(const Golden *golden, ContextChoice context) {
     Error error = {0};
     RenderOptions options = {.width = golden->image->width, .height = golden->image->height, .context = context};
     const Trajectory *const panels[PANELS] = {golden->panels[0], golden->panels[1]};

@@ -4,9 +4,9 @@
 
 #include "look_runs.h"
 #include "mesa.h"
-#include "render/camera_path.h"
-#include "render/panel.h"
-#include "render/pose.h"
+#include "picture/camera_path.h"
+#include "picture/panel.h"
+#include "picture/pose.h"
 #include "render/renderer.h"
 
 static Picture dressed(int count, const RenderLook *look) {

@@ -17,9 +17,9 @@ enum { MOMENTS = sizeof moments / sizeof moments[0] };
 /* Of two renderers one follows the moments, and one begins anew with each. */
 static void assert_followed(const RenderLook *look, int count, int width, int height) {
     Error error = {0};
-    RenderOptions options = {.width = width, .height = height, .look = *look, .context = RENDER_CONTEXT_OSMESA};
+    RenderOptions options = {.width = width, .height = height, .look = *look, .context = CONTEXT_OSMESA};
     Renderer *next = renderer_create(panels, count, &options, &error);
-    options.context = RENDER_CONTEXT_EGL;
+    options.context = CONTEXT_EGL;
     Renderer *whole = renderer_create(panels, count, &options, &error);
     assert_ok(next != NULL && whole != NULL, error);
     Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);

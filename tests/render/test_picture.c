@@ -3,7 +3,8 @@
 #include "testing.h"
 
 #include "mesa.h"
-#include "render/panel.h"
+#include "picture/panel.h"
+#include "render/render.h"
 #include "runs.h"
 
 static const Trajectory *panels[RENDER_PANELS_MAX];
@@ -23,7 +24,7 @@ static int destroy(void **state) {
     return 0;
 }
 
-static Image *draw_in(RenderContext context, int count, int width, int height, int frame) {
+static Image *draw_in(ContextChoice context, int count, int width, int height, int frame) {
     Error error = {0};
     RenderOptions options = {.width = width, .height = height, .context = context};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
@@ -35,7 +36,7 @@ static Image *draw_in(RenderContext context, int count, int width, int height, i
 }
 
 static uint64_t hash_of(int count, int width, int height, int frame) {
-    Image *image = draw_in(RENDER_CONTEXT_AUTO, count, width, height, frame);
+    Image *image = draw_in(CONTEXT_AUTO, count, width, height, frame);
     uint64_t hash = image_hash(image);
     image_destroy(image);
     return hash;
@@ -46,8 +47,8 @@ static void both_contexts_draw_the_same(void **state) {
     static const int sizes[][2] = {{640, 360}, {1280, 720}, {360, 640}, {64, 64}, {65, 333}, {2000, 301}};
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         const int *size = sizes[count - 1];
-        Image *a = draw_in(RENDER_CONTEXT_OSMESA, count, size[0], size[1], 5);
-        Image *b = draw_in(RENDER_CONTEXT_EGL, count, size[0], size[1], 5);
+        Image *a = draw_in(CONTEXT_OSMESA, count, size[0], size[1], 5);
+        Image *b = draw_in(CONTEXT_EGL, count, size[0], size[1], 5);
         ImageDifference difference;
         image_compare(a, b, &difference);
         if (!difference.equal) fail_msg("%d panels: %d pixels differ", count, (int)difference.pixels);
@@ -71,7 +72,7 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     Error error = {0};
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
-    Image *last = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(RENDER_CONTEXT_AUTO, 2, 640, 360, 9);
+    Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
     Image *a = image_create(640, 360, &error), *b = image_create(640, 360, &error);
     const Rect *rects = picture.layout.panels;
     copy_panel(a, last, &rects[1]);

@@ -21,15 +21,14 @@ int __wrap_setenv(const char *name, const char *value, int overwrite) {
 }
 
 typedef struct Way {
-    RenderContext context;
+    ContextChoice context;
     const char *threads, *caps; /* caps NULL: all that the CPU has */
 } Way;
 
-static const Way ways[] = {{RENDER_CONTEXT_OSMESA, "0", NULL},     {RENDER_CONTEXT_OSMESA, "1", NULL},
-                           {RENDER_CONTEXT_OSMESA, "2", NULL},     {RENDER_CONTEXT_EGL, "0", NULL},
-                           {RENDER_CONTEXT_EGL, "1", NULL},        {RENDER_CONTEXT_EGL, "2", NULL},
-                           {RENDER_CONTEXT_OSMESA, "0", "sse2"},   {RENDER_CONTEXT_EGL, "0", "sse2"},
-                           {RENDER_CONTEXT_OSMESA, "2", "sse4.1"}, {RENDER_CONTEXT_EGL, "1", "avx"}};
+static const Way ways[] = {{CONTEXT_OSMESA, "0", NULL},   {CONTEXT_OSMESA, "1", NULL}, {CONTEXT_OSMESA, "2", NULL},
+                           {CONTEXT_EGL, "0", NULL},      {CONTEXT_EGL, "1", NULL},    {CONTEXT_EGL, "2", NULL},
+                           {CONTEXT_OSMESA, "0", "sse2"}, {CONTEXT_EGL, "0", "sse2"},  {CONTEXT_OSMESA, "2", "sse4.1"},
+                           {CONTEXT_EGL, "1", "avx"}};
 enum { WAYS = sizeof ways / sizeof ways[0] };
 
 /* What a process of its own found: Mesa reads its variables once. */

@@ -4,8 +4,8 @@
 #include "testing.h"
 
 #include "solvers/momentum.h"
-#include "solvers/sequential_impulses.h"
-#include "solvers/sweeps.h"
+#include "sweeps/sequential_impulses.h"
+#include "sweeps/sweeps.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include "worlds.h"
 
-#include "dynamics/pair.h"
+#include "pair/pair.h"
 #include "network/network.h"
 
 /* Any six changes. */

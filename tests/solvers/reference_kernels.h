@@ -3,7 +3,7 @@
 #pragma once
 #include "testing.h"
 
-#include "solvers/reference.h"
+#include "reference/reference.h"
 
 /* Used again from call to call, so that what a problem before left behind is met too. plain.plain is to be set. */
 typedef struct ReferenceKernels {

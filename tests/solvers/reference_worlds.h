@@ -3,7 +3,7 @@
 #pragma once
 #include "worlds.h"
 
-#include "solvers/reference.h"
+#include "reference/reference.h"
 
 static const double tight = 1e-9; /* m/s */
 enum { VISITS = 20 * REFERENCE_MAX_VISITS };

@@ -61,7 +61,7 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
 
 static void a_settled_pyramid_steps_without_allocating(void **state) {
     (void)state;
-    steps_allocate_nothing_by(&solver_sequential_impulses);
+    steps_allocate_nothing_by(&solver_engine);
     steps_allocate_nothing_by(&solver_over_relaxation);
     steps_allocate_nothing_by(&solver_momentum);
     steps_allocate_nothing_by(&solver_block);

@@ -4,7 +4,7 @@
 #include "kernels.h"
 
 #include "random_problem.h"
-#include "solvers/block.h"
+#include "sweeps/block.h"
 #include "worlds.h"
 
 static void random_problems_have_the_bits_of_the_plain_text(void **state) {
@@ -81,7 +81,7 @@ static void a_box_on_two_points_stops_in_one_sweep(void **state) {
     assert_near(found.velocities[1].angular, 0, 1e-6);
     assert_near(found.impulses[0].normal, 3 + 0.5, 1e-5);
     assert_near(found.impulses[1].normal, 3 - 0.5, 1e-5);
-    solve_once(&solver_sequential_impulses, &landing, &found);
+    solve_once(&solver_engine, &landing, &found);
     assert_true(fabsf(found.velocities[1].angular) > 0.1f);
     free_solution(&found);
 }

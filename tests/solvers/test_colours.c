@@ -3,8 +3,8 @@
 #include "solvers/kernels.h"
 #include "solvers/random_problem.h"
 
-#include "solvers/colours.h"
-#include "solvers/contact_velocity.h"
+#include "sweeps/colours.h"
+#include "sweeps/contact_velocity.h"
 
 static bool moves(const ContactProblem *problem, int body) {
     return problem->bodies[body].inv_mass != 0 || problem->bodies[body].inv_inertia != 0;

@@ -4,7 +4,7 @@
 #include "random_problem.h"
 
 #include "network/networks.h"
-#include "solvers/sequential_impulses.h"
+#include "sweeps/sequential_impulses.h"
 
 /* A network of two layers whose weights know nothing. */
 static const char *random_network(PairView view, uint32_t seed) {

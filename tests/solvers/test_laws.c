@@ -6,7 +6,7 @@ static const ContactSolverKind *judged;
 
 static int judge_engine(void **state) {
     (void)state;
-    judged = &solver_sequential_impulses;
+    judged = &solver_engine;
     return 0;
 }
 
@@ -184,11 +184,11 @@ static void iterations_out_of_range_are_refused(void **state) {
     (void)state;
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, "k=0", solver_sequential_impulses.settings, "engine", &error), error);
-    assert_null(solver_sequential_impulses.create(&settings, &error));
+    assert_ok(settings_parse(&settings, "k=0", solver_engine.settings, "engine", &error), error);
+    assert_null(solver_engine.create(&settings, &error));
     assert_error(error, ERROR_INPUT, "k");
     error = (Error){0};
-    assert_false(settings_parse(&settings, "sweeps=3", solver_sequential_impulses.settings, "engine", &error));
+    assert_false(settings_parse(&settings, "sweeps=3", solver_engine.settings, "engine", &error));
     assert_error(error, ERROR_INPUT, "sweeps");
 }
 

@@ -116,7 +116,7 @@ static float missing_weight(const ContactSolverKind *kind) {
 static void a_stack_carries_its_weight_at_once(void **state) {
     (void)state;
     assert_true(missing_weight(&solver_nncg) < 0.01f);
-    assert_true(missing_weight(&solver_sequential_impulses) > 0.1f);
+    assert_true(missing_weight(&solver_engine) > 0.1f);
 }
 
 int main(void) {

@@ -2,7 +2,7 @@
 /* The reference, held to sweeps: many plain ones find the same, and one more changes nothing. */
 #include "reference_worlds.h"
 
-#include "solvers/sequential_impulses.h"
+#include "sweeps/sequential_impulses.h"
 
 #include <math.h>
 
@@ -110,8 +110,8 @@ static void the_reference_is_a_fixed_point_of_every_convergent_solver(void **sta
             contacts[i].warm_tangent = (float)reference.impulses[i].tangent;
         }
         problem.contacts = contacts;
-        assert_fixed_point(&solver_sequential_impulses, "k=1", &problem, &reference);
-        assert_fixed_point(&solver_sequential_impulses, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_engine, "k=1", &problem, &reference);
+        assert_fixed_point(&solver_engine, "k=10", &problem, &reference);
         assert_fixed_point(&solver_over_relaxation, "k=10", &problem, &reference);
         assert_fixed_point(&solver_momentum, "k=10", &problem, &reference);
         assert_fixed_point(&solver_nncg, "k=10", &problem, &reference);

@@ -23,10 +23,10 @@ static int check_visit(RandomProblem *random) {
     ContactProblem *problem = &random->problem;
     ContactSolution net = make_solution(problem), engine = make_solution(problem), free_to_rub = make_solution(problem);
     solve(&solver_relu_net, "k=1", problem, &net);
-    solve(&solver_sequential_impulses, "k=1", problem, &engine);
+    solve(&solver_engine, "k=1", problem, &engine);
     const float friction = random->contacts[0].friction;
     random->contacts[0].friction = 1e30f;
-    solve(&solver_sequential_impulses, "k=1", problem, &free_to_rub);
+    solve(&solver_engine, "k=1", problem, &free_to_rub);
     const ContactImpulse is = net.impulses[0], expected = engine.impulses[0];
     const float w = free_to_rub.impulses[0].tangent, limit = friction * expected.normal;
     const double most = (double)fmaxf(fabsf(w), limit);

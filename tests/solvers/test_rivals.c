@@ -46,8 +46,8 @@ static void all_meet_the_plain_sweeps(void **state) {
                   {&solver_over_relaxation, "k=5000,omega=0.7"},
                   {&solver_block, "k=2000"},
                   {&solver_nncg, "k=200"},
-                  {&solver_sequential_impulses, "k=20000,warm=off"}};
-    solve(&solver_sequential_impulses, "k=10", problem, &found);
+                  {&solver_engine, "k=20000,warm=off"}};
+    solve(&solver_engine, "k=10", problem, &found);
     assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
     for (int r = 0; r < 6; r++) {
         solve(rivals[r].kind, rivals[r].text, problem, &found);
@@ -119,9 +119,9 @@ static void a_cold_engine_starts_from_zero(void **state) {
     for (int i = 0; i < cold.contact_count; i++) contacts[i].warm_normal = contacts[i].warm_tangent = 0;
     cold.contacts = contacts;
     ContactSolution off = make_solution(&cold), on = make_solution(&cold), of_cold = make_solution(&cold);
-    solve(&solver_sequential_impulses, "k=3,warm=off", world_problem(world), &off);
-    solve(&solver_sequential_impulses, "k=3", world_problem(world), &on);
-    solve(&solver_sequential_impulses, "k=3", &cold, &of_cold);
+    solve(&solver_engine, "k=3,warm=off", world_problem(world), &off);
+    solve(&solver_engine, "k=3", world_problem(world), &on);
+    solve(&solver_engine, "k=3", &cold, &of_cold);
     assert_same_bits(&cold, &off, &of_cold, "warm=off");
     assert_memory_not_equal(off.impulses, on.impulses, (size_t)cold.contact_count * sizeof *on.impulses);
     free_solution(&off);
@@ -177,7 +177,7 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_refused(&solver_over_relaxation, "omega=0", "omega");
     assert_refused(&solver_over_relaxation, "omega=2", "omega");
     assert_refused(&solver_over_relaxation, "omega=nan", "omega");
-    assert_refused(&solver_sequential_impulses, "warm=maybe", "warm");
+    assert_refused(&solver_engine, "warm=maybe", "warm");
     assert_refused(&solver_learned_momentum, "", "names no factors");
 }
 

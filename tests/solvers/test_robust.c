@@ -119,7 +119,7 @@ static void trees_are_solved_as_sweeps_would_in_the_end(void **state) {
 static void what_stands_on_a_loop_is_the_engines(void **state) {
     (void)state;
     World *worlds[2];
-    const ContactSolverKind *const kinds[] = {&solver_sequential_impulses, &solver_robust};
+    const ContactSolverKind *const kinds[] = {&solver_engine, &solver_robust};
     for (int k = 0; k < 2; k++) {
         worlds[k] = make_world();
         add_ground(worlds[k], 0.4f);

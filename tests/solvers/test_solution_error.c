@@ -2,8 +2,8 @@
 /* The measure of accuracy, on cases whose value is known. */
 #include "worlds.h"
 
-#include "solvers/sequential_impulses.h"
-#include "solvers/solution_error.h"
+#include "sweeps/sequential_impulses.h"
+#include "reference/solution_error.h"
 
 #include <math.h>
 

@@ -18,7 +18,7 @@ static inline ContactSolver make_solver(const ContactSolverKind *kind, const cha
     return solver;
 }
 
-static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_sequential_impulses, text); }
+static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
 

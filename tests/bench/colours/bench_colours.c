@@ -6,8 +6,8 @@
 #include "report.h"
 
 #include "solvers/momentum.h"
-#include "solvers/solution_error.h"
-#include "training/impact_problems.h"
+#include "reference/solution_error.h"
+#include "impact_training/impact_problems.h"
 
 #include <stdio.h>
 #include <stdlib.h>

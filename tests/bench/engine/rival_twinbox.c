@@ -26,7 +26,7 @@ static void *create(void) {
     Engine *engine = malloc(sizeof *engine);
     if (engine == NULL) abort();
     engine->world = world_create(&def, &error);
-    engine->solver = (ContactSolver){&solver_sequential_impulses, solver_sequential_impulses.create(&settings, &error)};
+    engine->solver = (ContactSolver){&solver_engine, solver_engine.create(&settings, &error)};
     check(engine->world != NULL && engine->solver.state != NULL, &error);
     return engine;
 }

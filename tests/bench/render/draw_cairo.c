@@ -3,7 +3,7 @@
    rounded boxes with outline and band, the texts. Prints the seconds that the frames took. */
 #include "runs.h"
 
-#include "render/picture.h"
+#include "picture/picture.h"
 
 #include <cairo.h>
 #include <math.h>
@@ -90,8 +90,8 @@ static void draw_texts(cairo_t *cairo, const Picture *picture, int frame) {
     const Layout *layout = &picture->layout;
     char text[160];
     draw_text(cairo, layout->scene.pixels, layout->left, layout->header_baseline, picture->panels[0]->scene);
-    snprintf(text, sizeof text, "apart %.2f m   frame %d   t = %.3f s", picture_apart(picture, moment_stored(frame)), frame,
-             frame * (double)picture->panels[0]->dt);
+    snprintf(text, sizeof text, "apart %.2f m   frame %d   t = %.3f s", picture_apart(picture, moment_stored(frame)),
+             frame, frame * (double)picture->panels[0]->dt);
     draw_text(cairo, layout->status.pixels, layout->right - 24 * layout->status.pixels, layout->header_baseline, text);
     for (int i = 0; i < picture->count; i++) {
         Rect rect = layout->panels[i];

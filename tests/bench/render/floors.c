@@ -3,7 +3,7 @@
    writing a file of its size. Arguments: DIR WIDTH HEIGHT BYTES. */
 #include "common/file.h"
 #include "image/image.h"
-#include "render/context.h"
+#include "gl/context.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,8 +60,7 @@ int main(int argc, char **argv) {
     Context context;
     GlFunctions gl;
     Image *a = image_create(atoi(argv[2]), atoi(argv[3]), &error), *b = image_create(a->width, a->height, &error);
-    if (!context_create(&context, RENDER_CONTEXT_AUTO, &error) ||
-        !gl_load(&gl, context.kind->find, context.state, &error)) {
+    if (!context_create(&context, CONTEXT_AUTO, &error) || !gl_load(&gl, context.kind->find, context.state, &error)) {
         fprintf(stderr, "%s\n", error.message);
         return 3;
     }

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "chart/chart_data.h"
+
+#include "common/parse.h"
+#include "study/front.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double lost_drift = 0.5; /* m: half a box */
+
+char chart_plain_letter(char letter) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
+    return strchr(plain, letter) != NULL ? letter : '?';
+}
+
+void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
+    size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;
+    bool cut = length > room;
+    if (cut) length = room - 3;
+    for (size_t i = 0; i < length; i++) out[i] = chart_plain_letter(text[i]);
+    strcpy(out + length, cut ? "..." : "");
+}
+
+/* Distributes "k=20,warm=off" to numbers "k=20" and words ", warm=off". */
+static void split_setting(const char *setting, char *numbers, char *words) {
+    numbers[0] = words[0] = '\0';
+    while (*setting != '\0') {
+        size_t length = strcspn(setting, ",");
+        char item[CHART_SETTING_SIZE];
+        snprintf(item, sizeof item, "%.*s", (int)length, setting);
+        const char *value = strchr(item, '=');
+        double number;
+        bool is_number = value != NULL && parse_double(value + 1, &number);
+        if (!is_number || numbers[0] != '\0') strcat(is_number ? numbers : words, ", ");
+        strcat(is_number ? numbers : words, item);
+        setting += length + (setting[length] == ',');
+    }
+}
+
+static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
+    char numbers[2 * CHART_SETTING_SIZE], words[2 * CHART_SETTING_SIZE];
+    split_setting(row->setting, numbers, words);
+    snprintf(key, CHART_KEY_SIZE, "%s%s", row->method, words);
+    chart_plain(label, numbers);
+}
+
+static int find_line(const Chart *chart, const char *key) {
+    int i = 0;
+    while (i < chart->line_count && strcmp(chart->lines[i].key, key) != 0) i++;
+    return i;
+}
+
+static bool add_lines(Chart *chart, const ChartTable *table, const char *path, Error *error) {
+    char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
+    for (int i = 0; i < table->count; i++) {
+        name_row(&table->rows[i], key, label);
+        if (find_line(chart, key) < chart->line_count) continue;
+        if (chart->line_count == CHART_MAX_LINES)
+            return error_input(error, path, "more than %d methods: too many for a chart", CHART_MAX_LINES);
+        ChartLine *line = &chart->lines[chart->line_count++];
+        strcpy(line->key, key);
+        chart_plain(line->name, key);
+    }
+    return true;
+}
+
+/* A row's panel, or -1. */
+static int panel_of(const ChartRow *row, const char *scene) {
+    if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
+    return row->phase == PHASE_IMPACT ? 0 : 1;
+}
+
+/* True where the boxes were elsewhere before the bomb came. */
+static bool is_lost(const ChartTable *table, const ChartRow *row) {
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *rest = &table->rows[i];
+        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
+            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool can_be_drawn(const ChartRow *row) {
+    return row->us_solver_q1 > 0 && row->us_solver > 0 && row->us_solver_q3 > 0 && !isnan(row->error_mean);
+}
+
+static void widen(Chart *chart, const ChartMark *mark) {
+    chart->us_least = fmin(chart->us_least, mark->us_q1);
+    chart->us_most = fmax(chart->us_most, mark->us_q3);
+    chart->error_least = fmin(chart->error_least, mark->error);
+    chart->error_most = fmax(chart->error_most, mark->error);
+}
+
+static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
+    ChartMark mark = {.us = row->us_solver, .us_q1 = row->us_solver_q1, .us_q3 = row->us_solver_q3};
+    char key[CHART_KEY_SIZE];
+    name_row(row, key, mark.label);
+    mark.line = find_line(chart, key);
+    mark.error = fmax(row->error_mean, FRONT_RESOLUTION);
+    mark.on_front = on_front;
+    mark.shipped = strcmp(row->method, "engine") == 0 && strcmp(row->setting, "k=10") == 0;
+    ChartLine *line = &chart->lines[mark.line];
+    chart->launches = row->launches > chart->launches ? row->launches : chart->launches;
+    if (!can_be_drawn(row)) {
+        line->left_out++;
+        return;
+    }
+    line->marks[panel]++;
+    chart->floored += row->error_mean < FRONT_RESOLUTION;
+    widen(chart, &mark);
+    chart->panels[panel].marks[chart->panels[panel].count++] = mark;
+}
+
+static int compare_marks(const void *left, const void *right) {
+    const ChartMark *a = left, *b = right;
+    if (a->line != b->line) return a->line - b->line;
+    if (a->us != b->us) return a->us < b->us ? -1 : 1;
+    return (a->error > b->error) - (a->error < b->error);
+}
+
+/* The rows of a scene in closed loop that count: those of a scene that a method lost are counted only. */
+static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
+    int count = 0;
+    for (int i = 0; i < table->count; i++) {
+        char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
+        if (panel_of(&table->rows[i], scene) < 0) continue;
+        name_row(&table->rows[i], key, label);
+        if (is_lost(table, &table->rows[i]))
+            chart->lines[find_line(chart, key)].lost++;
+        else
+            rows[count++] = table->rows[i];
+    }
+    front_mark(rows, count, on_front);
+    for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
+}
+
+static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
+    bool *on_front = malloc((size_t)table->count * sizeof *on_front);
+    ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
+    bool room = on_front != NULL && rows != NULL;
+    for (int p = 0; p < CHART_PANELS; p++) {
+        chart->panels[p].marks = malloc((size_t)table->count * sizeof(ChartMark));
+        room = room && chart->panels[p].marks != NULL;
+    }
+    if (room) {
+        add_rows(chart, table, scene, rows, on_front);
+        for (int p = 0; p < CHART_PANELS; p++)
+            qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
+    }
+    free(rows);
+    free(on_front);
+    return room || error_memory(error, path);
+}
+
+bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
+    *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY};
+    bool gathered =
+        add_lines(chart, table, path, error) && add_marks(chart, table, scene, path, error) &&
+        (chart->panels[0].count + chart->panels[1].count > 0 ||
+         error_input(error, path, "no row of the scene '%s' in closed loop has a time and an error", scene));
+    if (!gathered) chart_free(chart);
+    return gathered;
+}
+
+void chart_free(Chart *chart) {
+    for (int p = 0; p < CHART_PANELS; p++) {
+        free(chart->panels[p].marks);
+        chart->panels[p] = (ChartPanel){.count = 0};
+    }
+}

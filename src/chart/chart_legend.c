@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "chart/chart_layout.h"
+
+#include "chart/chart_labels.h"
+#include "chart/chart_script.h"
+#include "chart/chart_style.h"
+#include "study/front.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const char front_name[] = "unbeaten among solvers";
+
+static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
+
+void chart_lay_out_legend(ChartLayout *layout) {
+    size_t longest = strlen(front_name);
+    int entries = 1;
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        const ChartLine *line = &layout->chart->lines[i];
+        layout->left_out += line->left_out;
+        layout->lost += line->lost;
+        if (!is_drawn(line)) continue;
+        if (strlen(line->name) > longest) longest = strlen(line->name);
+        entries++;
+    }
+    double room = CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN;
+    layout->columns = (int)(room / (13 + 1.35 * (double)longest));
+    if (layout->columns < 1) layout->columns = 1;
+    layout->rows = (entries + layout->columns - 1) / layout->columns;
+    /* As few columns as so many rows need: the legend then fills its width. */
+    layout->columns = (entries + layout->rows - 1) / layout->rows;
+    layout->column_width = room / layout->columns;
+}
+
+/* A sample of 8 mm from `left`, and the text behind it. */
+static void put_entry(const ChartLayout *layout, int entry, const char *text) {
+    double left = LEFT_MARGIN + (entry % layout->columns) * layout->column_width;
+    double y = layout->legend_top - LEGEND_ROW * (entry / layout->columns);
+    FILE *script = layout->script;
+    fprintf(script, "set label '%s' at first %.3f,%.3f left font ',7.5'\n", text, left + 9.2, y);
+    fprintf(script, "$l%d << END\n%.3f %.3f\n%.3f %.3f\nEND\n", entry, left, y, left + 8, y);
+    fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + 4, y);
+}
+
+/* Names the lines that have a count, `offset` into them, as far as there is room. */
+static void put_counts(const ChartLayout *layout, const char *why, size_t offset) {
+    enum { ROOM = 52 };
+    const char *separator = why;
+    size_t length = 0;
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        const ChartLine *line = &layout->chart->lines[i];
+        int count;
+        memcpy(&count, (const char *)line + offset, sizeof count);
+        if (count == 0) continue;
+        length += strlen(line->name) + 6;
+        if (length > ROOM) {
+            fprintf(layout->script, " and others. ");
+            return;
+        }
+        fprintf(layout->script, "%s%s (%d)", separator, line->name, count);
+        separator = ", ";
+    }
+    if (separator != why) fprintf(layout->script, ". ");
+}
+
+static void put_foot(const ChartLayout *layout) {
+    if (layout->left_out + layout->lost + layout->chart->floored == 0) return;
+    fprintf(layout->script, "set label '");
+    put_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
+    put_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
+    if (layout->chart->floored > 0)
+        fprintf(layout->script, "Below %g m/s the reference is no better.", FRONT_RESOLUTION);
+    fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
+}
+
+/* A third plot over the whole page, its axes in mm. */
+void chart_put_legend(const ChartLayout *layout) {
+    FILE *script = layout->script;
+    int entry = 0, styles[CHART_MAX_LINES];
+    fprintf(script, "unset label\nunset arrow\nunset logscale\nunset xlabel\nunset ylabel\nunset tics\nunset border\n");
+    fprintf(script, "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\nset origin 0,0\nset size 1,1\n");
+    fprintf(script, "set xrange [0:%g]\nset yrange [0:%g]\n", CHART_WIDTH, CHART_HEIGHT);
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        if (!is_drawn(&layout->chart->lines[i])) continue;
+        styles[entry] = i;
+        put_entry(layout, entry++, layout->chart->lines[i].name);
+    }
+    put_entry(layout, entry, front_name);
+    put_foot(layout);
+    fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, FRONT_COLOUR);
+    for (int i = 0; i < entry; i++) {
+        ChartStyle style = chart_style(styles[i]);
+        if (layout->chart->lines[styles[i]].marks[0] > 1 || layout->chart->lines[styles[i]].marks[1] > 1)
+            chart_put_line(script, 'l', i, &style);
+        chart_put_marks(script, 'm', i, &style);
+    }
+    fprintf(script, "\n");
+}

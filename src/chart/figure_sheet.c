@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "chart/figure_sheet.h"
+
+#include "chart/gnuplot.h"
+#include "common/file.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+bool figure_sheet_open(FigureSheet *sheet, const char *what, Error *error) {
+    sheet->page.script = open_memstream(&sheet->script, &sheet->script_size);
+    sheet->page.caption = open_memstream(&sheet->caption, &sheet->caption_size);
+    sheet->page.links = open_memstream(&sheet->links, &sheet->links_size);
+    bool open = sheet->page.script != NULL && sheet->page.caption != NULL && sheet->page.links != NULL;
+    return open || error_memory(error, what);
+}
+
+static void close_file(FigurePage *page, FILE **file) {
+    if (*file == NULL) return;
+    if (ferror(*file)) page->no_memory = true;
+    if (fclose(*file) != 0) page->no_memory = true;
+    *file = NULL;
+}
+
+bool figure_sheet_close(FigureSheet *sheet, const char *what, Error *error) {
+    close_file(&sheet->page, &sheet->page.script);
+    close_file(&sheet->page, &sheet->page.caption);
+    close_file(&sheet->page, &sheet->page.links);
+    return !sheet->page.no_memory || error_memory(error, what);
+}
+
+bool figure_sheet_draw(const FigureSheet *sheet, const char *folder, const char *prefix, const char *name,
+                       Error *error) {
+    char stem[PATH_MAX], caption[PATH_MAX + 4];
+    if (sheet->page.width <= 0) return true;
+    int length = snprintf(stem, sizeof stem, "%s/%s%s", folder, prefix, name);
+    if (length < 0 || length >= (int)sizeof stem) return error_input(error, folder, "this path is too long");
+    snprintf(caption, sizeof caption, "%s.txt", stem);
+    const GnuplotDrawing drawing = {sheet->page.width,   sheet->page.height,
+                                    sheet->script,       sheet->script_size,
+                                    .without_pdf = true, .over = sheet->links_size > 0 ? sheet->links : NULL};
+    return gnuplot_draw(&drawing, stem, error) && file_write(caption, sheet->caption, sheet->caption_size, error);
+}
+
+void figure_sheet_free(FigureSheet *sheet) {
+    close_file(&sheet->page, &sheet->page.script);
+    close_file(&sheet->page, &sheet->page.caption);
+    close_file(&sheet->page, &sheet->page.links);
+    free(sheet->script);
+    free(sheet->caption);
+    free(sheet->links);
+    *sheet = (FigureSheet){0};
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* gnuplot works in a folder of its own below /tmp, so that no path of the user's gets into a script. */
+#include "chart/gnuplot.h"
+
+#include "common/file.h"
+#include "common/process.h"
+#include "sketch/plot_font.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { FORMATS = 3, FOLDER_SIZE = 32, PATH_SIZE = 64, DRAWING_MAX_SIZE = 64 << 20 };
+
+static const char *const endings[FORMATS] = {"png", "svg", "pdf"};
+
+static const double dots_per_mm = 300 / 25.4, pixels_per_mm = 96 / 25.4;
+
+/* The PDF is the last. */
+static int format_count(const GnuplotDrawing *drawing) { return drawing->without_pdf ? FORMATS - 1 : FORMATS; }
+
+/* A point of type, a line width of 1 and a point size of 1 are as large in one format as in another: pngcairo and
+   pdfcairo take type for 96 and SVG for 72 dots an inch, and each has a scale of its own for the rest (gnuplot 5.4,
+   measured on its output). */
+static void put_terminal(FILE *script, int format, const GnuplotDrawing *drawing) {
+    double w = drawing->width, h = drawing->height;
+    switch (format) {
+    case 0:
+        fprintf(script,
+                "set terminal pngcairo size %.0f,%.0f font 'Inter,8' fontscale 3.125 linewidth 2 pointscale 2.8\n",
+                w * dots_per_mm, h * dots_per_mm);
+        break;
+    case 1:
+        fprintf(script, "set terminal svg size %.0f,%.0f dynamic font 'sans-serif,8' fontscale 1.333 linewidth 0.64\n",
+                w * pixels_per_mm, h * pixels_per_mm);
+        break;
+    default:
+        fprintf(
+            script,
+            "set terminal pdfcairo size %.2fcm,%.2fcm font 'Inter,8' fontscale 0.75 linewidth 0.96 pointscale 0.67\n",
+            w / 10, h / 10);
+        break;
+    }
+}
+
+/* What a script may have left set would reach the next format. */
+static char *whole_script(const GnuplotDrawing *drawing, const char *folder, size_t *size) {
+    char *text = NULL;
+    FILE *script = open_memstream(&text, size);
+    if (script == NULL) return NULL;
+    for (int format = 0; format < format_count(drawing); format++) {
+        fprintf(script, "reset\nset encoding utf8\n");
+        put_terminal(script, format, drawing);
+        fprintf(script, "set output '%s/plot.%s'\n", folder, endings[format]);
+        fwrite(drawing->script, 1, drawing->script_size, script);
+        fprintf(script, "unset output\n");
+    }
+    bool whole = !ferror(script);
+    if (fclose(script) == 0 && whole) return text;
+    free(text);
+    return NULL;
+}
+
+static bool is_there(Error *error) {
+    Process process;
+    char text[256];
+    if (process_start(&process, (const char *const[]){"gnuplot", "--version", NULL}, &(Error){0}))
+        return process_finish(&process, text, sizeof text, error);
+    return error_system(error, "gnuplot",
+                        "cannot be run; it draws the charts: is its package installed (gnuplot-nox)?");
+}
+
+/* fontconfig finds the font by a configuration of our own, which names this folder alone. */
+static bool put_font(const char *folder, Error *error) {
+    char path[PATH_SIZE], configuration[256];
+    snprintf(path, sizeof path, "%s/Inter.otf", folder);
+    if (!file_write_soon(path, font_inter_regular_subset_otf, font_inter_regular_subset_otf_size, error)) return false;
+    int length = snprintf(configuration, sizeof configuration,
+                          "<fontconfig><dir>%s</dir><cachedir>%s</cachedir></fontconfig>\n", folder, folder);
+    snprintf(path, sizeof path, "%s/fonts.conf", folder);
+    return file_write_soon(path, configuration, (size_t)length, error);
+}
+
+static bool run(const char *folder, const char *script, size_t size, Error *error) {
+    char fonts[PATH_SIZE + 16], text[1024];
+    snprintf(fonts, sizeof fonts, "FONTCONFIG_FILE=%s/fonts.conf", folder);
+    Process process;
+    /* -d: whatever the user's own .gnuplot says is not for us. */
+    const char *const argv[] = {"env", fonts, "gnuplot", "-d", "-", NULL};
+    if (!process_start(&process, argv, error)) return false;
+    process.name = "gnuplot";
+    process_write(&process, script, size);
+    return process_finish(&process, text, sizeof text, error);
+}
+
+/* Puts what goes over the rest before the end of an SVG, which it takes the place of. */
+static bool put_over(char **svg, size_t *size, const char *over) {
+    static const char end[] = "</svg>";
+    char *last = NULL, *text = NULL;
+    for (char *at = *svg; (at = strstr(at, end)) != NULL; at++) last = at;
+    FILE *out = last != NULL ? open_memstream(&text, size) : NULL;
+    if (out == NULL) return false;
+    fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, over, last);
+    bool whole = !ferror(out);
+    if (fclose(out) != 0 || !whole) {
+        free(text);
+        return false;
+    }
+    free(*svg);
+    *svg = text;
+    return true;
+}
+
+static bool collect(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
+    const int formats = format_count(drawing);
+    char *data[FORMATS] = {NULL}, path[PATH_MAX];
+    size_t size[FORMATS];
+    bool done = true;
+    for (int i = 0; done && i < formats; i++) {
+        snprintf(path, sizeof path, "%s/plot.%s", folder, endings[i]);
+        data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
+        done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "has drawn no %s", endings[i]);
+    }
+    if (done && drawing->over != NULL && !put_over(&data[1], &size[1], drawing->over)) done = error_memory(error, stem);
+    for (int i = 0; done && i < formats; i++) {
+        int length = snprintf(path, sizeof path, "%s.%s", stem, endings[i]);
+        done = length < (int)sizeof path ? file_write(path, data[i], size[i], error)
+                                         : error_input(error, stem, "this path is too long");
+    }
+    for (int i = 0; i < formats; i++) free(data[i]);
+    return done;
+}
+
+static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
+    size_t size;
+    char *script = whole_script(drawing, folder, &size);
+    if (script == NULL) return error_memory(error, stem);
+    bool done = put_font(folder, error) && run(folder, script, size, error) && collect(folder, drawing, stem, error);
+    free(script);
+    return done;
+}
+
+static int remove_entry(const char *path, const struct stat *status, int flag, struct FTW *walk) {
+    (void)status, (void)flag, (void)walk;
+    return remove(path);
+}
+
+bool gnuplot_draw(const GnuplotDrawing *drawing, const char *stem, Error *error) {
+    if (!is_there(error)) return false;
+    char folder[FOLDER_SIZE] = "/tmp/twinbox-plot-XXXXXX";
+    if (mkdtemp(folder) == NULL) return error_system(error, folder, "cannot make the directory: %s", strerror(errno));
+    bool done = draw_in(folder, drawing, stem, error);
+    nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+    return done;
+}

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What keeps still is painted once, into a layer of its own. A frame is the layer's rows that change, copied, and two
+   instanced draw calls: the parts of shapes in these rows, and of glyphs. Row 0 of a framebuffer is the top row of the
+   picture, so that nothing has to be turned over. */
+#include "gl/canvas.h"
+
+#include "gl/font_atlas.h"
+#include "gl/program.h"
+#include "gl/shaders.h"
+
+#include <stdlib.h>
+
+/* One kind of instance: its program and the buffer that feeds it. */
+typedef struct Batch {
+    GLuint program, vertices, buffer;
+} Batch;
+
+typedef struct Target {
+    GLuint framebuffer, color;
+} Target;
+
+struct Canvas {
+    const GlFunctions *gl;
+    int width, height;
+    Target still, picture;
+    GLuint font_buffer, font_texture;
+    Batch rects, shapes, glyphs;
+    Drawing parts; /* what a frame paints over the layer */
+};
+
+static bool create_target(Canvas *canvas, Target *target, Error *error) {
+    const GlFunctions *gl = canvas->gl;
+    gl->GenRenderbuffers(1, &target->color);
+    gl->BindRenderbuffer(GL_RENDERBUFFER, target->color);
+    gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, canvas->width, canvas->height);
+    gl->GenFramebuffers(1, &target->framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
+    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
+    return error_system(error, "render", "OpenGL makes no framebuffer of %d x %d pixels", canvas->width,
+                        canvas->height);
+}
+
+static void create_font(Canvas *canvas) {
+    const GlFunctions *gl = canvas->gl;
+    gl->GenBuffers(1, &canvas->font_buffer);
+    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
+    gl->BufferData(GL_TEXTURE_BUFFER, font_bitmaps_size, font_bitmaps, GL_STATIC_DRAW);
+    gl->GenTextures(1, &canvas->font_texture);
+    gl->BindTexture(GL_TEXTURE_BUFFER, canvas->font_texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
+}
+
+/* Attribute i of an instance: components[i] integers; the list ends with 0. */
+static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex, const char *fragment,
+                         const int *components, GLsizei stride, Error *error) {
+    const GlFunctions *gl = canvas->gl;
+    if ((batch->program = program_create(gl, name, vertex, fragment, error)) == 0) return false;
+    gl->UseProgram(batch->program);
+    gl->Uniform2i(gl->GetUniformLocation(batch->program, "size"), canvas->width, canvas->height);
+    gl->GenVertexArrays(1, &batch->vertices);
+    gl->BindVertexArray(batch->vertices);
+    gl->GenBuffers(1, &batch->buffer);
+    gl->BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
+    size_t offset = 0;
+    for (GLuint i = 0; components[i] != 0; offset += sizeof(GLint) * (size_t)components[i++]) {
+        gl->EnableVertexAttribArray(i);
+        gl->VertexAttribIPointer(i, components[i], GL_INT, stride, (const void *)offset);
+        gl->VertexAttribDivisor(i, 1);
+    }
+    return true;
+}
+
+static bool set_up(Canvas *canvas, Error *error) {
+    static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 2, 0};
+    const GlFunctions *gl = canvas->gl;
+    if (!create_target(canvas, &canvas->still, error) || !create_target(canvas, &canvas->picture, error) ||
+        !create_batch(canvas, &canvas->rects, "shaders/rect", shader_rect_vert, shader_rect_frag, rect,
+                      sizeof(RectInstance), error) ||
+        !create_batch(canvas, &canvas->shapes, "shaders/shape", shader_shape_vert, shader_shape_frag, shape,
+                      sizeof(ShapeInstance), error) ||
+        !create_batch(canvas, &canvas->glyphs, "shaders/text", shader_text_vert, shader_text_frag, glyph,
+                      sizeof(GlyphInstance), error))
+        return false;
+    create_font(canvas);
+    gl->Viewport(0, 0, canvas->width, canvas->height);
+    gl->Disable(GL_DITHER);
+    gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); /* alpha stays 1 */
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    GLenum problem = gl->GetError();
+    return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x in set-up", problem);
+}
+
+Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error) {
+    Canvas *canvas = calloc(1, sizeof *canvas);
+    if (canvas == NULL) {
+        error_memory(error, "render");
+        return NULL;
+    }
+    canvas->gl = gl;
+    canvas->width = width;
+    canvas->height = height;
+    if (set_up(canvas, error)) return canvas;
+    canvas_destroy(canvas);
+    return NULL;
+}
+
+static void destroy_batch(const GlFunctions *gl, Batch *batch) {
+    gl->DeleteProgram(batch->program);
+    gl->DeleteVertexArrays(1, &batch->vertices);
+    gl->DeleteBuffers(1, &batch->buffer);
+}
+
+static void destroy_target(const GlFunctions *gl, Target *target) {
+    gl->DeleteFramebuffers(1, &target->framebuffer);
+    gl->DeleteRenderbuffers(1, &target->color);
+}
+
+void canvas_destroy(Canvas *canvas) {
+    if (canvas == NULL) return;
+    const GlFunctions *gl = canvas->gl;
+    destroy_batch(gl, &canvas->rects);
+    destroy_batch(gl, &canvas->shapes);
+    destroy_batch(gl, &canvas->glyphs);
+    gl->DeleteTextures(1, &canvas->font_texture);
+    gl->DeleteBuffers(1, &canvas->font_buffer);
+    destroy_target(gl, &canvas->still);
+    destroy_target(gl, &canvas->picture);
+    drawing_free(&canvas->parts);
+    free(canvas);
+}
+
+static void draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
+    if (count == 0) return;
+    gl->UseProgram(batch->program);
+    gl->BindVertexArray(batch->vertices);
+    gl->BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(count * size), instances, GL_STREAM_DRAW);
+    gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
+}
+
+static void paint_still(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
+    const GlFunctions *gl = canvas->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->still.framebuffer);
+    gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
+                   (float)(background & 255) / 255, 1);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    gl->Disable(GL_BLEND);
+    draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
+    gl->Enable(GL_BLEND);
+    draw(gl, &canvas->shapes, drawing->shapes, drawing->still_shapes, sizeof *drawing->shapes);
+}
+
+/* Rows to paint that follow each other. */
+typedef struct Band {
+    int top, bottom;
+} Band;
+
+/* The first band at or below row y; empty below the last. */
+static Band next_band(const Canvas *canvas, const bool *changed, int y) {
+    if (changed == NULL) return (Band){y, canvas->height};
+    while (y < canvas->height && !changed[y]) y++;
+    Band band = {y, y};
+    while (band.bottom < canvas->height && changed[band.bottom]) band.bottom++;
+    return band;
+}
+
+/* One copy a band, but one draw call a kind for all bands: calls cost more than instances. */
+static void paint_moving(Canvas *canvas, const Drawing *drawing, const bool *changed) {
+    const GlFunctions *gl = canvas->gl;
+    Drawing *parts = &canvas->parts;
+    drawing_clear(parts);
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->still.framebuffer);
+    gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
+        gl->BlitFramebuffer(0, b.top, canvas->width, b.bottom, 0, b.top, canvas->width, b.bottom, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
+        drawing_add_rows(parts, drawing, b.top, b.bottom);
+    }
+    draw(gl, &canvas->shapes, parts->shapes, parts->shape_count, sizeof *parts->shapes);
+    draw(gl, &canvas->glyphs, parts->glyphs, parts->glyph_count, sizeof *parts->glyphs);
+}
+
+static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
+    const GlFunctions *gl = canvas->gl;
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom))
+        gl->ReadPixels(0, b.top, canvas->width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       image->pixels + (size_t)b.top * (size_t)canvas->width * 4);
+}
+
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+                  Error *error) {
+    if (drawing->failed) return error_memory(error, "render");
+    if (changed == NULL) paint_still(canvas, drawing, background);
+    paint_moving(canvas, drawing, changed);
+    if (canvas->parts.failed) return error_memory(error, "render");
+    read_back(canvas, changed, image);
+    GLenum problem = canvas->gl->GetError();
+    return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x", problem);
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which kind of context, and loading its library. */
+#include "gl/context.h"
+
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const ContextKind *const kinds[] = {&context_osmesa, &context_egl};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
+                  Error *error) {
+    void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
+    if (handle == NULL)
+        return error_system(error, "render", "cannot load %s; the Debian package %s brings it", library, package);
+    for (int i = 0; i < count; i++) {
+        void *symbol = dlsym(handle, functions[i].name);
+        if (symbol == NULL) return error_system(error, "render", "%s lacks %s", library, functions[i].name);
+        memcpy((char *)table + functions[i].offset, &symbol, sizeof symbol);
+    }
+    return true;
+}
+
+/* Frames must be the same on every machine: Mesa's own rasteriser, and no shader cache in the user's home. It
+   must not start threads of its own: they would not survive a fork, and would compete with the other
+   processes of a sequence. */
+static void prepare_mesa(void) {
+    setenv("LP_NUM_THREADS", "0", 1);
+    setenv("LIBGL_ALWAYS_SOFTWARE", "true", 1);
+    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+}
+
+static bool create(Context *context, const ContextKind *kind, Error *error) {
+    *context = (Context){kind, kind->create(error)};
+    return context->state != NULL;
+}
+
+bool context_create(Context *context, ContextChoice wanted, Error *error) {
+    prepare_mesa();
+    if (wanted != CONTEXT_AUTO)
+        return create(context, wanted == CONTEXT_OSMESA ? &context_osmesa : &context_egl, error);
+    for (int i = 0; i < KINDS; i++)
+        if (create(context, kinds[i], &(Error){0})) return true;
+    return error_system(error, "render",
+                        "no OpenGL can be had without a display; one of the Debian packages libosmesa6 and "
+                        "libegl1 (with libgl1-mesa-dri) is needed");
+}
+
+bool context_make_current(const Context *context, Error *error) {
+    if (context->kind->make_current(context->state)) return true;
+    return error_system(error, "render", "cannot use the OpenGL context of %s", context->kind->name);
+}
+
+void context_destroy(Context *context) {
+    if (context->state != NULL) context->kind->destroy(context->state);
+    context->state = NULL;
+}

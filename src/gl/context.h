@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An OpenGL context without a display: OSMesa, or EGL's surfaceless platform. Both are loaded at run time, so
+   that the program runs where one is missing (Mesa dropped OSMesa in 25.1). Nothing is drawn to the context's
+   own surface: the canvas brings a framebuffer, and so both run the same code. */
+#pragma once
+#include "common/error.h"
+#include "gl/gl_functions.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum ContextChoice { CONTEXT_AUTO, CONTEXT_OSMESA, CONTEXT_EGL } ContextChoice;
+
+typedef struct ContextKind {
+    const char *name;
+    /* The libraries, loaded, and a context; NULL with error set. */
+    void *(*create)(Error *error);
+    bool (*make_current)(void *state);
+    GlFunction (*find)(void *state, const char *name);
+    void (*destroy)(void *state);
+} ContextKind;
+
+extern const ContextKind context_osmesa, context_egl;
+
+typedef struct Context {
+    const ContextKind *kind;
+    void *state;
+} Context;
+
+/* Makes a context of this kind; CONTEXT_AUTO takes the first that there is. ERROR_SYSTEM names the
+   packages to install. */
+bool context_create(Context *context, ContextChoice wanted, Error *error);
+bool context_make_current(const Context *context, Error *error);
+void context_destroy(Context *context);
+
+/* For the kinds: where in a struct the function of this name goes. */
+typedef struct ContextFunction {
+    const char *name;
+    size_t offset;
+} ContextFunction;
+
+/* Opens a library, for good (Mesa does not survive being closed), and fills the struct. `package` is
+   Debian's for it. */
+bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
+                  Error *error);

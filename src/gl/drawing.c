@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From shapes to the integers of the shader. All that could be rounded in more than one way is rounded here,
+   in double, to a grid far coarser than double's own error. */
+#include "gl/drawing.h"
+
+#include "common/array.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double FIXED = 65536.0;       /* the shader's units in a pixel */
+static const double SNAP = 256.0;          /* positions and sizes are whole multiples of 1/256 pixel */
+static const double LARGEST_HALF = 8192.0; /* pixels; larger boxes are cut down, or the shader's integers overflow */
+static const double FARTHEST = 1e9;        /* pixels; beyond it no body can be seen */
+
+void drawing_clear(Drawing *drawing) {
+    drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->still_shapes = 0;
+    drawing->failed = false;
+}
+
+void drawing_free(Drawing *drawing) {
+    free(drawing->rects);
+    free(drawing->shapes);
+    free(drawing->glyphs);
+    *drawing = (Drawing){0};
+}
+
+static double snap(double pixels) { return rint(pixels * SNAP) / SNAP; }
+
+static int32_t fixed(double pixels) { return (int32_t)rint(pixels * FIXED); }
+
+/* Cuts the interval [-*half, *half] to what reaches at most LARGEST_HALF / 2 beyond [low, high], and returns
+   its new centre. */
+static double cut(double low, double high, double *half) {
+    double first = fmax(-*half, low - LARGEST_HALF / 2), last = fmin(*half, high + LARGEST_HALF / 2);
+    *half = (last - first) / 2;
+    return (first + last) / 2;
+}
+
+/* A box of which only a part can be seen loses what lies far outside, and its band with it. */
+static void cut_down(Shape *shape, const Rect *clip) {
+    if (shape->half_width <= LARGEST_HALF && shape->half_height <= LARGEST_HALF) return;
+    double c = shape->cosine, s = shape->sine;
+    double x = (clip->left + clip->right) / 2.0, y = (clip->top + clip->bottom) / 2.0;
+    double w = (clip->right - clip->left) / 2.0, h = (clip->bottom - clip->top) / 2.0;
+    double local_x = (x - shape->x) * c - (y - shape->y) * s;
+    double local_y = -(x - shape->x) * s - (y - shape->y) * c;
+    double reach_x = fabs(c) * w + fabs(s) * h, reach_y = fabs(s) * w + fabs(c) * h;
+    double center_x = cut(local_x - reach_x, local_x + reach_x, &shape->half_width);
+    double center_y = cut(local_y - reach_y, local_y + reach_y, &shape->half_height);
+    shape->x += center_x * c - center_y * s;
+    shape->y -= center_x * s + center_y * c;
+    shape->band = 0;
+}
+
+static bool is_drawable(const Shape *shape) {
+    return fabs(shape->x) < FARTHEST && fabs(shape->y) < FARTHEST && shape->half_width > 0 && shape->half_height > 0 &&
+           shape->half_width < FARTHEST && shape->half_height < FARTHEST && isfinite(shape->cosine) &&
+           isfinite(shape->sine);
+}
+
+/* A hollow shape is its line in all its parts, or its inner edge would take on another colour. */
+static void set_paint(ShapeInstance *instance, const Shape *shape) {
+    bool hollow = shape->hollow;
+    instance->paint[0] = hollow ? shape->line | SHAPE_HOLLOW : shape->fill;
+    instance->paint[1] = hollow || shape->outline > 0 ? shape->line : shape->fill;
+    instance->paint[2] = hollow ? shape->line : shape->band > 0 ? shape->band_color : shape->fill;
+    instance->paint[3] = (uint32_t)fixed(shape->band);
+}
+
+/* The whole pixels that the snapped shape can touch, inside clip. False where there are none. */
+static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
+    double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
+    double reach_y = fabs(shape->sine) * shape->half_width + fabs(shape->cosine) * shape->half_height + 1;
+    bounds[0] = (int32_t)fmax(floor(shape->x - reach_x), clip->left);
+    bounds[1] = (int32_t)fmax(floor(shape->y - reach_y), clip->top);
+    bounds[2] = (int32_t)fmin(ceil(shape->x + reach_x), clip->right);
+    bounds[3] = (int32_t)fmin(ceil(shape->y + reach_y), clip->bottom);
+    return bounds[0] < bounds[2] && bounds[1] < bounds[3];
+}
+
+static ShapeInstance *next_shape(Drawing *drawing) {
+    size_t wanted = drawing->shape_count + 1;
+    if (!array_reserve((void **)&drawing->shapes, &drawing->shape_capacity, wanted, sizeof *drawing->shapes)) {
+        drawing->failed = true;
+        return NULL;
+    }
+    return &drawing->shapes[drawing->shape_count];
+}
+
+void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip) {
+    if (!is_drawable(original)) return; /* NaN must not reach cut_down() */
+    Shape shape = *original;
+    cut_down(&shape, clip);
+    if (!is_drawable(&shape)) return;
+    shape.x = snap(shape.x), shape.y = snap(shape.y);
+    shape.half_width = snap(shape.half_width), shape.half_height = snap(shape.half_height);
+    ShapeInstance *instance = next_shape(drawing);
+    if (instance == NULL || !find_bounds(&shape, clip, instance->bounds)) return;
+    /* The local axes are (c, -s) and (-s, -c), y pointing down; rounded first, so that the position below is
+       the one that the shader's steps of one pixel lead to. */
+    int32_t c = fixed(shape.cosine), s = fixed(-shape.sine);
+    double x = instance->bounds[0] + 0.5 - shape.x, y = instance->bounds[1] + 0.5 - shape.y;
+    instance->axis[0] = c, instance->axis[1] = s;
+    instance->axis[2] = (int32_t)rint(c * x + s * y), instance->axis[3] = (int32_t)rint(s * x - c * y);
+    instance->form[0] = fixed(shape.half_width), instance->form[1] = fixed(shape.half_height);
+    instance->form[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
+    instance->form[3] = fixed(fmin(shape.outline, LARGEST_HALF));
+    set_paint(instance, &shape);
+    drawing->shape_count++;
+}
+
+void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color) {
+    size_t wanted = drawing->rect_count + 1;
+    if (array_reserve((void **)&drawing->rects, &drawing->rect_capacity, wanted, sizeof *drawing->rects))
+        drawing->rects[drawing->rect_count++] = (RectInstance){rect, color};
+    else
+        drawing->failed = true;
+}
+
+void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
+    size_t wanted = drawing->glyph_count + 1;
+    if (array_reserve((void **)&drawing->glyphs, &drawing->glyph_capacity, wanted, sizeof *glyph))
+        drawing->glyphs[drawing->glyph_count++] = *glyph;
+    else
+        drawing->failed = true;
+}
+
+/* A lower first row moves the local position that belongs to it by whole steps of the shader. */
+static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top, int bottom) {
+    ShapeInstance *part = from->bounds[1] < bottom && from->bounds[3] > top ? next_shape(drawing) : NULL;
+    if (part == NULL) return;
+    *part = *from;
+    if (bottom < part->bounds[3]) part->bounds[3] = bottom;
+    if (top > part->bounds[1]) {
+        int64_t rows = top - part->bounds[1];
+        part->bounds[1] = top;
+        part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
+        part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
+    }
+    drawing->shape_count++;
+}
+
+static void add_glyph_rows(Drawing *drawing, const GlyphInstance *from, int top, int bottom) {
+    GlyphInstance part = *from;
+    int skipped = top > part.box[1] ? top - part.box[1] : 0;
+    part.box[1] += skipped;
+    part.box[3] -= skipped;
+    part.bitmap += (uint32_t)(skipped * part.box[2]);
+    if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
+    if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
+}
+
+void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
+    for (size_t i = from->still_shapes; i < from->shape_count; i++)
+        add_shape_rows(drawing, &from->shapes[i], top, bottom);
+    for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
+}

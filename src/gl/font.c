@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gl/font.h"
+
+#include <string.h>
+
+enum { PEN_UNIT = 64 }; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
+#define ELLIPSIS "\xE2\x80\xA6"
+
+Font font_pick(FontFace face, double pixels) {
+    Font font = {0};
+    for (int i = 0; i < FONT_SIZES; i++)
+        if (font_sizes[i] <= pixels) font = (Font){font_glyphs[face][i], font_sizes[i]};
+    return font;
+}
+
+unsigned font_next_character(const char **text) {
+    const unsigned char *s = (const unsigned char *)*text;
+    int more = s[0] < 0x80 ? 0 : s[0] < 0xC2 ? -1 : s[0] < 0xE0 ? 1 : s[0] < 0xF0 ? 2 : s[0] < 0xF5 ? 3 : -1;
+    unsigned code = more <= 0 ? s[0] : s[0] & (0x3Fu >> more);
+    for (int i = 1; i <= more; i++) {
+        if ((s[i] & 0xC0) != 0x80)
+            more = -1;
+        else
+            code = code << 6 | (s[i] & 0x3F);
+    }
+    *text += more < 0 ? 1 : more + 1;
+    return more < 0 ? 0xFFFD : code;
+}
+
+static const FontGlyph *find(const Font *font, unsigned code) {
+    int low = 0, high = FONT_GLYPHS;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (font->glyphs[middle].code < code)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low < FONT_GLYPHS && font->glyphs[low].code == code) return &font->glyphs[low];
+    return find(font, '?');
+}
+
+static int advance(const Font *font, const char *text) {
+    int pen = 0;
+    while (font->glyphs != NULL && *text != '\0') pen += find(font, font_next_character(&text))->advance;
+    return pen;
+}
+
+static int to_pixels(int pen) { return (pen + PEN_UNIT - 1) / PEN_UNIT; }
+
+int font_width(const Font *font, const char *text) { return to_pixels(advance(font, text)); }
+
+/* Adds the characters before `end` and returns the pen. */
+static int add(Drawing *drawing, const Font *font, const char *text, const char *end, int x, int baseline,
+               uint32_t color) {
+    int pen = 0;
+    while (text < end) {
+        const FontGlyph *glyph = find(font, font_next_character(&text));
+        int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph->left;
+        GlyphInstance instance = {{left, baseline - glyph->top, glyph->width, glyph->height}, glyph->offset, color};
+        if (glyph->width > 0) drawing_add_glyph(drawing, &instance);
+        pen += glyph->advance;
+    }
+    return x + to_pixels(pen);
+}
+
+int font_add(Drawing *drawing, const Font *font, const char *text, int x, int baseline, uint32_t color) {
+    if (font->glyphs == NULL) return x;
+    return add(drawing, font, text, text + strlen(text), x, baseline, color);
+}
+
+int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x, int baseline, int max_width,
+                     uint32_t color) {
+    if (font_width(font, text) <= max_width) return font_add(drawing, font, text, x, baseline, color);
+    int room = (max_width - font_width(font, ELLIPSIS)) * PEN_UNIT, pen = 0;
+    if (room < 0) return x;
+    const char *end = text, *next = text;
+    while (*next != '\0' && (pen += find(font, font_next_character(&next))->advance) <= room) end = next;
+    while (end > text && end[-1] == ' ') end--;
+    int behind = add(drawing, font, text, end, x, baseline, color);
+    return font_add(drawing, font, ELLIPSIS, behind, baseline, color);
+}

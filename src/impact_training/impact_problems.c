@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "impact_training/impact_problems.h"
+
+#include "common/array.h"
+#include "simulate/phases.h"
+#include "simulate/simulate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define CONVERGED 1e-3 /* m/s, residual: far below what any number of sweeps in question leaves */
+
+typedef struct Recording {
+    ImpactProblems *problems;
+    PhaseTracker tracker;
+} Recording;
+
+static void free_item(ImpactProblem *item) {
+    free((void *)item->problem.bodies);
+    free((void *)item->problem.contacts);
+    free(item->reference);
+}
+
+void impact_problems_free(ImpactProblems *problems) {
+    for (size_t i = 0; i < problems->count; i++) free_item(&problems->items[i]);
+    free(problems->items);
+    *problems = (ImpactProblems){0};
+}
+
+static bool add(ImpactProblems *problems, const ContactProblem *problem, bool impact) {
+    if (!array_reserve((void **)&problems->items, &problems->capacity, problems->count + 1, sizeof *problems->items))
+        return false;
+    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    ProblemBody *body_copy = malloc((bodies + 1) * sizeof *body_copy);
+    ContactPoint *contact_copy = malloc((contacts + 1) * sizeof *contact_copy);
+    ImpactProblem item = {*problem, malloc((bodies + 1) * sizeof *item.reference), impact};
+    item.problem.bodies = body_copy;
+    item.problem.contacts = contact_copy;
+    problems->items[problems->count++] = item;
+    if (body_copy == NULL || contact_copy == NULL || item.reference == NULL) return false;
+    memcpy(body_copy, problem->bodies, bodies * sizeof *body_copy);
+    memcpy(contact_copy, problem->contacts, contacts * sizeof *contact_copy);
+    return true;
+}
+
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    Recording *recording = context;
+    const ContactProblem *problem = world_problem(world);
+    PhaseTracker *tracker = &recording->tracker;
+    Phase phase = phase_next(tracker, problem, frame);
+    bool sampled = phase == PHASE_AFTER && (frame - tracker->touch - tracker->impact_frames) % AFTER_STEP == 0;
+    if (phase != PHASE_IMPACT && !sampled) return true;
+    return add(recording->problems, problem, phase == PHASE_IMPACT) || error_memory(error, "recording");
+}
+
+static bool run_launches(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x, Error *error) {
+    Method engine;
+    if (!method_parse(&engine, "engine", error)) return false;
+    for (int i = 0; i < bomb_x->count; i++) {
+        Scene launch = *scene;
+        launch.bomb.body.position.x = range_value(bomb_x, i);
+        Recording recording = {problems, {.impact_frames = scene->bomb.impact_frames}};
+        if (!simulate_observed(&launch, &engine, &(StepObserver){observe, &recording}, error)) return false;
+    }
+    return problems->count > 0 || error_input(error, scene->name, "no launch touches a box");
+}
+
+/* Solves them all; those that do not converge go. */
+static bool solve_references(ImpactProblems *problems, const Progress *progress, Error *error) {
+    Reference reference = {0};
+    size_t kept = 0, done = 0;
+    bool ok = true;
+    for (; ok && done < problems->count; done++) {
+        ImpactProblem *item = &problems->items[done];
+        ok = reference_solve(&reference, &item->problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error);
+        if (ok && !progress_report(progress, (double)done, (double)problems->count))
+            ok = error_input(error, "recording", "stopped");
+        if (!ok) break;
+        memcpy(item->reference, reference.velocities, (size_t)item->problem.body_count * sizeof *item->reference);
+        ImpactProblem moved = *item;
+        if (reference.residual <= CONVERGED)
+            problems->items[kept++] = moved;
+        else
+            free_item(&moved);
+    }
+    if (ok) problems->count = kept;
+    for (; !ok && done < problems->count; done++) problems->items[kept++] = problems->items[done];
+    problems->count = kept;
+    reference_free(&reference);
+    return ok;
+}
+
+bool impact_problems_record(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x,
+                            const Progress *progress, Error *error) {
+    *problems = (ImpactProblems){0};
+    if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch");
+    bool ok = run_launches(problems, scene, bomb_x, error) && solve_references(problems, progress, error);
+    if (ok && problems->count == 0) ok = error_input(error, scene->name, "no reference converged");
+    if (!ok) impact_problems_free(problems);
+    return ok;
+}

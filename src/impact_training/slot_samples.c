@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "impact_training/slot_samples.h"
+
+#include "common/array.h"
+#include "common/parallel.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void free_sample(SlotSample *sample) {
+    free((void *)sample->problem.bodies);
+    free((void *)sample->problem.contacts);
+    free(sample->reference);
+    free(sample->goal);
+    unrolled_problem_free(&sample->unrolled);
+    scene_view_free(&sample->view);
+    free(sample->inputs);
+}
+
+void slot_samples_free(SlotSamples *samples) {
+    for (int i = 0; i < samples->count; i++) free_sample(&samples->items[i]);
+    free(samples->items);
+    *samples = (SlotSamples){0};
+}
+
+static bool reserve(SlotSamples *samples, int count) {
+    return array_reserve((void **)&samples->items, &samples->capacity, (size_t)(samples->count + count),
+                         sizeof *samples->items);
+}
+
+bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since) {
+    if (!reserve(samples, 1)) return false;
+    const size_t bodies = (size_t)problem->body_count * sizeof(ProblemBody);
+    const size_t contacts = (size_t)problem->contact_count * sizeof(ContactPoint);
+    ProblemBody *body_copy = malloc(bodies + 1);
+    ContactPoint *contact_copy = malloc(contacts + 1);
+    SlotSample *sample = &samples->items[samples->count++];
+    *sample = (SlotSample){.problem = *problem, .launch = launch, .since = since};
+    sample->problem.bodies = body_copy;
+    sample->problem.contacts = contact_copy;
+    if (body_copy == NULL || contact_copy == NULL) return false;
+    memcpy(body_copy, problem->bodies, bodies);
+    if (contacts > 0) memcpy(contact_copy, problem->contacts, contacts);
+    return true;
+}
+
+bool slot_samples_take(SlotSamples *samples, SlotSamples *from) {
+    if (!reserve(samples, from->count + 1)) return false;
+    for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
+    free(from->items);
+    *from = (SlotSamples){0};
+    return true;
+}
+
+/* Labels in progress. */
+typedef struct Labels {
+    SlotSample *items;
+    Reference *references; /* one a thread */
+    int max_visits;
+} Labels;
+
+static bool label(void *context, int i, Error *error) {
+    const Labels *labels = context;
+    SlotSample *sample = &labels->items[i];
+    Reference *reference = &labels->references[omp_get_thread_num()];
+    const size_t bodies = (size_t)sample->problem.body_count, contacts = (size_t)sample->problem.contact_count;
+    if (!reference_solve(reference, &sample->problem, REFERENCE_TOLERANCE, labels->max_visits, NULL, error))
+        return false;
+    sample->reference = malloc(bodies * sizeof *sample->reference + 1);
+    sample->goal = malloc(contacts * sizeof *sample->goal + 1);
+    if (sample->reference == NULL || sample->goal == NULL ||
+        !unrolled_problem_make(&sample->unrolled, &sample->problem))
+        return error_memory(error, "labels");
+    memcpy(sample->reference, reference->velocities, bodies * sizeof *sample->reference);
+    for (size_t k = 0; k < contacts; k++)
+        sample->goal[k] = (ContactImpulse){(float)reference->impulses[k].normal, (float)reference->impulses[k].tangent};
+    return true;
+}
+
+bool slot_samples_label(SlotSamples *samples, int first, int max_visits, const Progress *progress, Error *error) {
+    const int threads = omp_get_max_threads();
+    Reference *references = calloc((size_t)threads, sizeof *references);
+    if (references == NULL) return error_memory(error, "labels");
+    Labels labels = {samples->items + first, references, max_visits};
+    const ParallelWork work = {label, &labels};
+    bool ok = parallel_for(&work, samples->count - first, "labels", progress, error);
+    for (int i = 0; i < threads; i++) reference_free(&references[i]);
+    free(references);
+    return ok;
+}
+
+bool slot_samples_look(SlotSamples *samples, int first, const SlotNetwork *network, Error *error) {
+    bool ok = true;
+#pragma omp parallel for schedule(dynamic, 64) reduction(&& : ok)
+    for (int i = first; i < samples->count; i++) {
+        SlotSample *sample = &samples->items[i];
+        bool fine = scene_view_take(&sample->view, network, &sample->problem);
+        if (fine && sample->inputs == NULL)
+            sample->inputs = malloc((size_t)slot_network_inputs(network) * sizeof *sample->inputs);
+        fine = fine && sample->inputs != NULL;
+        if (fine) slot_network_look(network, &sample->view.slots, sample->inputs);
+        ok = ok && fine;
+    }
+    return ok || error_memory(error, "samples");
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "paper/figures/engine_figures.h"
+
+#include "common/file.h"
+#include "paper/figures/engine_figure.h"
+#include "sketch/sketch_files.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const scene_names[ENGINE_SCENES] = {"single", "stack", "pyramid"};
+
+static const EngineFigure *const figures[] = {&figure_loop, &figure_narrow_phase, &figure_data, &figure_scenes};
+
+const char *const engine_figure_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
+
+static bool join(char path[PATH_MAX], const char *folder, const char *name, const char *ending, Error *error) {
+    int length = snprintf(path, PATH_MAX, "%s/%s%s", folder, name, ending);
+    return (length > 0 && length < PATH_MAX) || error_input(error, folder, "this path is too long");
+}
+
+static bool write_caption(const char *folder, const char *name, const char *caption, Error *error) {
+    char path[PATH_MAX], line[CAPTION_SIZE + 1];
+    int length = snprintf(line, sizeof line, "%s\n", caption);
+    return join(path, folder, name, ".txt", error) && file_write(path, line, (size_t)length, error);
+}
+
+static bool draw_figure(const EngineFigure *figure, const char *name, Scene *const *scenes, const char *folder,
+                        Error *error) {
+    Sketch sketch;
+    char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
+    if (!join(stem, folder, name, "", error)) return false;
+    sketch_begin(&sketch, figure->width, figure->height);
+    bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, error);
+    sketch_free(&sketch);
+    return drawn && write_caption(folder, name, caption, error);
+}
+
+static Scene *read_scene(const char *folder, const char *name, Error *error) {
+    char path[PATH_MAX];
+    if (!join(path, folder, name, ".yaml", error)) return NULL;
+    Scene *scene = scene_read(path, error);
+    if (scene == NULL || scene->bomb.present) return scene;
+    error_input(error, path, "the scene has no bomb to launch");
+    scene_destroy(scene);
+    return NULL;
+}
+
+bool engine_figures_draw(const char *scenes_folder, const char *folder, Error *error) {
+    Scene *scenes[ENGINE_SCENES] = {NULL};
+    bool done = true;
+    for (int i = 0; done && i < ENGINE_SCENES; i++) {
+        scenes[i] = read_scene(scenes_folder, scene_names[i], error);
+        done = scenes[i] != NULL;
+    }
+    for (size_t i = 0; done && engine_figure_names[i] != NULL; i++)
+        done = draw_figure(figures[i], engine_figure_names[i], scenes, folder, error);
+    for (int i = 0; i < ENGINE_SCENES; i++) scene_destroy(scenes[i]);
+    return done;
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Three panels, one a target: the paper leaves open which of them its Table 1 is about. */
+#include "chart/csv_columns.h"
+#include "chart/figure_axis.h"
+#include "paper/figures/figures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Row {
+    char network[CSV_NAME_SIZE];
+    int target, optimizer;
+    double iteration, test, constant;
+} Row;
+
+static const char *const optimizers[] = {"adam", "gd", "bfgs", "lm", NULL};
+
+static const CsvColumn columns[] = {
+    {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
+    {"target", CSV_WORD, offsetof(Row, target), figure_targets, 0, 0},
+    {"optimizer", CSV_WORD, offsetof(Row, optimizer), optimizers, 0, 0},
+    {"iteration", CSV_NUMBER, offsetof(Row, iteration), NULL, 0, 1e9},
+    {"test", CSV_MAYBE, offsetof(Row, test), NULL, 0, 1e30},
+    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e30},
+};
+
+/* Avatavului, Ifrim, Voncila 2023, Table 1, test score. */
+static const struct {
+    double iteration, test;
+} paper[] = {{0, 0.105798}, {10, 0.051244}, {50, 0.015246}, {100, 0.007767}, {1000, 0.001212}, {2000, 0.000728}};
+
+enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 12, OPTIMIZERS = 4, LINES = OPTIMIZERS + 2 };
+
+/* The networks that differ from the baseline in nothing but target or optimizer; their looks; the panels' titles. */
+static const char *const networks[NETWORKS] = {"baseline",       "target-net",   "target-impulse", "optimizer-gd",
+                                               "optimizer-bfgs", "optimizer-lm", "net-gd",         "net-bfgs",
+                                               "net-lm",         "impulse-gd",   "impulse-bfgs",   "impulse-lm"};
+static const char *const optimizer_names[] = {"Adam", "gradient descent", "BFGS", "Levenberg-Marquardt"};
+static const char *const titles[PANELS] = {"Pair: change by its own impulses", "Net: change by all impulses",
+                                           "Impulse: change in one sweep"};
+
+/* mm */
+static const double height = 72, left = 13.5, right = 2, gap = 4.5, bottom = 17.5, top = 6, legend_top = 6;
+
+/* Beyond these a training that went astray would press the others together. */
+static const double least_error = 1e-8, most_error = 10;
+
+static bool is_shown(const Row *row) {
+    for (int i = 0; i < NETWORKS; i++)
+        if (strcmp(row->network, networks[i]) == 0) return row->target < PANELS;
+    return false;
+}
+
+static int compare_rows(const void *first, const void *second) {
+    const Row *a = first, *b = second;
+    int order = strcmp(a->network, b->network);
+    if (order == 0) order = a->target - b->target;
+    return order != 0 ? order : (a->iteration > b->iteration) - (a->iteration < b->iteration);
+}
+
+typedef struct Loss {
+    FigurePage *page;
+    const Row *rows;
+    int count;
+    FigureAxis x, y;
+    bool used[OPTIMIZERS];
+} Loss;
+
+static void choose_axes(Loss *loss) {
+    FigureRange x = figure_range(), y = figure_range();
+    for (int i = 0; i < PAPER; i++) figure_widen(&x, paper[i].iteration), figure_widen(&y, paper[i].test);
+    for (int i = 0; i < loss->count; i++) {
+        figure_widen(&x, loss->rows[i].iteration);
+        figure_widen(&y, loss->rows[i].test);
+        figure_widen(&y, loss->rows[i].constant);
+        loss->used[loss->rows[i].optimizer] = true;
+    }
+    loss->x = figure_axis(x, 1, 1e6, true);
+    loss->y = figure_axis(y, least_error, most_error, false);
+}
+
+static void put_point(Loss *loss, double iteration, double error) {
+    figure_point(loss->page, figure_on(loss->page, &loss->x, iteration), figure_on(loss->page, &loss->y, error));
+}
+
+static void put_constant(Loss *loss, int target) {
+    FigureLook look = figure_dashed("");
+    figure_series(loss->page);
+    for (int i = 0; i < loss->count; i++) {
+        const Row *row = &loss->rows[i];
+        if (row->target != target || isnan(row->constant)) continue;
+        double y = figure_on(loss->page, &loss->y, row->constant);
+        figure_segment(loss->page, loss->x.log.low, y, loss->x.log.high, y);
+        break;
+    }
+    figure_draw(loss->page, &look);
+}
+
+static FigureLook paper_look(void) {
+    FigureLook look = figure_look(7, "the paper's Table 1");
+    look.style.colour = look.style.ink = "black";
+    return look;
+}
+
+static void put_paper(Loss *loss) {
+    FigureLook look = paper_look();
+    figure_series(loss->page);
+    for (int i = 0; i < PAPER; i++) put_point(loss, paper[i].iteration, paper[i].test);
+    figure_draw(loss->page, &look);
+}
+
+/* Rows of one network and one target lie side by side. */
+static void put_networks(Loss *loss, int target) {
+    for (int i = 0, end; i < loss->count; i = end) {
+        const Row *row = &loss->rows[i];
+        for (end = i; end < loss->count && strcmp(loss->rows[end].network, row->network) == 0; end++)
+            if (loss->rows[end].target != row->target) break;
+        if (row->target != target) continue;
+        FigureLook look = figure_look(row->optimizer, "");
+        figure_series(loss->page);
+        for (int k = i; k < end; k++) put_point(loss, loss->rows[k].iteration, loss->rows[k].test);
+        figure_draw(loss->page, &look);
+    }
+}
+
+static void put_panel(Loss *loss, int target) {
+    FigurePage *page = loss->page;
+    double width = (FIGURE_PAGE_WIDTH - left - right - gap * (PANELS - 1)) / PANELS;
+    figure_panel(page, (FigureBox){left + target * (width + gap), bottom, width, height - top - bottom},
+                 titles[target]);
+    figure_log(page, 'x', &loss->x, "Training iteration");
+    figure_log(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
+    put_constant(loss, target);
+    put_networks(loss, target);
+    put_paper(loss);
+    figure_panel_end(page);
+}
+
+static void put_legend(Loss *loss) {
+    FigureLook looks[LINES];
+    int count = 0;
+    for (int i = 0; i < OPTIMIZERS; i++)
+        if (loss->used[i]) looks[count++] = figure_look(i, optimizer_names[i]);
+    looks[count++] = paper_look();
+    looks[count++] = figure_dashed("predicting the mean");
+    figure_legend(loss->page, looks, count, 3, left, legend_top);
+}
+
+bool figure_loss(const char *folder, FigurePage *page, Error *error) {
+    Loss loss = {.page = page};
+    int count;
+    Row *rows = csv_columns_read(folder, "table1", columns, sizeof columns / sizeof *columns, sizeof *rows,
+                                 CSV_MAX_ROWS, &count, error);
+    if (rows == NULL) return false;
+    for (int i = 0; i < count; i++)
+        if (is_shown(&rows[i])) rows[loss.count++] = rows[i];
+    if (loss.count > 0) {
+        qsort(rows, (size_t)loss.count, sizeof *rows, compare_rows);
+        loss.rows = rows;
+        choose_axes(&loss);
+        figure_begin(page, FIGURE_PAGE_WIDTH, height);
+        for (int target = 0; target < PANELS; target++) put_panel(&loss, target);
+        put_legend(&loss);
+        fprintf(page->caption,
+                "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
+                "training), for each reading of what the network is to predict. Dashed: always predicting the mean "
+                "of the training rows. The paper's own figures, which do not say which target they are for, stand in "
+                "each panel.");
+        figure_end(page);
+    }
+    free(rows);
+    return true;
+}

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Three readings of "successful prediction" side by side; impacts above, rest below. */
+#include "chart/csv_columns.h"
+#include "chart/figure_axis.h"
+#include "paper/figures/figures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFINITIONS = 3, PHASES = 4, NETWORKS = 4, SWEEPS = 3 };
+
+typedef struct Row {
+    char network[CSV_NAME_SIZE];
+    int scene, definition, phase;
+    double rate, constant, engine[SWEEPS];
+} Row;
+
+static const char *const definitions[] = {"range", "absolute", "bodies", NULL};
+static const char *const phases[] = {"impact", "rest", "all", "after", NULL};
+
+static const CsvColumn columns[] = {
+    {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
+    {"scene", CSV_WORD, offsetof(Row, scene), figure_scene_names, 0, 0},
+    {"definition", CSV_WORD, offsetof(Row, definition), definitions, 0, 0},
+    {"phase", CSV_WORD, offsetof(Row, phase), phases, 0, 0},
+    {"rate", CSV_MAYBE, offsetof(Row, rate), NULL, 0, 1},
+    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1},
+    {"engine1", CSV_MAYBE, offsetof(Row, engine[0]), NULL, 0, 1},
+    {"engine4", CSV_MAYBE, offsetof(Row, engine[1]), NULL, 0, 1},
+    {"engine10", CSV_MAYBE, offsetof(Row, engine[2]), NULL, 0, 1},
+};
+
+enum { SHOWN_PHASES = 2 };
+static const char *const networks[NETWORKS] = {"baseline", "target-net", "target-impulse", "contact-net"};
+static const char *const titles[DEFINITIONS] = {"Within 5% of the output's range", "Within 0.1 m/s",
+                                                "Bodies right, by the reference"};
+static const char *const labels[SHOWN_PHASES] = {"Right at impacts (%)", "Right at rest (%)"};
+
+/* mm */
+static const double panel_height = 37, left = 13.5, right = 2, gap = 4, row_gap = 5, bottom = 20.5, top = 6,
+                    legend_top = 6;
+
+/* The paper's prediction rates, %. */
+static const double paper_least = 60, paper_most = 91;
+
+/* Halves of what is drawn at a rate, in units of the axes: a stem, the constant's bar. */
+static const double stem = 0.017, bar_width = 0.08, bar_height = 0.8;
+
+typedef struct Rates {
+    FigurePage *page;
+    const Row *rows;
+    int count;
+    bool used[NETWORKS];
+} Rates;
+
+static int find_network(const char *name) {
+    int i = 0;
+    while (i < NETWORKS && strcmp(networks[i], name) != 0) i++;
+    return i;
+}
+
+/* Networks side by side within their scene. */
+static double place(const Row *row) { return row->scene + 0.2 * (find_network(row->network) - (NETWORKS - 1) / 2.0); }
+
+static bool is_in(const Row *row, int definition, int phase) {
+    return row->definition == definition && row->phase == phase;
+}
+
+static FigureLook stem_look(int network) {
+    FigureLook look = figure_look(network, networks[network]);
+    look.style.dashes = "solid";
+    return look;
+}
+
+static FigureLook engine_look(int i) {
+    static const char *const names[SWEEPS] = {"engine, 1 sweep", "engine, 4 sweeps", "engine, 10 sweeps"};
+    FigureLook look = figure_marks(figure_look(12 + i, names[i]));
+    look.style.colour = FIGURE_GREY;
+    return look;
+}
+
+static FigureLook constant_look(void) {
+    return (FigureLook){
+        "predicting the mean", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, 0.6, false};
+}
+
+static FigureLook band_look(void) {
+    return (FigureLook){
+        "the paper's 60 to 91%", {.colour = "#E4E4E4", .ink = "#E4E4E4", .dashes = "solid"}, 0, false, 2.4, false};
+}
+
+static void put_band(const Rates *rates) {
+    FigureLook look = band_look();
+    figure_series(rates->page);
+    figure_bar(rates->page, -0.5, paper_least, FIGURE_SCENES - 0.5, paper_most);
+    figure_draw(rates->page, &look);
+}
+
+static void put_network(const Rates *rates, int network, int definition, int phase) {
+    FigureLook stems = stem_look(network), marks = figure_marks(stems);
+    stems.marks = false;
+    for (int heads = 0; heads <= 1; heads++) {
+        figure_series(rates->page);
+        for (int i = 0; i < rates->count; i++) {
+            const Row *row = &rates->rows[i];
+            if (!is_in(row, definition, phase) || find_network(row->network) != network) continue;
+            if (heads)
+                figure_point(rates->page, place(row), 100 * row->rate);
+            else
+                figure_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->rate);
+        }
+        figure_draw(rates->page, heads ? &marks : &stems);
+    }
+}
+
+static void put_constants(const Rates *rates, int definition, int phase) {
+    FigureLook look = constant_look();
+    figure_series(rates->page);
+    for (int i = 0; i < rates->count; i++) {
+        const Row *row = &rates->rows[i];
+        if (!is_in(row, definition, phase)) continue;
+        figure_bar(rates->page, place(row) - bar_width, 100 * row->constant - bar_height, place(row) + bar_width,
+                   100 * row->constant + bar_height);
+    }
+    figure_draw(rates->page, &look);
+}
+
+static void put_engines(const Rates *rates, int definition, int phase) {
+    for (int k = 0; k < SWEEPS; k++) {
+        FigureLook look = engine_look(k);
+        figure_series(rates->page);
+        for (int i = 0; i < rates->count; i++)
+            if (is_in(&rates->rows[i], definition, phase))
+                figure_point(rates->page, place(&rates->rows[i]), 100 * rates->rows[i].engine[k]);
+        figure_draw(rates->page, &look);
+    }
+}
+
+static void put_panel(const Rates *rates, int definition, int phase) {
+    FigurePage *page = rates->page;
+    double width = (FIGURE_PAGE_WIDTH - left - right - gap * (DEFINITIONS - 1)) / DEFINITIONS;
+    double up = bottom + (SHOWN_PHASES - 1 - phase) * (panel_height + row_gap);
+    figure_panel(page, (FigureBox){left + definition * (width + gap), up, width, panel_height},
+                 phase == 0 ? titles[definition] : "");
+    figure_linear(page, 'x', -0.5, FIGURE_SCENES - 0.5,
+                  phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
+                             : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
+                  NULL);
+    figure_linear(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
+                  definition == 0 ? labels[phase] : NULL);
+    put_band(rates);
+    for (int i = 0; i < NETWORKS; i++) put_network(rates, i, definition, phase);
+    put_constants(rates, definition, phase);
+    put_engines(rates, definition, phase);
+    figure_panel_end(page);
+}
+
+static void put_legend(const Rates *rates) {
+    FigureLook looks[NETWORKS + SWEEPS + 2];
+    int count = 0;
+    for (int i = 0; i < NETWORKS; i++)
+        if (rates->used[i]) looks[count++] = stem_look(i);
+    for (int k = 0; k < SWEEPS; k++) looks[count++] = engine_look(k);
+    looks[count++] = constant_look();
+    looks[count++] = band_look();
+    figure_legend(rates->page, looks, count, NETWORKS, left, legend_top + FIGURE_LEGEND_ROW);
+}
+
+static void keep_shown(Rates *rates, Row *rows, int count) {
+    rates->rows = rows;
+    for (int i = 0; i < count; i++) {
+        int network = find_network(rows[i].network);
+        if (network == NETWORKS || rows[i].phase >= SHOWN_PHASES) continue;
+        rates->used[network] = true;
+        rows[rates->count++] = rows[i];
+    }
+}
+
+bool figure_rates(const char *folder, FigurePage *page, Error *error) {
+    Rates rates = {.page = page};
+    int count;
+    Row *rows = csv_columns_read(folder, "rates", columns, sizeof columns / sizeof *columns, sizeof *rows, CSV_MAX_ROWS,
+                                 &count, error);
+    if (rows == NULL) return false;
+    keep_shown(&rates, rows, count);
+    if (rates.count > 0) {
+        figure_begin(page, FIGURE_PAGE_WIDTH, bottom + 2 * panel_height + row_gap + top);
+        for (int phase = 0; phase < SHOWN_PHASES; phase++)
+            for (int definition = 0; definition < DEFINITIONS; definition++) put_panel(&rates, definition, phase);
+        put_legend(&rates);
+        fprintf(
+            page->caption,
+            "Share of right predictions in each scene, by three readings of what is right, in the frames of impacts "
+            "and at rest; beside each network what always predicting the mean would score (bar) and what the "
+            "engine does with 1, 4 and 10 sweeps (crosses). Grey band: the 60 to 91%% of the paper.");
+        figure_end(page);
+    }
+    free(rows);
+    return true;
+}

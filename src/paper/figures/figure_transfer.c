@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One column wide: does it help to have learned smaller scenes first? */
+#include "chart/csv_columns.h"
+#include "chart/figure_axis.h"
+#include "chart/figure_seeds.h"
+#include "paper/figures/figures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { STARTS = 2, MAX_POWER = 20 };
+
+typedef struct Row {
+    int start;
+    double seed, launches, error, constant;
+} Row;
+
+static const char *const starts[] = {"scratch", "transfer", NULL};
+
+static const CsvColumn columns[] = {
+    {"start", CSV_WORD, offsetof(Row, start), starts, 0, 0},
+    {"seed", CSV_NUMBER, offsetof(Row, seed), NULL, 0, 1e9},
+    {"launches", CSV_NUMBER, offsetof(Row, launches), NULL, 1, 1 << MAX_POWER},
+    {"error", CSV_MAYBE, offsetof(Row, error), NULL, 0, 1e6},
+    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e6},
+};
+
+/* mm */
+static const double height = 64, left = 13, right = 2, bottom = 17.8, top = 3, legend_left = 3, legend_top = 6.2;
+
+static const double most_labels = 8, least_error = 1e-6;
+
+typedef struct Transfer {
+    FigurePage *page;
+    const Row *rows;
+    int count;
+    SeedPoint *points; /* [count] room */
+} Transfer;
+
+static FigureLook look_of(int start) {
+    static const char *const names[STARTS] = {"from scratch", "after single and stack"};
+    return figure_look(start, names[start]);
+}
+
+/* Points of a start's errors; or of all constants. */
+static int gather(const Transfer *transfer, int start) {
+    int count = 0;
+    for (int i = 0; i < transfer->count; i++) {
+        const Row *row = &transfer->rows[i];
+        double value = start < STARTS ? row->error : row->constant;
+        if ((start < STARTS && row->start != start) || isnan(value)) continue;
+        transfer->points[count++] = (SeedPoint){row->seed, row->launches, value};
+    }
+    return count;
+}
+
+/* Powers of two, as many as have room. */
+static void put_launches(FigurePage *page, double low, double high) {
+    int step = (int)(log2(high / low) / most_labels) + 1;
+    const char *separator = "";
+    fprintf(page->script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", low, high);
+    for (int power = 0; power <= MAX_POWER; power += step) {
+        if (1 << power < low || 1 << power > high) continue;
+        fprintf(page->script, "%s'%d' %d", separator, 1 << power, 1 << power);
+        separator = ", ";
+    }
+    fprintf(page->script, ")\n");
+    figure_axis_label(page, 'x', "Launches of the pyramid");
+}
+
+static void put_axes(const Transfer *transfer) {
+    double least = 1 << MAX_POWER, most = 1, error = least_error;
+    for (int i = 0; i < transfer->count; i++) {
+        const Row *row = &transfer->rows[i];
+        least = fmin(least, row->launches);
+        most = fmax(most, row->launches);
+        error = fmax(error, fmax(row->error, row->constant)); /* of a number and NAN, the number */
+    }
+    double margin = most > 4 * least ? 1.3 : 2;
+    put_launches(transfer->page, least / margin, most * margin);
+    figure_linear(transfer->page, 'y', 0, error * 1.08, NULL, "RMS velocity error (m/s)");
+}
+
+static void draw(Transfer *transfer) {
+    FigurePage *page = transfer->page;
+    FigureLook looks[STARTS + 1] = {look_of(0), look_of(1), figure_dashed("predicting the mean")};
+    figure_begin(page, FIGURE_COLUMN_WIDTH, height);
+    figure_panel(page, (FigureBox){left, bottom, page->width - left - right, height - bottom - top}, "");
+    put_axes(transfer);
+    figure_seed_median(page, transfer->points, gather(transfer, STARTS), &looks[STARTS]);
+    for (int start = 0; start < STARTS; start++)
+        figure_seed_lines(page, transfer->points, gather(transfer, start), &looks[start]);
+    for (int start = 0; start < STARTS; start++)
+        figure_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
+    figure_panel_end(page);
+    figure_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
+    fprintf(page->caption,
+            "Error on launches of the pyramid kept apart, over how many others a network was trained on: from scratch, "
+            "and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: always "
+            "predicting the mean.");
+    figure_end(page);
+}
+
+bool figure_transfer(const char *folder, FigurePage *page, Error *error) {
+    int count;
+    Row *rows = csv_columns_read(folder, "transfer", columns, sizeof columns / sizeof *columns, sizeof *rows,
+                                 CSV_MAX_ROWS, &count, error);
+    if (rows == NULL) return false;
+    Transfer transfer = {page, rows, count, malloc((size_t)count * sizeof *transfer.points)};
+    bool room = transfer.points != NULL;
+    if (room) draw(&transfer);
+    free(transfer.points);
+    free(rows);
+    return room || error_memory(error, folder);
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figures of result_figures.h: each reads its table and writes its page. A page without a width is one that its
+   table has no rows for. False with error set where the table is not in order. */
+#pragma once
+#include "chart/figure_page.h"
+
+bool figure_loss(const char *folder, FigurePage *page, Error *error);
+bool figure_factors(const char *folder, FigurePage *page, Error *error);
+bool figure_rates(const char *folder, FigurePage *page, Error *error);
+bool figure_closed_loop(const char *folder, FigurePage *page, Error *error);
+bool figure_laws(const char *folder, FigurePage *page, Error *error);
+bool figure_transfer(const char *folder, FigurePage *page, Error *error);
+
+/* Words of the tables. */
+enum { FIGURE_TARGETS = 4, FIGURE_SCENES = 4 };
+extern const char *const figure_targets[FIGURE_TARGETS + 1];
+extern const char *const figure_scene_names[FIGURE_SCENES + 1];

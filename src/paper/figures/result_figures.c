@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All tables are read before the first figure is drawn. */
+#include "paper/figures/result_figures.h"
+
+#include "chart/figure_sheet.h"
+#include "common/file.h"
+#include "paper/figures/figures.h"
+
+#include <limits.h>
+
+const char *const figure_targets[] = {"pair", "net", "impulse", "points", NULL};
+const char *const figure_scene_names[] = {"single", "stack", "pyramid", "pyramid_settled", NULL};
+
+static const struct {
+    const char *name;
+    bool (*write)(const char *folder, FigurePage *page, Error *error);
+} figures[] = {
+    {"loss", figure_loss}, {"factors", figure_factors},   {"rates", figure_rates}, {"closed-loop", figure_closed_loop},
+    {"laws", figure_laws}, {"transfer", figure_transfer},
+};
+
+enum { FIGURES = sizeof figures / sizeof *figures };
+
+static bool write_page(int i, const char *folder, FigureSheet *sheet, Error *error) {
+    bool done = figure_sheet_open(sheet, folder, error) && figures[i].write(folder, &sheet->page, error);
+    return done && figure_sheet_close(sheet, folder, error);
+}
+
+bool result_figures_draw(const char *folder, Error *error) {
+    FigureSheet sheets[FIGURES] = {0};
+    char path[PATH_MAX];
+    int length = snprintf(path, sizeof path, "%s/figures", folder);
+    if (length < 0 || length >= (int)sizeof path) return error_input(error, folder, "this path is too long");
+    bool done = true;
+    for (int i = 0; done && i < FIGURES; i++) done = write_page(i, folder, &sheets[i], error);
+    done = done && file_make_directory(path, error);
+    for (int i = 0; done && i < FIGURES; i++) done = figure_sheet_draw(&sheets[i], path, "", figures[i].name, error);
+    for (int i = 0; i < FIGURES; i++) figure_sheet_free(&sheets[i]);
+    return done;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The datasets of the paper's study, recorded when they are first asked for. */
+#pragma once
+#include "paper/study/paper_networks.h"
+
+enum { PAPER_SCENES = 4, PAPER_TRAINING_SCENES = 2, PAPER_PATH_SIZE = 4096, PAPER_DATASETS_MAX = 32 };
+
+/* single, stack, pyramid, pyramid_settled; the first two are trained on. */
+extern const char *const paper_scene_names[PAPER_SCENES];
+
+/* Launches of each scene. */
+typedef struct PaperDataSize {
+    const char *swept, *mixed, *fine, *finest, *paper; /* m: "-5:5:0.05" */
+    int random, mixed_random;                          /* further launches drawn */
+    /* Of the rows of single impulses, of which there are ten times as many, every so many; fewer of the finest sweep. */
+    int impulse_every, finest_every;
+} PaperDataSize;
+
+typedef struct StoredDataset {
+    PaperData data;
+    DatasetLabels labels;
+    PairView view;
+    PairTarget target;
+    Dataset *dataset;
+} StoredDataset;
+
+/* Zero-initialise. */
+typedef struct PaperDatasets {
+    char scenes[PAPER_SCENES][PAPER_PATH_SIZE];
+    const PaperDataSize *size;
+    uint64_t seed;
+    int count;
+    StoredDataset items[PAPER_DATASETS_MAX];
+} PaperDatasets;
+
+/* scenes: the folder of the four scene files. */
+bool paper_datasets_begin(PaperDatasets *datasets, const char *scenes, const PaperDataSize *size, uint64_t seed,
+                          Error *error);
+void paper_datasets_free(PaperDatasets *datasets);
+
+/* Launches of one scene for the target pair. The caller's. */
+Dataset *paper_scene_dataset(const PaperDatasets *datasets, int scene, const char *bomb_x, Error *error);
+
+/* The same of the two scenes that are trained on, swept, with the pairs' context (dataset.h). */
+Dataset *paper_context_dataset(const PaperDatasets *datasets, Error *error);
+
+/* What a network is trained on; it stays the datasets'. NULL with error set. */
+const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error);

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "paper/study/paper_scores.h"
+
+#include "common/parallel.h"
+#include "paper/study/pair_rates.h"
+#include "study/closed_loop.h"
+#include "study/meter.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *const phase_names[RATE_PHASES] = {"impact", "after", "rest", "all"};
+
+/* A scene with some of its launches. */
+typedef struct Launched {
+    Scene *scene;
+    int count;
+    Scene *launches;      /* [count] */
+    SnapshotList *states; /* [count] sampled from the engine's runs, where they are asked for */
+} Launched;
+
+static void launched_free(Launched *launched) {
+    for (int i = 0; launched->states != NULL && i < launched->count; i++) snapshots_free(&launched->states[i]);
+    free(launched->states);
+    free(launched->launches);
+    scene_destroy(launched->scene);
+}
+
+static bool launched_begin(Launched *launched, const char *path, int count, Error *error) {
+    *launched = (Launched){.scene = scene_read(path, error), .count = count};
+    if (launched->scene == NULL) return false;
+    Launch *launches = malloc((size_t)count * sizeof *launches);
+    launched->launches = malloc((size_t)count * sizeof *launched->launches);
+    launched->states = calloc((size_t)count, sizeof *launched->states);
+    bool ok = launches != NULL && launched->launches != NULL && launched->states != NULL;
+    if (!ok) error_memory(error, path);
+    if (ok && !launched->scene->bomb.present) ok = error_input(error, path, "the scene has no bomb");
+    if (ok) launches_for_scoring(launched->scene, count, launches);
+    for (int i = 0; ok && i < count; i++) launched->launches[i] = launch_scene(launched->scene, &launches[i]);
+    free(launches);
+    if (!ok) launched_free(launched);
+    return ok;
+}
+
+/* One scene's study in progress. */
+typedef struct Scores {
+    const PaperScoring *scoring;
+    Launched launched;
+    PairRates *rates;   /* [count + 1] the last: of the warm start */
+    ClosedLoop *closed; /* [count] */
+} Scores;
+
+/* Networks of single impulses that would need those of points take no step. */
+static bool takes_steps(const PaperNetwork *network) {
+    return network->target != TARGET_IMPULSE || !pair_views[network->view].by_contact;
+}
+
+static bool network_path(const PaperScoring *scoring, int i, char path[PAPER_PATH_SIZE], Error *error) {
+    return snprintf(path, PAPER_PATH_SIZE, "%s/%s.npz", scoring->folder, scoring->networks[i].name) < PAPER_PATH_SIZE ||
+           error_input(error, scoring->folder, "the name is too long");
+}
+
+static bool sample_launch(void *context, int i, Error *error) {
+    Scores *scores = context;
+    return snapshots_add(&scores->launched.states[i], &scores->launched.launches[i], &scores->scoring->sampling, error);
+}
+
+static bool rate_network(void *context, int i, Error *error) {
+    Scores *scores = context;
+    const PaperScoring *scoring = scores->scoring;
+    char path[PAPER_PATH_SIZE];
+    const bool warm = i == scoring->count;
+    if (!warm && !network_path(scoring, i, path, error)) return false;
+    return pair_rates_measure(warm ? NULL : path, scores->launched.scene, scores->launched.states,
+                              scores->launched.count, &scoring->sampling, &scores->rates[i], error);
+}
+
+static void put_number(FILE *lines, double number) {
+    if (isnan(number))
+        fputc(',', lines);
+    else
+        fprintf(lines, ",%.6g", number);
+}
+
+static void write_rates(FILE *lines, const char *network, const char *scene, const PairRates *rates) {
+    for (int definition = 0; definition < RATE_DEFINITIONS; definition++)
+        for (int phase = 0; phase < RATE_PHASES; phase++) {
+            fprintf(lines, "rates:%s,%s,%s,%s", network, scene, rate_definition_names[definition], phase_names[phase]);
+            for (int c = 0; c < RATE_COLUMNS; c++) put_number(lines, rates->share[definition][phase][c]);
+            fputc('\n', lines);
+        }
+}
+
+bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    const PaperScoring *scoring = context;
+    Scores scores = {.scoring = scoring};
+    if (!launched_begin(&scores.launched, scoring->scene, scoring->rate_launches, error)) return false;
+    scores.rates = calloc((size_t)scoring->count + 1, sizeof *scores.rates);
+    const ParallelWork sampling = {sample_launch, &scores}, rating = {rate_network, &scores};
+    bool ok = (scores.rates != NULL || error_memory(error, "rates")) &&
+              parallel_for(&sampling, scores.launched.count, "sampled launches", NULL, error) &&
+              parallel_for(&rating, scoring->count + 1, "rated networks", progress, error);
+    for (int i = 0; ok && i <= scoring->count; i++)
+        write_rates(lines, i < scoring->count ? scoring->networks[i].name : "warm-start", scores.launched.scene->name,
+                    &scores.rates[i]);
+    free(scores.rates);
+    launched_free(&scores.launched);
+    return ok;
+}
+
+static bool method_of(const PaperScoring *scoring, int i, Method *method, Error *error) {
+    char path[PAPER_PATH_SIZE];
+    const char *name = scoring->networks[i].target == TARGET_POINTS ? "contact-net" : "pair-net";
+    return network_path(scoring, i, path, error) && method_with_network(method, name, path, error);
+}
+
+static bool close_network(void *context, int i, Error *error) {
+    Scores *scores = context;
+    Method method;
+    if (!takes_steps(&scores->scoring->networks[i])) return true;
+    return method_of(scores->scoring, i, &method, error) &&
+           closed_loop_run(&method, scores->launched.launches, scores->launched.count, &scores->closed[i], error);
+}
+
+/* One after the other on one core. */
+static bool time_networks(Scores *scores, FILE *lines, Error *error) {
+    const PaperScoring *scoring = scores->scoring;
+    bool ok = true;
+    meter_pin();
+    for (int i = 0; ok && i < scoring->count; i++) {
+        Method method;
+        double us_step, us_step_engine;
+        const ClosedLoop *closed = &scores->closed[i];
+        if (!takes_steps(&scoring->networks[i])) continue;
+        ok = method_of(scoring, i, &method, error) &&
+             closed_loop_time(&method, &scores->launched.states[0], scoring->repetitions, &us_step, &us_step_engine,
+                              error);
+        if (ok)
+            fprintf(lines, "closed_loop:%s,%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", scoring->networks[i].name,
+                    scores->launched.scene->name, closed->frames_until_apart, closed->penetration_max,
+                    closed->momentum_error, closed->energy_ratio, us_step, us_step_engine);
+    }
+    meter_unpin();
+    return ok;
+}
+
+bool paper_closed_loop_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    const PaperScoring *scoring = context;
+    Scores scores = {.scoring = scoring};
+    if (!launched_begin(&scores.launched, scoring->scene, scoring->closed_launches, error)) return false;
+    scores.closed = calloc((size_t)scoring->count, sizeof *scores.closed);
+    const ParallelWork closing = {close_network, &scores};
+    bool ok = (scores.closed != NULL || error_memory(error, "closed loop")) &&
+              parallel_for(&closing, scoring->count, "networks in closed loop", progress, error) &&
+              sample_launch(&scores, 0, error) && time_networks(&scores, lines, error);
+    free(scores.closed);
+    launched_free(&scores.launched);
+    return ok;
+}

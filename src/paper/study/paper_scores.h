@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the networks of the paper's study do in one scene: parts of the study (study_parts.h). */
+#pragma once
+#include "paper/study/paper_data.h"
+#include "study/rollout.h"
+
+#include <stdio.h>
+
+#define RATES_HEADER "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
+#define CLOSED_LOOP_HEADER \
+    "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,us_step,us_step_engine"
+
+typedef struct PaperScoring {
+    const char *scene;            /* path of its file */
+    const char *folder;           /* of the trained networks */
+    const PaperNetwork *networks; /* [count] */
+    int count;
+    int rate_launches, closed_launches; /* scored on, none of them trained on */
+    Sampling sampling;
+    int repetitions; /* of the time measurements */
+} PaperScoring;
+
+/* Lines of the table rates: every network, and the warm start alone. context: a PaperScoring. */
+bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* Lines of the table closed_loop: every network that can take a step. */
+bool paper_closed_loop_write(void *context, FILE *lines, const Progress *progress, Error *error);

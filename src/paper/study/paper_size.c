@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "paper/study/paper_size.h"
+
+const PaperSize paper_whole_size = {
+    .data = {.swept = "-5:5:0.4",
+             .mixed = "-5:5:0.8",
+             .fine = "-5:5:0.1",
+             .finest = "-5:5:0.025",
+             .paper = "-5:5:0.05",
+             .random = 26,
+             .mixed_random = 13,
+             .impulse_every = 11,
+             .finest_every = 23},
+    .iterations = 2000,
+    .rate_launches = 20,
+    .closed_launches = 5,
+    .repetitions = 7,
+    .sampling = {.after = 6, .rest = 30},
+    .seeds = 3,
+    .law_iterations = 500,
+    .transfer_iterations = 300,
+    .weights = {0.01, 0.1, 1, 10},
+    .launches = {1, 2, 4, 8, 16},
+    .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
+};
+
+const PaperSize paper_quick_size = {
+    .data = {.swept = "-5:5:1",
+             .mixed = "-5:5:2",
+             .fine = "-5:5:0.5",
+             .finest = "-5:5:0.5",
+             .paper = "-5:5:0.5",
+             .random = 11,
+             .mixed_random = 5,
+             .impulse_every = 11,
+             .finest_every = 11},
+    .iterations = 100,
+    .rate_launches = 2,
+    .closed_launches = 1,
+    .repetitions = 3,
+    .sampling = {.after = 20, .rest = 120},
+    .seeds = 3,
+    .law_iterations = 30,
+    .transfer_iterations = 30,
+    .weights = {1},
+    .launches = {1, 4},
+    .transfer_x = {"-5:5:2", "-5:5:2", "-5:5:2"},
+};

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "paper/study/paper_training.h"
+
+#include "training/training.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double near_share = 0.05; /* of the outputs' range */
+
+/* "10-10-2" of the table above. */
+static void read_layers(const char *text, TrainingOptions *options) {
+    int count = 0;
+    for (char *rest = (char *)text; *rest != '\0';) {
+        options->widths[count++] = (int)strtol(rest, &rest, 10);
+        if (*rest == '-') rest++;
+    }
+    options->layers = count - 1;
+}
+
+/* What the scores of a training are written to. */
+typedef struct ScoreWriter {
+    FILE *lines;
+    const PaperNetwork *network;
+    TrainingScore last;
+} ScoreWriter;
+
+static void write_score(void *context, const TrainingScore *score) {
+    ScoreWriter *writer = context;
+    const PaperNetwork *network = writer->network;
+    writer->last = *score;
+    fprintf(writer->lines, "table1:%s,%s,%s,%d,%.6g,%.6g,%.6g\n", network->name, pair_target_names[network->target],
+            network->optimizer, score->iteration, score->test, score->train, score->constant_test);
+}
+
+/* Output k of a row as a network has it: all changes, or those of b's velocity relative to a's. */
+static double change_of(const Dataset *dataset, int64_t row, int outputs, int k) {
+    const int count = pair_change_count(dataset->target);
+    const float *changes = dataset->changes + row * count;
+    return (double)(outputs == count ? changes[k] : changes[k + 3] - changes[k]);
+}
+
+static bool held_out(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
+
+static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_CHANGES]) {
+    for (int k = 0; k < outputs; k++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (held_out(dataset, row)) continue;
+            least = fmin(least, change_of(dataset, row, outputs, k));
+            most = fmax(most, change_of(dataset, row, outputs, k));
+        }
+        range[k] = most - least;
+    }
+}
+
+double paper_accuracy(const Network *network, const Dataset *dataset) {
+    const int outputs = network->widths[network->layers], inputs = network->widths[0];
+    double range[PAIR_CHANGES];
+    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
+    if (scratch == NULL) return NAN;
+    find_ranges(dataset, outputs, range);
+    int64_t rows = 0, right = 0;
+    for (int64_t row = 0; row < dataset->rows; row++) {
+        if (!held_out(dataset, row)) continue;
+        network_predict(network, dataset->inputs + row * inputs, scratch, output);
+        bool near = true;
+        for (int k = 0; k < outputs; k++)
+            near &= fabs((double)output[k] - change_of(dataset, row, outputs, k)) <= near_share * range[k];
+        right += near;
+        rows++;
+    }
+    free(scratch);
+    return rows > 0 ? (double)right / (double)rows : NAN;
+}
+
+static void write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
+                          double accuracy) {
+    fprintf(lines, "networks:%s,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%d,%d,%.6g,%.6g,%.6g,%.6g,%.6g\n", of->name,
+            of->factor, of->value, pair_views[of->view].name, paper_data_names[of->data],
+            dataset_label_names[of->labels], pair_target_names[of->target], of->layers, of->hidden, of->output,
+            of->scale, of->optimizer, of->loss, score->iteration, network_parameter_count(network), score->test,
+            score->train, score->constant_test, score->test / score->constant_test, accuracy);
+}
+
+static bool store(const PaperTraining *training, Network *network, Error *error) {
+    char path[PAPER_PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s.npz", training->folder, training->network.name) >= (int)sizeof path)
+        return error_input(error, training->folder, "the name is too long");
+    snprintf(network->command, sizeof network->command, "twinbox paper: %s", training->network.name);
+    return network_write(network, path, error);
+}
+
+bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    const PaperTraining *training = context;
+    const PaperNetwork *of = &training->network;
+    const Dataset *dataset = paper_dataset(training->datasets, of, error);
+    if (dataset == NULL) return false;
+    ScoreWriter writer = {lines, of, {0}};
+    TrainingOptions options = {.optimizer = of->optimizer,
+                               .iterations = of->iterations,
+                               .seed = training->seed,
+                               .hidden = of->hidden,
+                               .output_activation = of->output,
+                               .scale = of->scale,
+                               .loss = of->loss,
+                               .on_score = write_score,
+                               .context = &writer};
+    read_layers(of->layers, &options);
+    Network *network = training_run(dataset, &options, progress, error);
+    if (network == NULL) return false;
+    /* Not of the last weights, but of those that are kept. */
+    TrainingScore score = {.iteration = writer.last.iteration};
+    const int iterations = score.iteration;
+    bool ok = training_score(dataset, network, of->loss, &score, error);
+    score.iteration = iterations;
+    if (ok) write_network(lines, of, network, &score, paper_accuracy(network, dataset));
+    ok = ok && store(training, network, error);
+    network_destroy(network);
+    return ok;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What solved a run, in words. */
+#include "picture/caption.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool is_method(const char *text, const char *name) {
+    size_t length = strlen(name);
+    return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
+}
+
+/* Copies a method without the folders of its files: they belong to a machine and not to a picture. */
+static void shorten_method(char *text, size_t size, const char *method) {
+    size_t used = 0;
+    while (*method != '\0') {
+        size_t length = strcspn(method, ":=,");
+        const char *end = method + length, *start = method;
+        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
+            for (const char *c = method; c < end; c++)
+                if (*c == '/') start = c + 1;
+        if (*end != '\0') end++;
+        used += (size_t)snprintf(text + used, size - used, "%.*s", (int)(end - start), start);
+        method = end;
+    }
+}
+
+void caption_method(const Picture *picture, int run, char title[CAPTION_SIZE], char note[CAPTION_SIZE]) {
+    const char *method = picture->panels[run]->method, *name = NULL;
+    char text[TRAJECTORY_NAME_SIZE] = "";
+    shorten_method(text, sizeof text, method);
+    bool engine = is_method(method, "engine");
+    if (engine) name = "Physics engine";
+    if (is_method(method, "reference")) name = "Converged solution";
+    if (is_method(method, "pair-net")) name = "Neural network";
+    if (is_method(method, "scene-net")) name = "Network of the scene";
+    snprintf(title, CAPTION_SIZE, "%s", name != NULL ? name : text);
+    snprintf(note, CAPTION_SIZE, "%s%s", engine ? "sequential impulses, " : "", name != NULL ? text : "");
+}
+
+/* What is cut short is the last of them: the method's settings. */
+static void join(char *text, size_t size, const char *part) {
+    size_t used = strlen(text);
+    if (part != NULL && part[0] != '\0') snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", part);
+}
+
+void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size) {
+    text[0] = '\0';
+    join(text, size, picture->notes[run]);
+    join(text, size, picture->look.costs[run]);
+    join(text, size, note);
+}

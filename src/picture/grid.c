@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "picture/grid.h"
+
+#include "gl/stroke.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double LEAST_SPACING = 0.010; /* of the panel's height, between thin lines */
+static const double LEAST_PIXELS = 6;      /* the same in pixels */
+static const double MOST_SPACING = 0.6;    /* of it, between strong lines */
+#define MINUS "\xE2\x88\x92"
+
+/* Thin lines every `step` metres, each `strong`-th strong and with a number. */
+typedef struct Steps {
+    double step;
+    int strong;
+} Steps;
+
+/* 0.1, 0.2, 0.5, 1, 2, 5, 10, ... */
+static Steps nth_steps(int n) {
+    static const Steps cycle[] = {{0.1, 5}, {0.2, 5}, {0.5, 2}};
+    return (Steps){cycle[n % 3].step * pow(10, n / 3), cycle[n % 3].strong};
+}
+
+/* One metre where that suits, else the nearest that does. */
+static Steps choose_steps(const Picture *picture) {
+    Rect panel = picture->layout.panels[0];
+    double height = panel.bottom - panel.top, scale = picture->grid_scale;
+    int n = 3;
+    while (nth_steps(n).step * scale < fmax(LEAST_SPACING * height, LEAST_PIXELS)) n++;
+    while (n <= 3 && n > 0 && nth_steps(n).step * nth_steps(n).strong * scale > MOST_SPACING * height) n--;
+    return nth_steps(n);
+}
+
+/* The lines across one side of a panel: line i, of `count`, is the (first + i)-th from 0 m. */
+typedef struct Lines {
+    double first, spacing, origin; /* pixels; where 0 m lies */
+    int count;
+} Lines;
+
+static Lines lines_between(double origin, double spacing, double low, double high) {
+    double first = ceil((low - origin) / spacing), last = floor((high - origin) / spacing);
+    return (Lines){first, spacing, origin, (int)(last - first) + 1};
+}
+
+static Lines vertical_lines(const Picture *picture, Steps steps) {
+    Rect panel = picture->layout.panels[0];
+    double spacing = steps.step * picture->camera.scale;
+    return lines_between(picture->camera.left, spacing, 0, panel.right - panel.left - 1);
+}
+
+/* Counted upwards, as metres are. */
+static Lines horizontal_lines(const Picture *picture, Steps steps) {
+    Rect panel = picture->layout.panels[0];
+    double spacing = steps.step * picture->camera.scale;
+    return lines_between(-picture->camera.top, spacing, -(panel.bottom - panel.top - 1), 0);
+}
+
+static double line_place(const Lines *lines, int i) { return lines->origin + (lines->first + i) * lines->spacing; }
+
+static int line_pixel(const Lines *lines, int i) { return (int)rint(line_place(lines, i)); }
+
+static bool is_strong(const Lines *lines, int i, Steps steps) { return fmod(lines->first + i, steps.strong) == 0; }
+
+/* Whole pixels are crisp, but lines that jump from one to the next would shake where the camera moves: `off` is what was
+   rounded away. */
+static void draw_line(const Picture *picture, int panel, Rect line, Point off, uint32_t color, Drawing *drawing) {
+    if (picture->path == NULL) {
+        drawing_add_rect(drawing, line, color);
+        return;
+    }
+    Shape shape = {.x = (line.left + line.right) / 2.0 + off.x,
+                   .y = (line.top + line.bottom) / 2.0 + off.y,
+                   .half_width = (line.right - line.left) / 2.0,
+                   .half_height = (line.bottom - line.top) / 2.0,
+                   .cosine = 1,
+                   .fill = color};
+    drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
+}
+
+static void draw_lines(const Picture *picture, int panel, bool strong, Drawing *drawing) {
+    Steps steps = choose_steps(picture);
+    Rect rect = picture->layout.panels[panel];
+    Lines vertical = vertical_lines(picture, steps), horizontal = horizontal_lines(picture, steps);
+    uint32_t color = strong ? picture->theme->grid_strong : picture->theme->grid;
+    int thickness = picture->layout.hairline;
+    for (int i = 0; i < vertical.count; i++) {
+        int x = rect.left + line_pixel(&vertical, i);
+        if (is_strong(&vertical, i, steps) == strong)
+            draw_line(picture, panel, (Rect){x, rect.top, x + thickness, rect.bottom},
+                      (Point){line_place(&vertical, i) - line_pixel(&vertical, i), 0}, color, drawing);
+    }
+    for (int i = 0; i < horizontal.count; i++) {
+        int y = rect.top - line_pixel(&horizontal, i);
+        if (is_strong(&horizontal, i, steps) == strong)
+            draw_line(picture, panel, (Rect){rect.left, y, rect.right, y + thickness},
+                      (Point){0, line_pixel(&horizontal, i) - line_place(&horizontal, i)}, color, drawing);
+    }
+}
+
+void grid_draw_lines(const Picture *picture, int panel, Drawing *drawing) {
+    draw_lines(picture, panel, false, drawing);
+    draw_lines(picture, panel, true, drawing);
+}
+
+static void format_metres(char *text, size_t size, double metres) {
+    snprintf(text, size, "%s%g", metres < 0 ? MINUS : "", fabs(metres));
+}
+
+/* The unit stands at the right end, in place of a number where there is no room for both. */
+static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    const Font *font = &layout->axis;
+    Steps steps = choose_steps(picture);
+    Lines lines = vertical_lines(picture, steps);
+    int line = layout->hairline, baseline = rect->bottom + layout->axis_drop, gap = font->pixels / 2;
+    int behind = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
+    font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
+    for (int i = 0; i < lines.count; i++) {
+        if (!is_strong(&lines, i, steps)) continue;
+        char text[32];
+        format_metres(text, sizeof text, (lines.first + i) * steps.step);
+        int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
+        drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick},
+                         picture->theme->frame);
+        if (left < behind || left + width + gap > unit) continue;
+        behind = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
+    }
+}
+
+static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    Steps steps = choose_steps(picture);
+    Lines lines = horizontal_lines(picture, steps);
+    int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a figure */
+    for (int i = 0; i < lines.count; i++) {
+        if (!is_strong(&lines, i, steps)) continue;
+        char text[32];
+        format_metres(text, sizeof text, (lines.first + i) * steps.step);
+        int y = rect->top - line_pixel(&lines, i);
+        int right = rect->left - line - layout->tick;
+        drawing_add_rect(drawing, (Rect){right, y, rect->left - line, y + line}, picture->theme->frame);
+        int left = right - layout->tick - font_width(&layout->axis, text);
+        if (left >= 0) font_add(drawing, &layout->axis, text, left, y + rise, picture->theme->ink_soft);
+    }
+}
+
+void grid_draw_axes(const Picture *picture, int panel, Drawing *drawing) {
+    if (picture->layout.axis.glyphs == NULL) return;
+    draw_bottom_axis(picture, &picture->layout.panels[panel], drawing);
+    if (panel % picture->layout.columns == 0) draw_left_axis(picture, &picture->layout.panels[panel], drawing);
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "picture/picture.h"
+#include "trajectory/trajectory_states.h"
+
+#include <stddef.h>
+
+const char *const look_compare_names[] = {"split", "overlay", "difference", NULL};
+const char *const look_camera_names[] = {"fit", "bomb", "divergence", NULL};
+const char *const look_theme_names[] = {"light", "dark", NULL};
+const char *const look_show_names[] = {"ghosts",   "distance",   "trails",   "contacts",
+                                       "impulses", "velocities", "timeline", NULL};
+
+/* What of a look takes bodies of several runs for the same; NULL where nothing does. */
+static const char *compares(const RenderLook *look) {
+    if (look->compare != LOOK_SPLIT) return look_compare_names[look->compare];
+    if (look->camera == LOOK_DIVERGENCE) return look_camera_names[LOOK_DIVERGENCE];
+    if (look->show & LOOK_GHOSTS) return "ghosts";
+    if (look->show & LOOK_DISTANCE) return "distance";
+    return look->show & LOOK_TIMELINE ? "timeline" : NULL;
+}
+
+bool look_check(const RenderLook *look, const Trajectory *const *runs, int count, Error *error) {
+    const char *what = compares(look);
+    char difference[256];
+    if (look->camera == LOOK_BOMB && runs[0]->bomb < 0)
+        return error_input(error, "render", "there is no bomb for the camera to follow");
+    if (what == NULL) return true;
+    if (count < 2) return error_input(error, "render", "'%s' compares runs, and there is but one", what);
+    for (int i = 1; i < count; i++)
+        if (trajectory_different_worlds(runs[0], runs[i], difference, sizeof difference))
+            return error_input(error, "render",
+                               "'%s' compares run %d with the first, but they are of other worlds (%s)", what, i + 1,
+                               difference);
+    return true;
+}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "picture/picture.h"
+
+#include "picture/camera_path.h"
+#include "picture/caption.h"
+#include "picture/card.h"
+#include "picture/legend.h"
+#include "picture/panel.h"
+#include "picture/pose.h"
+#include "picture/timeline.h"
+#include "trajectory/trajectory_states.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool check_panels(const Trajectory *const *panels, int count, Error *error) {
+    if (count < 1 || count > RENDER_PANELS_MAX)
+        return error_input(error, "render", "%d panels asked for; 1 to %d can be shown", count, RENDER_PANELS_MAX);
+    for (int i = 1; i < count; i++)
+        if (panels[i]->dt != panels[0]->dt)
+            return error_input(error, "render",
+                               "panel %d (%s) has time steps of %g s and the first of %g s: their frames are not of "
+                               "the same times",
+                               i + 1, panels[i]->method, (double)panels[i]->dt, (double)panels[0]->dt);
+    return true;
+}
+
+static bool check_size(int width, int height, Error *error) {
+    if (width >= RENDER_LEAST_SIDE && height >= RENDER_LEAST_SIDE && width <= RENDER_LARGEST_SIDE &&
+        height <= RENDER_LARGEST_SIDE)
+        return true;
+    return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be %d to %d", width,
+                       height, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE);
+}
+
+static void find_largest(Picture *picture) {
+    for (int i = 1; i < picture->count; i++) {
+        for (int frame = 0; frame < picture->panels[i]->frames; frame++)
+            picture->largest[i] = fmax(picture->largest[i], picture_run_apart(picture, i, moment_stored(frame)));
+        picture->largest_apart = fmax(picture->largest_apart, picture->largest[i]);
+    }
+}
+
+static int panels_of(LookCompare compare, int count) {
+    return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
+}
+
+/* Panels, and a camera for their size. */
+static void arrange(Picture *picture, int width, int height, int legend) {
+    picture->shown = panels_of(picture->look.compare, picture->count);
+    LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
+    picture->layout = layout_make(width, height, picture->shown, rows);
+    Rect first = picture->layout.panels[0];
+    picture->camera = camera_fit(picture->panels[0], first.right - first.left, first.bottom - first.top);
+    picture->grid_scale = picture->camera.scale;
+}
+
+bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error) {
+    if (!check_size(width, height, error) || !check_panels(panels, count, error)) return false;
+    *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT)};
+    for (int i = 0; i < count; i++) {
+        picture->panels[i] = panels[i];
+        if (panels[i]->frames > picture->frames) picture->frames = panels[i]->frames;
+    }
+    arrange(picture, width, height, 0);
+    find_largest(picture);
+    return true;
+}
+
+static bool plan_path(Picture *picture, Error *error) {
+    if (picture->look.camera == LOOK_FIT) return true;
+    Rect panel = picture->layout.panels[0];
+    picture->path = camera_path(picture->panels, picture->frames, picture->look.camera, &picture->events,
+                                &picture->camera, panel.right - panel.left, panel.bottom - panel.top, error);
+    if (picture->path == NULL) return false;
+    double closest = picture->camera.scale;
+    for (int frame = 0; frame < picture->frames; frame++) closest = fmax(closest, picture->path[frame].scale);
+    picture->grid_scale = sqrt(picture->camera.scale * closest);
+    return true;
+}
+
+/* How many rows the legend takes depends on the scales that it explains, and these on the room that it leaves: the first
+   guess is none. */
+static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
+    for (int pass = 0; pass < 2; pass++) {
+        arrange(picture, options->width, options->height, pass == 0 ? 0 : legend_rows(picture));
+        if (!scales_choose(&picture->scales, picture->panels[0], &picture->layout, picture->largest_apart, error))
+            return false;
+    }
+    return true;
+}
+
+bool picture_dress(Picture *picture, const RenderOptions *options, Error *error) {
+    const RenderLook plain = {0};
+    picture->title = options->title;
+    for (int i = 0; i < picture->count; i++) picture->notes[i] = options->notes[i];
+    picture->look = options->look;
+    picture->theme = theme_get(options->look.theme);
+    if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
+    if (!look_check(&picture->look, picture->panels, picture->count, error)) return false;
+    picture->events = events_find(picture->panels, picture->count);
+    return arrange_rows(picture, options, error) && plan_path(picture, error) && timeline_plan(picture, error);
+}
+
+void picture_free(Picture *picture) {
+    free(picture->path);
+    free(picture->curves);
+    picture->path = NULL;
+    picture->curves = NULL;
+}
+
+int picture_panel_frame(const Picture *picture, int run, int frame) {
+    return pose_moment(picture->panels[run], moment_stored(frame)).frame;
+}
+
+int picture_run(const Picture *picture, int panel) {
+    return picture->look.compare == LOOK_DIFFERENCE ? panel + 1 : panel;
+}
+
+bool picture_colors_distance(const Picture *picture, int run) {
+    bool asked = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
+    return asked && run > 0;
+}
+
+static double distance_between(const Trajectory *a, const Trajectory *b, Moment moment) {
+    int bodies = a->bodies < b->bodies ? a->bodies : b->bodies;
+    double largest = 0;
+    for (int body = 0; body < bodies; body++) {
+        if (!trajectory_has(a, moment.frame, body) || !trajectory_has(b, moment.frame, body)) continue;
+        largest = fmax(largest, pose_distance(pose_at(a, moment, body), pose_at(b, moment, body)));
+    }
+    return largest;
+}
+
+double picture_run_apart(const Picture *picture, int run, Moment moment) {
+    const Trajectory *first = picture->panels[0], *other = picture->panels[run];
+    if (run == 0 || moment.frame >= first->frames || moment.frame >= other->frames) return NAN;
+    return moment.part > 0 ? distance_between(first, other, moment) : trajectory_distance(first, other, moment.frame);
+}
+
+double picture_apart(const Picture *picture, Moment moment) {
+    double largest = NAN;
+    for (int i = 1; i < picture->count; i++) largest = fmax(largest, picture_run_apart(picture, i, moment));
+    return largest;
+}
+
+static void draw_panels(const Picture *picture, Moment moment, Drawing *drawing) {
+    for (int i = 0; i < picture->shown; i++) panel_draw_still(picture, i, moment, drawing);
+    legend_draw(picture, drawing);
+    timeline_draw_still(picture, drawing);
+    drawing->still_shapes = drawing->shape_count;
+    caption_header(picture, moment, drawing);
+    for (int i = 0; i < picture->shown; i++) {
+        caption_panel(picture, i, moment, drawing);
+        panel_draw_moving(picture, i, moment, drawing);
+    }
+    timeline_draw_moving(picture, moment, drawing);
+}
+
+void picture_draw(const Picture *picture, Moment moment, Drawing *drawing) {
+    if (moment.kind == MOMENT_TITLE || moment.kind == MOMENT_END) {
+        card_draw(picture, moment, drawing);
+        return;
+    }
+    if (picture->path == NULL) {
+        draw_panels(picture, moment, drawing);
+        return;
+    }
+    Picture now = *picture;
+    Rect panel = picture->layout.panels[0];
+    now.camera = camera_at(picture->path, picture->frames, moment, panel.right - panel.left, panel.bottom - panel.top);
+    draw_panels(&now, moment, drawing);
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "picture/theme.h"
+
+#include <math.h>
+
+/* Blue is the darkest of the runs and yellow the lightest. */
+static const Theme light = {
+    .page = PAGE,
+    .panel = PANEL,
+    .frame = FRAME,
+    .grid = GRID,
+    .grid_strong = GRID_STRONG,
+    .ink = INK,
+    .ink_soft = INK_SOFT,
+    .ground = GROUND,
+    .ground_line = GROUND_LINE,
+    .impulse = 0x10161F,
+    .velocity = 0xA3005C,
+    .event = 0x8A94A3,
+    .ghost = 0x0072B2,
+    .bomb = BOMB_COLORS,
+    .bodies =
+        {
+            {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the physics, or whatever comes first */
+            {0xE69F00, 0x7A4F00, 0xFFD47A}, /* orange */
+            {0x009E73, 0x004D38, 0x5CCBAA}, /* bluish green */
+            {0xCC79A7, 0x6E2F52, 0xEBBBD5}, /* reddish purple */
+            {0x56B4E9, 0x1D5F87, 0xB5DFF7}, /* sky blue */
+            {0xD8CB2B, 0x6B640E, 0xF4EDA0}, /* yellow, darkened to stand out from white */
+        },
+    .ramp_near = 0,
+    .ramp_far = 1,
+};
+
+/* The same hues; lines and bands change places, as on a dark page what is light stands out. */
+static const Theme dark = {
+    .page = 0x12161C,
+    .panel = 0x1A2028,
+    .frame = 0x465161,
+    .grid = 0x222A34,
+    .grid_strong = 0x313B48,
+    .ink = 0xEDF1F6,
+    .ink_soft = 0x9AA6B6,
+    .ground = 0x343E4B,
+    .ground_line = 0x93A0B1,
+    .impulse = 0xF7F9FB,
+    .velocity = 0xFF8AC4,
+    .event = 0x77849A,
+    .ghost = 0x8CCBF0,
+    .bomb = {0xE4573A, 0x3D0D03, 0xFFF1EA},
+    .bodies =
+        {
+            {0x2A86C4, 0x061D2D, 0x8CCBF0},
+            {0xE9A92A, 0x3B2600, 0xFFE3A3},
+            {0x1FAE85, 0x02271C, 0x8FE3C8},
+            {0xD58BB4, 0x3A132A, 0xF6D3E5},
+            {0x6FC1F0, 0x0F3349, 0xD0ECFC},
+            {0xE3D84A, 0x39350A, 0xFAF6C4},
+        },
+    .ramp_near = 0.86,
+    .ramp_far = 0,
+};
+
+const Theme *theme_get(LookTheme theme) { return theme == LOOK_DARK ? &dark : &light; }
+
+static uint32_t mix_channel(uint32_t from, uint32_t to, int shift, double share) {
+    double a = from >> shift & 255, b = to >> shift & 255;
+    return (uint32_t)rint(a + (b - a) * share) << shift;
+}
+
+uint32_t theme_mix(uint32_t from, uint32_t to, double share) {
+    return mix_channel(from, to, 16, share) | mix_channel(from, to, 8, share) | mix_channel(from, to, 0, share);
+}
+
+uint32_t theme_ramp(const Theme *theme, double share) {
+    /* Oklab: hue 104 to 295 degrees, chroma 0.135 or what sRGB can show, each as light as CIE L* is to be. */
+    static const uint32_t stops[] = {0xFEF483, 0xC6E57E, 0x8AD482, 0x46C18C, 0x02A995, 0x0B8F95,
+                                     0x08778E, 0x005E89, 0x04438D, 0x272879, 0x2E085E};
+    enum { LAST = sizeof stops / sizeof stops[0] - 1 };
+    double at = LAST * (theme->ramp_near + (theme->ramp_far - theme->ramp_near) * fmin(fmax(share, 0), 1));
+    int below = at < LAST - 1 ? (int)at : LAST - 1;
+    return theme_mix(stops[below], stops[below + 1], at - below);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How far the velocities that a method found are from the reference's. Only bodies that move (inv_mass > 0) count.
+   Spin is weighed as in the kinetic energy of a unit box: m v^2 / 2 + m w^2 / 12 = m (v^2 + w^2 / 6) / 2. */
+#pragma once
+#include "dynamics/contact_problem.h"
+#include "reference/reference.h"
+
+typedef struct SolutionError {
+    double rms;  /* m/s: root of the mean over the bodies of |dv|^2 + dspin^2 / 6; 0 without bodies */
+    int right;   /* bodies whose velocity is right */
+    int counted; /* bodies that move */
+} SolutionError;
+
+/* velocities, reference: [problem->body_count]. A body is right where |v - v*| <= max(0.05 m/s, 5% of |v* - v_free|),
+   with |.|^2 = x^2 + y^2 + (spin / 2)^2 and v_free the problem's velocity, before any impulse. A velocity that is no
+   number is wrong, and the error infinite. */
+SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *velocities,
+                             const ReferenceVelocity *reference);

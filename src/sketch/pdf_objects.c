@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sketch/pdf_objects.h"
+
+#include "sketch/plot_font.h"
+#include "sketch/type.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* Of Inter, in thousandths of an em: what viewers need only where the font in the file fails. */
+enum { FONT_ASCENT = 969, FONT_DESCENT = -241, FONT_CAPS = 727 };
+
+void pdf_begin_object(Pdf *pdf, int number) {
+    pdf->offsets[number] = (size_t)ftell(pdf->file);
+    fprintf(pdf->file, "%d 0 obj\n", number);
+}
+
+bool pdf_put_stream(Pdf *pdf, int number, const char *keys, const void *data, size_t size) {
+    uLongf packed_size = compressBound((uLong)size);
+    Bytef *packed = malloc(packed_size);
+    bool done = packed != NULL && compress2(packed, &packed_size, data, (uLong)size, 9) == Z_OK;
+    if (done) {
+        pdf_begin_object(pdf, number);
+        fprintf(pdf->file, "<<%s/Length %lu/Filter/FlateDecode>>\nstream\n", keys, (unsigned long)packed_size);
+        fwrite(packed, 1, packed_size, pdf->file);
+        fprintf(pdf->file, "\nendstream\nendobj\n");
+    }
+    free(packed);
+    return done;
+}
+
+static unsigned read_big_endian(const unsigned char *bytes, int count) {
+    unsigned value = 0;
+    for (int i = 0; i < count; i++) value = value << 8 | bytes[i];
+    return value;
+}
+
+/* The table of an OpenType file that holds the outlines; PDF wants it alone. */
+static const unsigned char *find_outlines(size_t *size) {
+    unsigned tables = read_big_endian(font_inter_regular_subset_otf + 4, 2);
+    for (unsigned i = 0; i < tables; i++) {
+        const unsigned char *entry = font_inter_regular_subset_otf + 12 + 16 * i;
+        if (memcmp(entry, "CFF ", 4) != 0) continue;
+        *size = read_big_endian(entry + 12, 4);
+        return font_inter_regular_subset_otf + read_big_endian(entry + 8, 4);
+    }
+    return NULL;
+}
+
+/* Which character each glyph stands for, so that text can be copied. */
+static bool put_to_unicode(Pdf *pdf) {
+    enum { AT_ONCE = 100 }; /* that a list may have */
+    char *text = NULL;
+    size_t size = 0;
+    FILE *map = open_memstream(&text, &size);
+    if (map == NULL) return false;
+    fprintf(map, "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CMapName /Inter def\n"
+                 "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");
+    for (int i = 0; i < type_glyph_count; i++) {
+        int left = type_glyph_count - i;
+        if (i % AT_ONCE == 0) fprintf(map, "%d beginbfchar\n", left < AT_ONCE ? left : AT_ONCE);
+        fprintf(map, "<%04X> <%04X>\n", type_glyphs[i].index, type_glyphs[i].code);
+        if (i % AT_ONCE == AT_ONCE - 1 || left == 1) fprintf(map, "endbfchar\n");
+    }
+    fprintf(map, "endcmap\nend\nend\n");
+    bool whole = !ferror(map);
+    whole = fclose(map) == 0 && whole && pdf_put_stream(pdf, TO_UNICODE, "", text, size);
+    free(text);
+    return whole;
+}
+
+bool pdf_put_font(Pdf *pdf) {
+    size_t size;
+    const unsigned char *outlines = find_outlines(&size);
+    pdf_begin_object(pdf, FONT);
+    fprintf(pdf->file,
+            "<</Type/Font/Subtype/Type0/BaseFont/TWNBOX+Inter/Encoding/Identity-H/DescendantFonts[%d 0 R]"
+            "/ToUnicode %d 0 R>>\nendobj\n",
+            CID_FONT, TO_UNICODE);
+    pdf_begin_object(pdf, CID_FONT);
+    fprintf(pdf->file,
+            "<</Type/Font/Subtype/CIDFontType0/BaseFont/TWNBOX+Inter/CIDSystemInfo<</Registry(Adobe)"
+            "/Ordering(Identity)/Supplement 0>>/FontDescriptor %d 0 R/W[",
+            DESCRIPTOR);
+    for (int i = 0; i < type_glyph_count; i++)
+        fprintf(pdf->file, "%u[%.3f]", type_glyphs[i].index, 1000.0 * type_glyphs[i].advance / type_units);
+    fprintf(pdf->file, "]>>\nendobj\n");
+    pdf_begin_object(pdf, DESCRIPTOR);
+    fprintf(pdf->file,
+            "<</Type/FontDescriptor/FontName/TWNBOX+Inter/Flags 4/FontBBox[-1000 -400 2000 1200]/ItalicAngle 0"
+            "/Ascent %d/Descent %d/CapHeight %d/StemV 80/FontFile3 %d 0 R>>\nendobj\n",
+            FONT_ASCENT, FONT_DESCENT, FONT_CAPS, FONT_FILE);
+    return outlines != NULL && pdf_put_stream(pdf, FONT_FILE, "/Subtype/CIDFontType0C", outlines, size) &&
+           put_to_unicode(pdf);
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sketch/sketch.h"
+
+#include "common/array.h"
+#include "picture/style.h"
+#include "sketch/type.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+Point view_place(const View *view, Vec2 position) {
+    return (Point){(view->low.x + view->high.x) / 2 + view->scale * ((double)position.x - view->center.x),
+                   (view->low.y + view->high.y) / 2 + view->scale * ((double)position.y - view->center.y)};
+}
+
+void sketch_begin(Sketch *sketch, double width, double height) { *sketch = (Sketch){.width = width, .height = height}; }
+
+void sketch_free(Sketch *sketch) {
+    for (size_t i = 0; i < sketch->mark_count; i++) image_destroy(sketch->marks[i].image);
+    free(sketch->marks);
+    free(sketch->points);
+    free(sketch->texts);
+    *sketch = (Sketch){0};
+}
+
+/* On the page or near it. Runs can go anywhere, and no page is so large. */
+static bool has_place(Point p) {
+    const double farthest = 1e5; /* mm */
+    return fabs(p.x) < farthest && fabs(p.y) < farthest;
+}
+
+/* False when memory is short. */
+static bool add_mark(Sketch *sketch, const SketchMark *mark) {
+    if (!array_reserve((void **)&sketch->marks, &sketch->mark_capacity, sketch->mark_count + 1, sizeof *mark)) {
+        sketch->failed = true;
+        return false;
+    }
+    sketch->marks[sketch->mark_count++] = *mark;
+    return true;
+}
+
+void sketch_image(Sketch *sketch, const Image *image, Point low, double width) {
+    Image *copy = image_create(image->width, image->height, &(Error){0});
+    if (copy == NULL) {
+        sketch->failed = true;
+        return;
+    }
+    memcpy(copy->pixels, image->pixels, (size_t)image->width * (size_t)image->height * 4);
+    const SketchMark mark = {LAYER_PICTURES, MARK_IMAGE, .at = low, .width = width, .image = copy};
+    if (!add_mark(sketch, &mark)) image_destroy(copy);
+}
+
+static void put_path(Sketch *sketch, SketchLayer layer, const Point *points, size_t count, bool closed,
+                     const Pen *pen) {
+    for (size_t i = 0; i < count; i++)
+        if (!has_place(points[i])) return;
+    if (!array_reserve((void **)&sketch->points, &sketch->point_capacity, sketch->point_count + count,
+                       sizeof *points)) {
+        sketch->failed = true;
+        return;
+    }
+    const SketchMark mark = {layer,         MARK_PATH, .pen = *pen, .closed = closed, .first = sketch->point_count,
+                             .count = count};
+    memcpy(sketch->points + sketch->point_count, points, count * sizeof *points);
+    sketch->point_count += count;
+    add_mark(sketch, &mark);
+}
+
+void sketch_path(Sketch *sketch, const Point *points, int count, const Pen *pen) {
+    if (count > 1) put_path(sketch, LAYER_SHAPES, points, (size_t)count, false, pen);
+}
+
+void sketch_shape(Sketch *sketch, const Point *points, int count, const Pen *pen) {
+    if (count > 2) put_path(sketch, LAYER_SHAPES, points, (size_t)count, true, pen);
+}
+
+void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen) {
+    sketch_path(sketch, (const Point[]){from, to}, 2, pen);
+}
+
+void sketch_rectangle(Sketch *sketch, Point low, Point high, const Pen *pen) {
+    sketch_shape(sketch, (const Point[]){low, {high.x, low.y}, high, {low.x, high.y}}, 4, pen);
+}
+
+void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen) {
+    enum { CORNERS = 36 };
+    Point points[CORNERS];
+    for (int i = 0; i < CORNERS; i++) {
+        double angle = 2 * 3.14159265358979 * i / CORNERS;
+        points[i] = (Point){at.x + radius * cos(angle), at.y + radius * sin(angle)};
+    }
+    sketch_shape(sketch, points, CORNERS, pen);
+}
+
+/* A filled head with its tip at `to`; the line is to end `head` mm before it. */
+static void put_head(Sketch *sketch, Point from, Point to, double head, uint32_t colour) {
+    const double slimness = 0.325; /* tangent of half the angle at the tip: 18 degrees */
+    double length = hypot(to.x - from.x, to.y - from.y);
+    Point along = {(to.x - from.x) / length, (to.y - from.y) / length};
+    Point foot = {to.x - head * along.x, to.y - head * along.y};
+    double half = slimness * head;
+    const Point corners[] = {
+        to, {foot.x - half * along.y, foot.y + half * along.x}, {foot.x + half * along.y, foot.y - half * along.x}};
+    put_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+}
+
+void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width) {
+    const double longest_head = 2.2;
+    double length = hypot(to.x - from.x, to.y - from.y), head = fmin(longest_head, 0.6 * length);
+    if (!(length > 0)) return;
+    /* The line ends inside its heads, which are sharper than it is. */
+    double in_x = 0.7 * head * (to.x - from.x) / length, in_y = 0.7 * head * (to.y - from.y) / length;
+    bool both = heads == HEADS_AT_BOTH;
+    const Point line[] = {{from.x + (both ? in_x : 0), from.y + (both ? in_y : 0)}, {to.x - in_x, to.y - in_y}};
+    const Pen pen = pen_line(colour, width, NULL);
+    put_path(sketch, LAYER_ARROWS, line, 2, false, &pen);
+    put_head(sketch, from, to, head, colour);
+    if (both) put_head(sketch, to, from, head, colour);
+}
+
+/* Keeps what lies where sign * coordinate <= limit (Sutherland and Hodgman 1974). Room for one corner more. */
+static int clip_half(Point *out, const Point *in, int count, bool along_y, double sign, double limit) {
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        Point p = in[i], q = in[(i + 1) % count];
+        double over_p = sign * (along_y ? p.y : p.x) - limit, over_q = sign * (along_y ? q.y : q.x) - limit;
+        if (over_p <= 0) out[kept++] = p;
+        if ((over_p <= 0) == (over_q <= 0)) continue;
+        double t = over_p / (over_p - over_q);
+        out[kept++] = (Point){p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)};
+    }
+    return kept;
+}
+
+void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen) {
+    static const float signs[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    Point corners[8], cut[8];
+    for (int i = 0; i < 4; i++) {
+        Vec2 corner = vec2(signs[i][0] * box->half.x, signs[i][1] * box->half.y);
+        corners[i] = view_place(view, vec2_add(box->position, mat22_multiply(box->rotation, corner)));
+    }
+    int count = clip_half(cut, corners, 4, false, 1, view->high.x);
+    count = clip_half(corners, cut, count, false, -1, -view->low.x);
+    count = clip_half(cut, corners, count, true, 1, view->high.y);
+    count = clip_half(corners, cut, count, true, -1, -view->low.y);
+    sketch_shape(sketch, corners, count, pen);
+}
+
+void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) {
+    if (!has_place(at)) return;
+    char text[SKETCH_TEXT_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    size_t size = strlen(text) + 1;
+    if (!array_reserve((void **)&sketch->texts, &sketch->text_capacity, sketch->text_size + size, 1)) {
+        sketch->failed = true;
+        return;
+    }
+    const SketchMark mark = {LAYER_WORDS, MARK_TEXT, .at = at, .style = *style, .text = sketch->text_size};
+    memcpy(sketch->texts + sketch->text_size, text, size);
+    sketch->text_size += size;
+    add_mark(sketch, &mark);
+}
+
+ShownDecimals show_decimals(double value, int decimals) {
+    ShownDecimals shown;
+    char digits[40];
+    snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
+    bool negative = value < 0 && strspn(digits, "0.") < strlen(digits);
+    snprintf(shown.text, sizeof shown.text, "%s%s", negative ? "\xe2\x88\x92" : "", digits);
+    return shown;
+}
+
+void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points) {
+    const double up = 0.3 * points * MM_PER_POINT;
+    const Point right = {left.x + scale * amount, left.y};
+    const Pen pen = pen_line(INK, 1.6, NULL);
+    sketch_line(sketch, left, right, &pen);
+    sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
+    sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
+    sketch_text(sketch, (Point){right.x + 1.4, left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%g %s", amount,
+                unit);
+}
+
+double round_down(double most) {
+    const double power = pow(10, floor(log10(most))), share = most / power;
+    return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the writers of a sketch's three formats share. Each gives a malloc'ed block, or NULL with error set. */
+#pragma once
+#include "sketch/sketch_files.h"
+
+char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+
+/* The i-th mark from below: 0 .. mark_count - 1. `order` comes from sketch_order(), NULL when memory is short. */
+size_t *sketch_order(const Sketch *sketch);
+
+enum { DASHES_MAX = 4 };
+
+/* A pen's dashes in mm; 0 where it is solid. */
+int pen_dashes(const Pen *pen, double dashes[DASHES_MAX]);
+
+/* Where the pen of a line of words starts on its baseline, and the unit vector along it. */
+typedef struct TextPlace {
+    Point from;
+    double cosine, sine, em; /* mm an em */
+} TextPlace;
+TextPlace text_place(const Sketch *sketch, const SketchMark *mark);
+
+/* Thickness of a halo on either side, of an em. */
+#define HALO_SHARE 0.14
+
+static inline bool has_alpha(const Image *image) {
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        if (image->pixels[4 * i + 3] != 255) return true;
+    return false;
+}
+
+/* As a PNG, with its alpha where any pixel has some; dpi 0: without a resolution. */
+char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error);

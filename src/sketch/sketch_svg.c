@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A sketch as SVG 1.1, in mm. Words are the font's outlines, so that they look alike where the font is missing; what they
+   say stands in aria-label. */
+#include "common/base64.h"
+#include "gl/font.h"
+#include "sketch/sketch_formats.h"
+#include "sketch/type.h"
+
+#include <stdlib.h>
+
+static void put_outline(FILE *file, const Glyph *glyph) {
+    static const char letters[] = "MLC";
+    fprintf(file, "<path id=\"g%u\" d=\"", glyph->index);
+    for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
+        const OutlineStep *step = &type_steps[i];
+        if (step->kind == OUTLINE_MOVE && i > glyph->first) fputc('Z', file);
+        fprintf(file, "%c%d %d", letters[step->kind], step->x, step->y);
+        if (step->kind != OUTLINE_CURVE) continue;
+        fprintf(file, " %d %d %d %d", step[1].x, step[1].y, step[2].x, step[2].y);
+        i += 2;
+    }
+    fprintf(file, "Z\"/>\n");
+}
+
+/* The glyphs that the sketch's words need. */
+static bool put_outlines(FILE *file, const Sketch *sketch) {
+    bool *used = calloc((size_t)type_glyph_count, sizeof *used);
+    if (used == NULL) return false;
+    for (size_t i = 0; i < sketch->mark_count; i++) {
+        if (sketch->marks[i].kind != MARK_TEXT) continue;
+        for (const char *text = sketch->texts + sketch->marks[i].text; *text != '\0';)
+            used[type_next(&text) - type_glyphs] = true;
+    }
+    fprintf(file, "<defs>\n");
+    for (int i = 0; i < type_glyph_count; i++)
+        if (used[i] && type_glyphs[i].steps > 0) put_outline(file, &type_glyphs[i]);
+    fprintf(file, "</defs>\n");
+    free(used);
+    return true;
+}
+
+/* What XML cannot hold, and bytes that are no UTF-8, become '?'. */
+static void put_escaped(FILE *file, const char *text) {
+    while (*text != '\0') {
+        const char *from = text;
+        unsigned code = font_next_character(&text);
+        switch (code) {
+        case '&': fputs("&amp;", file); break;
+        case '<': fputs("&lt;", file); break;
+        case '"': fputs("&quot;", file); break;
+        default:
+            if (code < ' ' || (code >= 0xD800 && code < 0xE000) || code == 0xFFFD || code >= 0xFFFE)
+                fputc('?', file);
+            else
+                fwrite(from, 1, (size_t)(text - from), file);
+        }
+    }
+}
+
+static void put_words(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+    const char *text = sketch->texts + mark->text;
+    const TextPlace place = text_place(sketch, mark);
+    const double unit = place.em / type_units;
+    fprintf(file, "<g role=\"img\" aria-label=\"");
+    put_escaped(file, text);
+    fprintf(file, "\" transform=\"matrix(%.6f %.6f %.6f %.6f %.3f %.3f)\" fill=\"#%06X\"", unit * place.cosine,
+            -unit * place.sine, -unit * place.sine, -unit * place.cosine, place.from.x, sketch->height - place.from.y,
+            mark->style.colour);
+    if (mark->style.halo)
+        fprintf(file, " stroke=\"#FFFFFF\" stroke-width=\"%.0f\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                2 * HALO_SHARE * type_units);
+    fputs(">", file);
+    for (int x = 0; *text != '\0';) {
+        const Glyph *glyph = type_next(&text);
+        if (glyph->steps > 0) fprintf(file, "<use xlink:href=\"#g%u\" x=\"%d\"/>", glyph->index, x);
+        x += glyph->advance;
+    }
+    fputs("</g>\n", file);
+}
+
+static void put_path(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+    const Pen *pen = &mark->pen;
+    double dashes[DASHES_MAX];
+    fprintf(file, "<path d=\"");
+    for (size_t i = 0; i < mark->count; i++) {
+        Point p = sketch->points[mark->first + i];
+        fprintf(file, "%s%.3f %.3f", i == 0 ? "M" : "L", p.x, sketch->height - p.y);
+    }
+    fprintf(file, "%s\"", mark->closed ? "Z" : "");
+    if (mark->closed && pen->fill != NO_COLOUR) {
+        fprintf(file, " fill=\"#%06X\"", pen->fill);
+        if (pen->opacity < 1) fprintf(file, " fill-opacity=\"%.3f\"", pen->opacity);
+    } else
+        fprintf(file, " fill=\"none\"");
+    if (pen->line != NO_COLOUR)
+        fprintf(file, " stroke=\"#%06X\" stroke-width=\"%.3f\" stroke-linejoin=\"round\"", pen->line,
+                pen->width * LINE_UNIT);
+    int count = pen->line != NO_COLOUR ? pen_dashes(pen, dashes) : 0;
+    for (int i = 0; i < count; i++) fprintf(file, "%s%.3f", i == 0 ? " stroke-dasharray=\"" : " ", dashes[i]);
+    fprintf(file, "%s/>\n", count > 0 ? "\"" : "");
+}
+
+static bool put_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
+    size_t size;
+    char *png = picture_as_png(mark->image, 0, &size, error);
+    if (png == NULL) return false;
+    const double height = mark->width * mark->image->height / mark->image->width;
+    fprintf(file,
+            "<image x=\"%.3f\" y=\"%.3f\" width=\"%.3f\" height=\"%.3f\" preserveAspectRatio=\"none\" "
+            "xlink:href=\"data:image/png;base64,",
+            mark->at.x, sketch->height - mark->at.y - height, mark->width, height);
+    base64_put(file, png, size);
+    fprintf(file, "\"/>\n");
+    free(png);
+    return true;
+}
+
+static bool put_all(FILE *file, const Sketch *sketch, const SketchOutput *output, Error *error) {
+    size_t *order = sketch_order(sketch);
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" "
+            "width=\"%.3fmm\" height=\"%.3fmm\" viewBox=\"0 0 %.3f %.3f\">\n",
+            sketch->width, sketch->height, sketch->width, sketch->height);
+    bool whole = (order != NULL && put_outlines(file, sketch)) || error_memory(error, "figure");
+    if (!output->transparent) fprintf(file, "<rect width=\"100%%\" height=\"100%%\" fill=\"#FFFFFF\"/>\n");
+    for (size_t i = 0; whole && i < sketch->mark_count; i++) {
+        const SketchMark *mark = &sketch->marks[order[i]];
+        switch (mark->kind) {
+        case MARK_IMAGE: whole = put_image(file, sketch, mark, error); break;
+        case MARK_PATH: put_path(file, sketch, mark); break;
+        case MARK_TEXT: put_words(file, sketch, mark); break;
+        }
+    }
+    fprintf(file, "</svg>\n");
+    free(order);
+    return whole;
+}
+
+char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
+    char *data = NULL;
+    FILE *file = open_memstream(&data, size);
+    if (file == NULL) {
+        error_memory(error, "figure");
+        return NULL;
+    }
+    bool whole = put_all(file, sketch, output, error);
+    whole = whole && (!ferror(file) || error_memory(error, "figure"));
+    if (fclose(file) == 0 && whole) return data;
+    free(data);
+    if (whole) error_memory(error, "figure");
+    return NULL;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Build-time tool: prints the outlines and widths of a font's characters as C (sketch/type.h), in the font's own whole
+   units, so that no version of FreeType makes others. Usage: make_outlines FONT.otf OUTPUT.c */
+#include "sketch/type.h"
+
+#include <ft2build.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+
+enum { GLYPHS_MAX = 512, STEPS_MAX = 1 << 16 };
+
+static OutlineStep steps[STEPS_MAX];
+static Glyph glyphs[GLYPHS_MAX];
+static int step_count, glyph_count;
+
+static void quit(const char *what) {
+    fprintf(stderr, "make_outlines: %s\n", what);
+    exit(1);
+}
+
+static void add(OutlineKind kind, const FT_Vector *to) {
+    if (step_count == STEPS_MAX) quit("too many outlines");
+    steps[step_count++] = (OutlineStep){(short)kind, (short)to->x, (short)to->y};
+}
+
+static int move(const FT_Vector *to, void *context) {
+    (void)context;
+    add(OUTLINE_MOVE, to);
+    return 0;
+}
+
+static int line(const FT_Vector *to, void *context) {
+    (void)context;
+    add(OUTLINE_LINE, to);
+    return 0;
+}
+
+static int conic(const FT_Vector *control, const FT_Vector *to, void *context) {
+    (void)control, (void)to, (void)context;
+    quit("the font has quadratic curves");
+    return 1;
+}
+
+static int cubic(const FT_Vector *first, const FT_Vector *second, const FT_Vector *to, void *context) {
+    (void)context;
+    add(OUTLINE_CURVE, first);
+    add(OUTLINE_CURVE, second);
+    add(OUTLINE_CURVE, to);
+    return 0;
+}
+
+static void add_glyph(FT_Face face, unsigned code, unsigned index) {
+    static const FT_Outline_Funcs functions = {move, line, conic, cubic, 0, 0};
+    if (glyph_count == GLYPHS_MAX) quit("too many characters");
+    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING) != 0) quit("cannot load a glyph");
+    int first = step_count;
+    if (FT_Outline_Decompose(&face->glyph->outline, &functions, NULL) != 0) quit("cannot read an outline");
+    glyphs[glyph_count++] = (Glyph){code, index, (int)face->glyph->metrics.horiAdvance, first, step_count - first};
+}
+
+static void print(FILE *output, int units) {
+    fprintf(output, "#include \"sketch/type.h\"\nconst int type_units = %d, type_glyph_count = %d;\n", units,
+            glyph_count);
+    fputs("const Glyph type_glyphs[] = {\n", output);
+    for (int i = 0; i < glyph_count; i++)
+        fprintf(output, "{%u,%u,%d,%d,%d},\n", glyphs[i].code, glyphs[i].index, glyphs[i].advance, glyphs[i].first,
+                glyphs[i].steps);
+    fputs("};\nconst OutlineStep type_steps[] = {\n", output);
+    for (int i = 0; i < step_count; i++) fprintf(output, "{%d,%d,%d},\n", steps[i].kind, steps[i].x, steps[i].y);
+    fputs("};\n", output);
+}
+
+int main(int argc, char **argv) {
+    FT_Library library;
+    FT_Face face = NULL;
+    if (argc != 3) quit("usage: make_outlines FONT.otf OUTPUT.c");
+    FILE *output = fopen(argv[2], "w");
+    if (output == NULL) quit("cannot write the output");
+    if (FT_Init_FreeType(&library) != 0 || FT_New_Face(library, argv[1], 0, &face) != 0) quit("cannot read the font");
+    FT_UInt index;
+    for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index))
+        add_glyph(face, (unsigned)code, index);
+    print(output, face->units_per_EM);
+    FT_Done_Face(face);
+    FT_Done_FreeType(library);
+    if (fclose(output) != 0) quit("cannot write the output");
+    return 0;
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The physics engine: sequential impulses with warm starting, as in Box2D-Lite. Method, source and where it fails:
+   sweeps/sequential_impulses.c. */
+#include "solvers/solvers.h"
+#include "sweeps/sequential_impulses.h"
+#include "sweeps/sweeps.h"
+
+#include <stdlib.h>
+
+typedef struct SequentialImpulses {
+    int sweep_count;
+    SequentialOptions options;
+    SweepKernel kernel;
+    Sweeps sweeps;
+} SequentialImpulses;
+
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
+                                       {"accumulate", "on|off: clamp the sum of impulses, not each one"},
+                                       {"warm", "on|off: start from the impulses of the step before (on)"},
+                                       {NULL, NULL}};
+
+static void *create(const Settings *chosen, Error *error) {
+    SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    values.kernel = sweeps_best_kernel();
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
+        !settings_bool(chosen, "accumulate", &values.options.accumulate, error) ||
+        !settings_bool(chosen, "warm", &values.options.warm, error))
+        return NULL;
+    SequentialImpulses *solver = malloc(sizeof *solver);
+    if (solver == NULL)
+        error_memory(error, "engine");
+    else
+        *solver = values;
+    return solver;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    SequentialImpulses *solver = state;
+    const SequentialOptions *options = &solver->options;
+    if (options->accumulate) {
+        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem, options->warm, options->relaxation) ||
+            !sweeps_run(&solver->sweeps, solver->sweep_count))
+            return error_memory(error, "engine");
+        if (sweeps_end(&solver->sweeps, solution)) return true;
+    }
+    sequential_impulses_solve(problem, options, solver->sweep_count, solution);
+    return true;
+}
+
+static void destroy(void *state) {
+    SequentialImpulses *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}
+
+const ContactSolverKind solver_engine = {
+    "engine", "sequential impulses with warm starting: the physics engine", settings, create, solve, destroy};

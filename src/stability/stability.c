@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stability/stability.h"
+
+#include "common/file.h"
+#include "stability/stability_grid.h"
+#include "stability/stability_scan.h"
+#include "study/study_key.h"
+#include "study/study_parts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
+                                      "reference,pair-net,contact-net,scene-net";
+
+/* The study in progress. */
+typedef struct Run {
+    const StabilityOptions *options;
+    ContenderList methods;
+    StudyParts parts;
+} Run;
+
+static bool is_named(const StabilityOptions *options, const char *name, bool quick) {
+    for (int i = 0; i < options->name_count; i++)
+        if (strcmp(options->names[i], name) == 0) return true;
+    return options->name_count == 0 && (quick || !options->quick);
+}
+
+static bool does_study(const Run *run, int i) {
+    return is_named(run->options, stability_studies[i].name, stability_studies[i].quick);
+}
+
+static bool does_map(const Run *run, int i) {
+    return is_named(run->options, stability_maps[i].name, stability_maps[i].quick);
+}
+
+static bool is_known(const char *name) {
+    for (int i = 0; i < stability_map_count; i++)
+        if (strcmp(stability_maps[i].name, name) == 0) return true;
+    return stability_study_find(name) != NULL;
+}
+
+static bool refuse_name(const char *name, Error *error) {
+    char names[2048] = "";
+    size_t used = 0;
+    for (int i = 0; i < stability_study_count + stability_map_count && used < sizeof names; i++) {
+        const char *known =
+            i < stability_study_count ? stability_studies[i].name : stability_maps[i - stability_study_count].name;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", known);
+    }
+    return error_input(error, name, "no such study or map; there are %s", names);
+}
+
+static bool know_names(const StabilityOptions *options, Error *error) {
+    for (int i = 0; i < options->name_count; i++)
+        if (!is_known(options->names[i])) return refuse_name(options->names[i], error);
+    return true;
+}
+
+/* Of the scene and what it names. A network that is not there matters only to the method that asks for it. */
+static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Error *error) {
+    char path[STABILITY_PATH_SIZE];
+    const StabilityPlace place = {run->options->scenes, name};
+    if (!stability_path(path, &place, error)) return false;
+    Scene *scene = scene_read(path, error);
+    if (scene == NULL) return false;
+    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
+    scene_destroy(scene);
+    return study_key_add_file(key, path, error);
+}
+
+/* Of everything that decides the result: the program, the options, the scenes. */
+static bool find_key(const Run *run, uint64_t *key, Error *error) {
+    const StabilityOptions *options = run->options;
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, &options->quick, sizeof options->quick);
+    if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
+    for (int i = 0; i < stability_study_count; i++)
+        if (does_study(run, i) && !add_scene_to_key(run, stability_studies[i].scene, key, error)) return false;
+    for (int i = 0; i < stability_map_count; i++)
+        if (does_map(run, i) && !add_scene_to_key(run, stability_maps[i].scene, key, error)) return false;
+    return true;
+}
+
+/* A map of the quick study takes as much less as it has less cells. */
+static double map_weight(const Run *run, const StabilityMap *map) {
+    double share = (double)(map->x.quick_points * map->y.quick_points) / (map->x.scan.points * map->y.scan.points);
+    return run->options->quick ? map->weight * share : map->weight;
+}
+
+static bool do_parts(Run *run, Error *error) {
+    for (int i = 0; i < stability_study_count; i++) {
+        StabilityScan scan = {&stability_studies[i], run->options->scenes, &run->methods};
+        const StudyPart part = {scan.study->name, scan.study->weight, stability_scan_write, &scan};
+        if (does_study(run, i) && !study_parts_do(&run->parts, &part, error)) return false;
+    }
+    for (int i = 0; i < stability_map_count; i++) {
+        StabilityGrid grid = {&stability_maps[i], run->options->scenes, &run->methods, run->options->quick};
+        const StudyPart part = {grid.map->name, map_weight(run, grid.map), stability_grid_write, &grid};
+        if (does_map(run, i) && !study_parts_do(&run->parts, &part, error)) return false;
+    }
+    return true;
+}
+
+static bool write_tables(const Run *run, Error *error) {
+    const char *folder = run->options->folder;
+    return study_parts_table(&run->parts, folder, "stability", STABILITY_HEADER, error) &&
+           study_parts_table(&run->parts, folder, "maps", MAPS_HEADER, error) &&
+           study_parts_table(&run->parts, folder, "refusals", REFUSALS_HEADER, error) &&
+           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error) &&
+           study_parts_table(&run->parts, folder, "rest", REST_HEADER, error);
+}
+
+bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {
+    Run run = {.options = options, .parts = {.progress = progress}};
+    uint64_t key;
+    if (!know_names(options, error) ||
+        !contenders_read(&run.methods, options->methods != NULL ? options->methods : default_methods, error))
+        return false;
+    for (int i = 0; i < stability_study_count; i++)
+        if (does_study(&run, i)) run.parts.total += stability_studies[i].weight;
+    for (int i = 0; i < stability_map_count; i++)
+        if (does_map(&run, i)) run.parts.total += map_weight(&run, &stability_maps[i]);
+    bool ok = find_key(&run, &key, error) && file_make_directory(options->folder, error) &&
+              study_parts_open(&run.parts, options->folder, key, error) && do_parts(&run, error) &&
+              write_tables(&run, error);
+    if (ok) study_parts_remove(&run.parts);
+    study_parts_close(&run.parts);
+    contenders_free(&run.methods);
+    return ok;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stability/stability_grid.h"
+
+#include "common/csv.h"
+#include "common/parallel.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Run {
+    const StabilityGrid *grid;
+    Scene *typical; /* with the file's own numbers */
+    int x_count, y_count;
+    double x[BORDER_POINTS_MAX], y[BORDER_POINTS_MAX];
+    int method_count;
+    const Contender **methods; /* [method_count] that go with the scene */
+    VerdictReading *readings;  /* [method_count, y_count, x_count] */
+    RunCounter counter;
+} Run;
+
+static Scene *read_scene(const StabilityGrid *grid, const SceneSetting *settings, int count, Error *error) {
+    const StabilityPlace place = {grid->scenes, grid->map->scene};
+    return stability_scene(&place, settings, count, error);
+}
+
+static Scene *scene_at(const StabilityGrid *grid, double x, double y, Error *error) {
+    SceneSetting settings[2] = {{.value = x}, {.value = y}};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", grid->map->x.parameter);
+    snprintf(settings[1].name, sizeof settings[1].name, "%s", grid->map->y.parameter);
+    return read_scene(grid, settings, 2, error);
+}
+
+static bool judge_cell(void *context, int cell, Error *error) {
+    Run *run = context;
+    EnergyLog converged = {0};
+    const int cells = run->x_count * run->y_count;
+    Scene *scene = scene_at(run->grid, run->x[cell % run->x_count], run->y[cell / run->x_count], error);
+    bool ok = scene != NULL && converged_run_once(&converged, scene, error);
+    for (int i = 0; ok && i < run->method_count; i++)
+        ok = verdict_run(&run->readings[i * cells + cell], scene, &run->methods[i]->method, run->grid->map->stands,
+                         &converged, error) &&
+             run_counter_add(&run->counter, run->grid->map->name, error);
+    energy_log_free(&converged);
+    scene_destroy(scene);
+    return ok;
+}
+
+static void put_axis(const Run *run, const char *parameter, double value, FILE *lines) {
+    fprintf(lines, "%s,%s,%.9g,", parameter, stability_unit(run->typical, parameter), value);
+}
+
+static void put_cells(const Run *run, int method, FILE *lines) {
+    const StabilityMap *map = run->grid->map;
+    for (int cell = 0; cell < run->x_count * run->y_count; cell++) {
+        const VerdictReading *reading = &run->readings[method * run->x_count * run->y_count + cell];
+        fprintf(lines, "maps:%s,%s,", map->name, run->methods[method]->name);
+        csv_put(lines, run->methods[method]->setting);
+        fprintf(lines, ",");
+        put_axis(run, map->x.parameter, run->x[cell % run->x_count], lines);
+        put_axis(run, map->y.parameter, run->y[cell / run->x_count], lines);
+        fprintf(lines, "%s,%d,%d,%.6g,%s\n", verdict_name(reading->verdict), reading->frame, reading->body,
+                reading->value, reading->unit);
+    }
+}
+
+/* In the first and the last cell. */
+static bool applies(const Run *run, const Method *method) {
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        Error reason = {0};
+        Scene *scene = scene_at(run->grid, run->x[i * (run->x_count - 1)], run->y[i * (run->y_count - 1)], &reason);
+        ok = scene != NULL && stability_applies(method, scene, &reason);
+        scene_destroy(scene);
+    }
+    return ok;
+}
+
+static bool is_drawn(const Run *run, const Method *method) {
+    if (stability_is_reference(method)) return false;
+    return (!run->grid->map->iterations || stability_takes_iterations(method)) && applies(run, method);
+}
+
+static bool begin(Run *run, Error *error) {
+    const StabilityGrid *grid = run->grid;
+    BorderScan x = grid->map->x.scan, y = grid->map->y.scan;
+    if (grid->quick) x.points = grid->map->x.quick_points;
+    if (grid->quick) y.points = grid->map->y.quick_points;
+    run->x_count = border_scan_values(&x, run->x);
+    run->y_count = border_scan_values(&y, run->y);
+    run->typical = read_scene(grid, NULL, 0, error);
+    if (run->typical == NULL) return false;
+    const size_t cells = (size_t)(run->x_count * run->y_count), methods = (size_t)grid->methods->count;
+    run->methods = malloc(methods * sizeof *run->methods);
+    run->readings = malloc(methods * cells * sizeof *run->readings);
+    if (run->methods == NULL || run->readings == NULL) return error_memory(error, grid->map->name);
+    for (int i = 0; i < grid->methods->count; i++)
+        if (is_drawn(run, &grid->methods->items[i].method))
+            run->methods[run->method_count++] = &grid->methods->items[i];
+    run->counter.expected = (double)cells * run->method_count;
+    return true;
+}
+
+bool stability_grid_write(void *grid, FILE *lines, const Progress *progress, Error *error) {
+    Run run = {.grid = grid, .counter = {.progress = progress}};
+    const ParallelWork work = {judge_cell, &run};
+    bool ok = begin(&run, error) && (run.method_count == 0 ||
+                                     parallel_for(&work, run.x_count * run.y_count, run.grid->map->name, NULL, error));
+    for (int i = 0; ok && i < run.method_count; i++) put_cells(&run, i, lines);
+    free(run.methods);
+    free(run.readings);
+    scene_destroy(run.typical);
+    return ok;
+}

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stability/stability_scan.h"
+
+#include "common/array.h"
+#include "common/csv.h"
+#include "common/parallel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Runs of a method beside those of the coarse scan: a bisection and its seeds, roughly. */
+enum { RUNS_OF_A_BORDER = 8 };
+
+typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
+
+/* Without a shift. */
+typedef struct ScanRun {
+    double value;
+    VerdictReading reading;
+} ScanRun;
+
+/* What came of a method. */
+typedef struct Result {
+    Part part;
+    BorderList borders;
+    Error reason;  /* refused */
+    ScanRun *runs; /* [run_count] */
+    size_t run_capacity;
+    int run_count;
+} Result;
+
+typedef struct Run {
+    const StabilityScan *scan;
+    Scene *typical; /* with the file's own numbers */
+    ConvergedRuns converged;
+    RunCounter counter;
+    Result *results; /* [methods] */
+} Run;
+
+static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
+    const StabilityPlace place = {scan->scenes, scan->study->scene};
+    SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
+    return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
+}
+
+bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
+                        ConvergedRuns *converged, VerdictReading *reading, Error *error) {
+    Scene *scene = scene_at(scan, value, error);
+    const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
+    if (scene != NULL) stability_shift(scene, seed);
+    if (scene != NULL && stability_is_reference(method)) scene->warm_starting = true;
+    bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+/* One method of a run. */
+typedef struct Asked {
+    Run *run;
+    const Method *method;
+    Result *result;
+} Asked;
+
+static bool keep_run(Result *result, double value, const VerdictReading *reading, Error *error) {
+    if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
+                       sizeof *result->runs))
+        return error_memory(error, "runs");
+    result->runs[result->run_count++] = (ScanRun){value, *reading};
+    return true;
+}
+
+static bool ask(void *context, double value, int seed, Verdict *verdict, Error *error) {
+    const Asked *asked = context;
+    Run *run = asked->run;
+    VerdictReading reading;
+    if (!stability_scan_run(run->scan, asked->method, value, seed, &run->converged, &reading, error)) return false;
+    *verdict = reading.verdict;
+    if (seed == 0 && !keep_run(asked->result, value, &reading, error)) return false;
+    return run_counter_add(&run->counter, run->scan->study->name, error);
+}
+
+/* At both ends of the scan: a network may be for the bodies that there are at one value only. */
+static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
+    const double ends[] = {scan->study->scan.from, scan->study->scan.to};
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        Scene *scene = scene_at(scan, ends[i], reason);
+        ok = scene != NULL && stability_applies(method, scene, reason);
+        scene_destroy(scene);
+    }
+    return ok;
+}
+
+static bool study_method(void *context, int i, Error *error) {
+    Run *run = context;
+    Result *result = &run->results[i];
+    const StabilityStudy *study = run->scan->study;
+    Asked asked = {run, &run->scan->methods->items[i].method, result};
+    if (study->iterations && !stability_takes_iterations(asked.method)) {
+        result->part = PART_LEFT_OUT;
+        return true;
+    }
+    if (!applies(run->scan, asked.method, &result->reason)) {
+        result->part = PART_REFUSED;
+        return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
+    }
+    const BorderProbe probe = {ask, &asked, study->unshifted ? 1 : BORDER_SEEDS};
+    return border_search(&result->borders, &study->scan, &probe, error);
+}
+
+static void put_method(const Run *run, const char *table, int i, FILE *lines) {
+    const Contender *contender = &run->scan->methods->items[i];
+    fprintf(lines, "%s:%s,%s,", table, run->scan->study->name, contender->name);
+    csv_put(lines, contender->setting);
+}
+
+static void put_border(const Run *run, int i, const Border *border, FILE *lines) {
+    const StabilityStudy *study = run->scan->study;
+    put_method(run, "stability", i, lines);
+    fprintf(lines, ",%s,%s,", study->parameter, stability_unit(run->typical, study->parameter));
+    if (border != NULL && !isnan(border->holds_at)) fprintf(lines, "%.9g", border->holds_at);
+    fprintf(lines, ",");
+    if (border != NULL && !isnan(border->fails_at)) fprintf(lines, "%.9g", border->fails_at);
+    fprintf(lines, ",%s\n", border != NULL ? verdict_name(border->verdict) : STABILITY_NOT_APPLICABLE);
+}
+
+static int by_value(const void *left, const void *right) {
+    const ScanRun *a = left, *b = right;
+    return (a->value > b->value) - (a->value < b->value);
+}
+
+static void put_value(const Run *run, const char *table, int i, double value, FILE *lines) {
+    const StabilityStudy *study = run->scan->study;
+    put_method(run, table, i, lines);
+    fprintf(lines, ",%s,%s,%.9g", study->parameter, stability_unit(run->typical, study->parameter), value);
+}
+
+static void put_fallbacks(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
+    const NetworkFallbacks *fallbacks = &scan_run->reading.fallbacks;
+    put_value(run, "fallbacks", i, scan_run->value, lines);
+    fprintf(lines, ",%d,%d,%d,%d\n", scan_run->reading.steps, fallbacks->not_finite, fallbacks->outside_cone,
+            fallbacks->beyond_training);
+}
+
+static void put_rest(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
+    const VerdictReading *reading = &scan_run->reading;
+    put_value(run, "rest", i, scan_run->value, lines);
+    fprintf(lines, ",%s,%d,", verdict_name(reading->verdict), reading->steps);
+    if (isfinite(reading->drift)) fprintf(lines, "%.4g", reading->drift);
+    fprintf(lines, ",");
+    if (isfinite(reading->gained)) fprintf(lines, "%.4g", reading->gained);
+    fprintf(lines, "\n");
+}
+
+static void put_runs(const Run *run, int i, FILE *lines) {
+    const bool network = stability_has_setting(&run->scan->methods->items[i].method, "network");
+    Result *result = &run->results[i];
+    if (result->run_count == 0) return;
+    qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
+    for (int k = 0; k < result->run_count; k++) {
+        if (network) put_fallbacks(run, i, &result->runs[k], lines);
+        if (run->scan->study->rests) put_rest(run, i, &result->runs[k], lines);
+    }
+}
+
+static void put_result(const Run *run, int i, FILE *lines) {
+    Result *result = &run->results[i];
+    if (result->part == PART_LEFT_OUT) return;
+    for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
+        put_border(run, i, &result->borders.items[k], lines);
+    put_runs(run, i, lines);
+    if (result->part != PART_REFUSED) return;
+    put_border(run, i, NULL, lines);
+    put_method(run, "refusals", i, lines);
+    fprintf(lines, ",");
+    result->reason.message[strcspn(result->reason.message, "\n")] = '\0';
+    csv_put(lines, result->reason.message);
+    fprintf(lines, "\n");
+}
+
+bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error) {
+    const int methods = ((const StabilityScan *)scan)->methods->count;
+    Run run = {.scan = scan, .counter = {.progress = progress}};
+    const StabilityStudy *study = run.scan->study;
+    const ParallelWork work = {study_method, &run};
+    run.counter.expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER);
+    run.typical = stability_scene(&(StabilityPlace){run.scan->scenes, study->scene}, NULL, 0, error);
+    run.results = calloc((size_t)methods, sizeof *run.results);
+    bool ok = run.typical != NULL;
+    if (ok && run.results == NULL) ok = error_memory(error, study->name);
+    ok = ok && parallel_for(&work, methods, study->name, NULL, error);
+    for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
+    for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
+    free(run.results);
+    converged_runs_free(&run.converged);
+    scene_destroy(run.typical);
+    return ok;
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stability/verdict.h"
+
+#include "common/array.h"
+#include "stability/verdict_checks.h"
+#include "study/world_measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const char *verdict_name(Verdict verdict) {
+    static const char *const names[VERDICTS] = {"settles", "sways",   "creeps",   "falls",
+                                                "sinks",   "tunnels", "explodes", "non-finite"};
+    return names[verdict];
+}
+
+bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
+
+void verdict_watch_free(VerdictWatch *watch) {
+    free(watch->bodies);
+    *watch = (VerdictWatch){0};
+}
+
+static void remember(VerdictWatch *watch, const Body *bodies) {
+    for (int i = 0; i < watch->body_count; i++) {
+        watch->bodies[i].last = bodies[i].position;
+        watch->bodies[i].last_angle = bodies[i].angle;
+    }
+}
+
+/* Makes room for those that have joined, as bodies that have only now come to be. */
+static bool meet(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
+    if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
+        return error_memory(error, "verdict");
+    for (int i = watch->body_count; i < count; i++)
+        watch->bodies[i] =
+            (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
+    watch->body_count = count;
+    return true;
+}
+
+bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
+    if (run->converged->frames < run->frames)
+        return error_input(error, "verdict", "the converged run has %d frames of %d", run->converged->frames,
+                           run->frames);
+    *watch = (VerdictWatch){.run = *run, .bodies = watch->bodies, .capacity = watch->capacity};
+    watch->kept = bodies_energy(bodies, count, run->gravity);
+    return meet(watch, bodies, count, error);
+}
+
+static void remember_rest(VerdictWatch *watch) {
+    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].rested = watch->bodies[i].last;
+    watch->rested_count = watch->body_count;
+    watch->rested = watch->energy;
+}
+
+bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error) {
+    if (watch->worst.verdict == VERDICT_NON_FINITE) return true;
+    watch->frame = step->frame;
+    if (!check_finite(watch, step)) return true;
+    check_energy(watch, step);
+    if (!meet(watch, step->bodies, step->body_count, error)) return false;
+    check_tunnels(watch, step);
+    check_depth(watch, step);
+    check_falls(watch, step);
+    check_creep(watch, step);
+    check_calm(watch, step);
+    remember(watch, step->bodies);
+    if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) remember_rest(watch);
+    return true;
+}
+
+bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
+    const VerdictStep step = {.frame = frame,
+                              .body_count = world_body_count(world),
+                              .contact_count = problem->contact_count,
+                              .bomb = problem->bomb,
+                              .bodies = world_bodies(world),
+                              .contacts = problem->contacts};
+    return verdict_watch_step(watch, &step, error);
+}
+
+void verdict_watch_failed(VerdictWatch *watch, int frame) {
+    watch->frame = frame;
+    verdict_note(watch, VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+}
+
+bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.verdict >= VERDICT_EXPLODES; }
+
+static VerdictReading read_verdict(const VerdictWatch *watch) {
+    if (watch->worst.verdict > VERDICT_SWAYS) return watch->worst;
+    const bool calm = watch->calm >= VERDICT_CALM_FRAMES;
+    return (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_SWAYS,
+                            .frame = watch->frame - watch->calm + (calm ? 1 : 0),
+                            .body = -1,
+                            .value = calm ? watch->kinetic : watch->loud,
+                            .unit = "J"};
+}
+
+VerdictReading verdict_watch_end(const VerdictWatch *watch) {
+    VerdictReading reading = read_verdict(watch);
+    reading.drift = reading.gained = NAN;
+    if (watch->rested_count == 0 || watch->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) return reading;
+    reading.drift = 0;
+    reading.gained = watch->energy - watch->rested;
+    for (int i = 0; i < watch->rested_count && i < watch->body_count; i++)
+        reading.drift = fmax(reading.drift, verdict_distance(watch->bodies[i].rested, watch->bodies[i].last));
+    return reading;
+}
+
+/* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
+    Error failure = {0};
+    if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
+    if (failure.kind == ERROR_INPUT)
+        verdict_watch_failed(watch, step->frame);
+    else
+        *error = failure;
+    return failure.kind == ERROR_INPUT;
+}
+
+static void add_fallbacks(NetworkFallbacks *sum, const NetworkFallbacks *step) {
+    sum->not_finite += step->not_finite;
+    sum->outside_cone += step->outside_cone;
+    sum->beyond_training += step->beyond_training;
+}
+
+bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
+                 const EnergyLog *converged, Error *error) {
+    const VerdictRun run = {scene->gravity, scene->dt, scene->frames, stands, converged};
+    VerdictWatch watch = {0};
+    World *world = scene_world(scene, error);
+    Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
+    bool ok = stepper != NULL && verdict_watch_begin(&watch, &run, world_bodies(world), world_body_count(world), error);
+    NetworkFallbacks fallbacks = {0};
+    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
+        ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);
+        add_fallbacks(&fallbacks, &world_solution(world)->fallbacks);
+    }
+    if (ok) {
+        *reading = verdict_watch_end(&watch);
+        reading->steps = watch.frame;
+        reading->fallbacks = fallbacks;
+    }
+    verdict_watch_free(&watch);
+    stepper_destroy(stepper);
+    world_destroy(world);
+    return ok;
+}

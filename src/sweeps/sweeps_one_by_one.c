@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The packed records in the order of the plain text: for few contacts, and for every processor. */
+#include "sweeps/sweeps_kernels.h"
+
+#include <string.h>
+
+static Vec2 relative_velocity(const SweepBody *a, const SweepBody *b, const SweepPoint *point) {
+    return vec2(((b->x - b->spin * point->arm_b.y) - a->x) + a->spin * point->arm_a.y,
+                ((b->y + b->spin * point->arm_b.x) - a->y) - a->spin * point->arm_a.x);
+}
+
+static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point, Vec2 impulse) {
+    a->x -= a->inv_mass * impulse.x;
+    a->y -= a->inv_mass * impulse.y;
+    a->spin -= pair->inv_inertia_a * vec2_cross(point->arm_a, impulse);
+    b->x += b->inv_mass * impulse.x;
+    b->y += b->inv_mass * impulse.y;
+    b->spin += pair->points[0].extra * vec2_cross(point->arm_b, impulse);
+}
+
+static void push_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k, ContactImpulse by) {
+    Vec2 along_tangent = vec2_scale(by.tangent, vec2_cross_scalar(pair->normal, 1.0f));
+    Vec2 impulse = vec2_add(vec2_scale(by.normal, pair->normal), along_tangent);
+    apply(a, b, pair, &pair->points[k], impulse);
+}
+
+static void push_pair(Sweeps *sweeps, int i, const ContactImpulse impulses[2]) {
+    const SweepPair *pair = &sweeps->pairs[i];
+    SweepEnds ends = sweeps->ends[i];
+    SweepBody a = sweeps->bodies[sweep_body_at(ends.a)], b = sweeps->bodies[sweep_body_at(ends.b)];
+    for (int k = 0; k < sweep_pair_points(pair); k++) push_point(&a, &b, pair, k, impulses[k]);
+    if (ends.a >= 0) sweeps->bodies[ends.a] = a;
+    if (ends.b >= 0) sweeps->bodies[ends.b] = b;
+}
+
+void sweeps_warm_start(Sweeps *sweeps) {
+    for (int i = 0; i < sweeps->pair_count; i++) push_pair(sweeps, i, sweeps->pairs[i].sums);
+}
+
+void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        SweepPair *pair = &sweeps->pairs[i];
+        const ContactImpulse *by = &impulses[sweeps->first[i]];
+        push_pair(sweeps, i, by);
+        for (int k = 0; k < sweep_pair_points(pair); k++) {
+            pair->sums[k].normal += by[k].normal;
+            pair->sums[k].tangent += by[k].tangent;
+        }
+    }
+}
+
+static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point,
+                        ContactImpulse *sum) {
+    float normal_velocity = vec2_dot(relative_velocity(a, b, point), pair->normal);
+    float total = sum->normal + point->mass_normal * (point->bias - normal_velocity);
+    total = total > 0.0f ? total : 0.0f;
+    float normal = total - sum->normal;
+    sum->normal = total;
+    apply(a, b, pair, point, vec2_scale(normal, pair->normal));
+
+    Vec2 direction = vec2_cross_scalar(pair->normal, 1.0f);
+    float tangent_velocity = vec2_dot(relative_velocity(a, b, point), direction);
+    float limit = pair->friction * sum->normal;
+    total = sum->tangent - point->mass_tangent * tangent_velocity;
+    total = total < limit ? total : limit;
+    total = -limit > total ? -limit : total;
+    float tangent = total - sum->tangent;
+    sum->tangent = total;
+    apply(a, b, pair, point, vec2_scale(tangent, direction));
+}
+
+/* Not 0 where the bits differ: 0 and -0 do. */
+static uint32_t difference(float x, float y) {
+    uint32_t bits_x, bits_y;
+    memcpy(&bits_x, &x, sizeof x);
+    memcpy(&bits_y, &y, sizeof y);
+    return bits_x ^ bits_y;
+}
+
+/* Puts a body's velocity back; not 0 where it is another one. By components: the next visit reads them so. */
+static uint32_t put_back(SweepBody *body, const SweepBody *after) {
+    uint32_t changed =
+        difference(body->x, after->x) | difference(body->y, after->y) | difference(body->spin, after->spin);
+    body->x = after->x;
+    body->y = after->y;
+    body->spin = after->spin;
+    return changed;
+}
+
+static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
+    uint32_t changed = difference(sum->normal, after.normal) | difference(sum->tangent, after.tangent);
+    sum->normal = after.normal;
+    sum->tangent = after.tangent;
+    return changed;
+}
+
+/* Not 0 where the visit changed anything. */
+static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums, SweepEnds ends) {
+    SweepBody *body_a = &bodies[sweep_body_at(ends.a)], *body_b = &bodies[sweep_body_at(ends.b)];
+    SweepBody a = *body_a, b = *body_b;
+    uint32_t changed = 0;
+    int points = pair->points[1].extra < 0.0f ? 2 : 1;
+    for (int k = 0; k < points; k++) {
+        ContactImpulse sum = sums[k];
+        solve_point(&a, &b, pair, &pair->points[k], &sum);
+        changed |= put_back_sum(&sums[k], sum);
+    }
+    if (ends.a >= 0) changed |= put_back(body_a, &a);
+    if (ends.b >= 0) changed |= put_back(body_b, &b);
+    return changed;
+}
+
+/* A pair whose last visit changed nothing rests until another visit changes one of its bodies. */
+static bool may_rest(const Sweeps *sweeps, int pair) {
+    int64_t quiet = sweeps->quiet_since[pair];
+    SweepEnds ends = sweeps->ends[pair];
+    return quiet > sweeps->changed_at[sweep_body_at(ends.a)] && quiet > sweeps->changed_at[sweep_body_at(ends.b)];
+}
+
+/* Notes what visit number `now` did. */
+static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
+    SweepEnds ends = sweeps->ends[pair];
+    sweeps->quiet_since[pair] = changed ? 0 : now;
+    if (changed && ends.a >= 0) sweeps->changed_at[ends.a] = now;
+    if (changed && ends.b >= 0) sweeps->changed_at[ends.b] = now;
+    return changed;
+}
+
+/* Goes on from `now` by what changed since `before`; not 0 where that is not `now` itself. */
+static uint32_t extrapolate(float *before, float now, float factor) {
+    float next = now - (factor * (*before - now) + 0.0f);
+    *before = next;
+    return difference(next, now);
+}
+
+/* Turns `to`, the velocities of two sweeps before, into those that the next sweep begins with. */
+static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *from, float factor, int64_t now) {
+    bool any = false;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        if (extrapolate(&to[i].x, from[i].x, factor) | extrapolate(&to[i].y, from[i].y, factor) |
+            extrapolate(&to[i].spin, from[i].spin, factor)) {
+            sweeps->changed_at[i] = now;
+            any = true;
+        }
+    }
+    return any;
+}
+
+static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from[2], float factor) {
+    uint32_t changed = 0;
+    for (int k = 0; k < 2; k++)
+        changed |=
+            extrapolate(&to[k].normal, from[k].normal, factor) | extrapolate(&to[k].tangent, from[k].tangent, factor);
+    return changed;
+}
+
+/* One sweep in the half of bodies and sums whose turn it is; the other half is as the sweep before left it. True
+   where it changed anything. */
+static bool sweep_in_turn(Sweeps *sweeps, int half, float factor, int64_t *now) {
+    SweepBody *halves[2] = {sweeps->bodies, sweeps->bodies + sweeps->body_count + 1};
+    ContactImpulse *sums[2] = {sweeps->sums, sweeps->sums + 2 * (sweeps->pair_count + 1)};
+    bool changed = extrapolate_bodies(sweeps, halves[half], halves[1 - half], factor, ++*now);
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (may_rest(sweeps, i)) continue;
+        uint32_t moved = extrapolate_sums(&sums[half][2 * i], &sums[1 - half][2 * i], factor);
+        moved |= visit(halves[half], &sweeps->pairs[i], &sums[half][2 * i], sweeps->ends[i]);
+        changed |= note_visit(sweeps, i, moved != 0, ++*now);
+    }
+    return changed;
+}
+
+static bool sweep_in_place(Sweeps *sweeps, int64_t *now) {
+    bool changed = false;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (may_rest(sweeps, i)) continue;
+        SweepPair *pair = &sweeps->pairs[i];
+        changed |= note_visit(sweeps, i, visit(sweeps->bodies, pair, pair->sums, sweeps->ends[i]) != 0, ++*now);
+    }
+    return changed;
+}
+
+void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count) {
+    memset(sweeps->quiet_since, 0, (size_t)sweeps->pair_count * sizeof *sweeps->quiet_since);
+    memset(sweeps->changed_at, 0, (size_t)sweeps->body_count * sizeof *sweeps->changed_at);
+    bool changed = true;
+    int64_t now = 0;
+    for (int sweep = 0; changed && sweep < count; sweep++)
+        changed =
+            factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors[sweep], &now) : sweep_in_place(sweeps, &now);
+}

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* chart.csv: figures made up after measured ones, twelve methods. */
+#include "python.h"
+
+#include "chart/chart_plot.h"
+
+#include "common/file.h"
+#include "chart/chart_data.h"
+
+#include <math.h>
+
+#define SAMPLE SOURCE_DIR "/tests/chart/chart.csv"
+
+static const char *drawn_file(const char *scene, const char *ending) {
+    char name[128];
+    snprintf(name, sizeof name, "chart-%s.%s", scene, ending);
+    return temporary_path(name);
+}
+
+static const char *folder(void) {
+    temporary_path(""); /* makes it */
+    return temporary_folder;
+}
+
+static char *read_drawn(const char *scene, const char *ending, size_t *size) {
+    Error error = {0};
+    char *data = file_read(drawn_file(scene, ending), 1 << 24, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+static void three_files_are_drawn(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+    size_t size;
+    char *png = read_drawn("pyramid_settled", "png", &size);
+    /* 174 x 85 mm at 300 dots an inch: 2055 x 1004. */
+    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x03\xec", 24);
+    assert_true(size > 50000);
+    free(png);
+    char *pdf = read_drawn("pyramid_settled", "pdf", &size);
+    assert_memory_equal(pdf, "%PDF-", 5);
+    assert_true(size > 5000);
+    free(pdf);
+    run_python("import sys, xml.etree.ElementTree as tree\n"
+               "root = tree.parse(sys.argv[1]).getroot()\n"
+               "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
+               "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
+               "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine, warm=off',\n"
+               "               'momentum-schedule', 'playback', 'pair-net', 'unbeaten among solvers', 'k=100', 'm/s',\n"
+               "               'pyramid_settled, 40 launches', 'the reference is no better'):\n"
+               "    assert wanted in texts, (wanted, texts)\n",
+               drawn_file("pyramid_settled", "svg"));
+}
+
+static void the_same_table_gives_the_same_files(void **state) {
+    (void)state;
+    static const char *const endings[] = {"png", "svg"};
+    Error error = {0};
+    size_t size[2][2];
+    char *data[2][2];
+    for (int run = 0; run < 2; run++) {
+        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+        for (int i = 0; i < 2; i++) data[run][i] = read_drawn("pyramid_settled", endings[i], &size[run][i]);
+    }
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(size[0][i], size[1][i]);
+        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
+        free(data[0][i]);
+        free(data[1][i]);
+    }
+}
+
+#define HEADER                                                                                               \
+    "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
+    "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
+
+static const char *write_rows(const char *lines) {
+    Error error = {0};
+    char text[20000];
+    int length = snprintf(text, sizeof text, "%s%s", HEADER, lines);
+    const char *path = temporary_path("rows.csv");
+    assert_ok(file_write(path, text, (size_t)length, &error), error);
+    return path;
+}
+
+static void expect_refused(const char *lines, const char *scene, const char *message) {
+    Error error = {0};
+    assert_false(chart_plot(write_rows(lines), scene, folder(), &error));
+    assert_error(error, ERROR_INPUT, message);
+    assert_int_equal(access(drawn_file("single", "png"), F_OK), -1);
+}
+
+static void tables_without_a_mark_are_refused(void **state) {
+    (void)state;
+    static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
+    expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
+    expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=10,closed,rest,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,,\n"
+                   "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
+                   "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
+                   "single", none);
+    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean cannot be -1");
+    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "cannot be the name of a scene");
+    char many[8000] = "";
+    for (int i = 0; i < 25; i++)
+        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
+    expect_refused(many, "single", "more than 24 methods");
+}
+
+static void one_mark_and_one_panel_are_enough(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(
+        chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
+        error);
+    assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
+}
+
+/* As many methods as there may be, with the longest names and settings. */
+static void a_full_chart_is_drawn(void **state) {
+    (void)state;
+    Error error = {0};
+    char lines[20000] = "";
+    for (int i = 0; i < 24 * 5; i++)
+        snprintf(lines + strlen(lines), 200,
+                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n", i % 24,
+                 i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
+    assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
+}
+
+/* A name that became a part of the script could run any program. */
+static void names_cannot_become_commands(void **state) {
+    (void)state;
+    static const char *const names[] = {
+        "'; system(\"\"touch victim\"\"); x='",
+        "\"\"; system(\"\"touch victim\"\"); x=\"\"",
+        "`touch victim`",
+        "\\'`touch victim`",
+        "@system(\"\"touch victim\"\")",
+        "END;!touch victim",
+        "$(touch victim)",
+        "\xc3\x28'\\",
+        "%s %d %n",
+    };
+    char *lines = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&lines, &size);
+    assert_non_null(file);
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
+        for (int k = 1; k <= 2; k++) {
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,,\n", names[i], k, names[i],
+                    5 * k, 4 * k, 6 * k, i + 1);
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,,\n", names[i], k, names[i]);
+        }
+    fclose(file);
+    char here[256];
+    assert_non_null(getcwd(here, sizeof here));
+    const char *path = write_rows(lines);
+    free(lines);
+    assert_int_equal(chdir(folder()), 0);
+    Error error = {0};
+    bool drawn = chart_plot(path, "hostile", ".", &error);
+    assert_int_equal(access("victim", F_OK), -1);
+    assert_int_equal(chdir(here), 0);
+    assert_ok(drawn, error);
+    run_python("import sys, xml.etree.ElementTree as tree\n"
+               "tree.parse(sys.argv[1])\n",
+               drawn_file("hostile", "svg"));
+}
+
+static void texts_become_plain(void **state) {
+    (void)state;
+    char plain[CHART_TEXT_SIZE];
+    chart_plain(plain, "engine, warm=off (k=10)");
+    assert_string_equal(plain, "engine, warm=off (k=10)");
+    /* Every character that means something to gnuplot within or around a text. */
+    chart_plain(plain, "'\"`\\@$#;!|&<>{}^~%\n\x7f\xc3\xa4?");
+    assert_string_equal(plain, "???????????????????????");
+    chart_plain(plain, "0123456789012345678901234567890123456789");
+    assert_string_equal(plain, "012345678901234567890123456789012345...");
+}
+
+static void marks_are_gathered_by_line_and_time(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    assert_ok(chart_csv_read(&table,
+                             write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
+                                        "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
+                                        "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n"),
+                             &error),
+              error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", "rows.csv", &error), error);
+    assert_int_equal(chart.line_count, 2);
+    assert_string_equal(chart.lines[0].name, "engine");
+    assert_string_equal(chart.lines[1].name, "momentum, warm=off");
+    assert_int_equal(chart.launches, 40);
+    assert_int_equal(chart.lines[0].left_out, 0);
+    assert_int_equal(chart.floored, 1); /* 1e-9 */
+    const ChartPanel *impact = &chart.panels[0];
+    assert_int_equal(impact->count, 3);
+    assert_int_equal(chart.panels[1].count, 2);
+    assert_true(chart.panels[1].marks[0].error == 1e-4);
+    assert_string_equal(impact->marks[0].label, "k=5");
+    assert_true(impact->marks[0].on_front && !impact->marks[0].shipped);
+    assert_string_equal(impact->marks[1].label, "k=10");
+    assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
+    assert_string_equal(impact->marks[2].label, "k=7, b=0.5");
+    assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
+/* Two names that are alike as far as they are shown. */
+static void long_names_stay_apart(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows(
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    assert_int_equal(chart.line_count, 2);
+    assert_string_equal(chart.lines[0].name, "a-name-of-more-than-forty-characters...");
+    assert_string_equal(chart.lines[1].name, chart.lines[0].name);
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
+/* Without gnuplot in PATH: its package is named, and no file is left. */
+static void a_missing_gnuplot_is_named(void **state) {
+    (void)state;
+    char path[4096];
+    snprintf(path, sizeof path, "%s", getenv("PATH"));
+    setenv("PATH", "/nonexistent", 1);
+    Error error = {0};
+    bool drawn =
+        chart_plot(write_rows("bare,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "bare", folder(), &error);
+    setenv("PATH", path, 1);
+    assert_false(drawn);
+    assert_error(error, ERROR_SYSTEM, "gnuplot-nox");
+    assert_int_equal(access(drawn_file("bare", "png"), F_OK), -1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_files_are_drawn),
+        cmocka_unit_test(the_same_table_gives_the_same_files),
+        cmocka_unit_test(tables_without_a_mark_are_refused),
+        cmocka_unit_test(one_mark_and_one_panel_are_enough),
+        cmocka_unit_test(a_full_chart_is_drawn),
+        cmocka_unit_test(names_cannot_become_commands),
+        cmocka_unit_test(texts_become_plain),
+        cmocka_unit_test(marks_are_gathered_by_line_and_time),
+        cmocka_unit_test(long_names_stay_apart),
+        cmocka_unit_test(a_missing_gnuplot_is_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A canvas in each kind of context, for tests that look at single pixels. Include testing.h first. */
+#pragma once
+#include "gl/canvas.h"
+#include "gl/context.h"
+
+enum { SCREEN_SIDE = 96, SCREENS = 2 };
+static const uint32_t BLACK = 0x000000, WHITE = 0xFFFFFF;
+static const Rect everything = {0, 0, SCREEN_SIDE, SCREEN_SIDE};
+
+typedef struct Screen {
+    const char *name;
+    Context context;
+    GlFunctions gl;
+    Canvas *canvas;
+    Image *image;
+} Screen;
+
+static Screen screens[SCREENS] = {{.name = "osmesa"}, {.name = "egl"}};
+static Drawing drawing;
+
+/* A context that cannot be had fails the test: the frames of both are promised to be equal. */
+static inline int open_screens(void **state) {
+    (void)state;
+    for (int i = 0; i < SCREENS; i++) {
+        Error error = {0};
+        Screen *s = &screens[i];
+        ContextChoice wanted = i == 0 ? CONTEXT_OSMESA : CONTEXT_EGL;
+        assert_ok(context_create(&s->context, wanted, &error), error);
+        assert_string_equal(s->context.kind->name, s->name);
+        assert_ok(gl_load(&s->gl, s->context.kind->find, s->context.state, &error), error);
+        s->canvas = canvas_create(&s->gl, SCREEN_SIDE, SCREEN_SIDE, &error);
+        s->image = image_create(SCREEN_SIDE, SCREEN_SIDE, &error);
+        assert_ok(s->canvas != NULL && s->image != NULL, error);
+    }
+    return 0;
+}
+
+static inline int close_screens(void **state) {
+    (void)state;
+    for (int i = 0; i < SCREENS; i++) {
+        Error error = {0};
+        assert_ok(context_make_current(&screens[i].context, &error), error);
+        canvas_destroy(screens[i].canvas);
+        context_destroy(&screens[i].context);
+        image_destroy(screens[i].image);
+    }
+    drawing_free(&drawing);
+    return 0;
+}
+
+/* Paints the drawing over black on every screen, and clears it. All must show the same picture. */
+static inline const Image *painted(void) {
+    for (int i = 0; i < SCREENS; i++) {
+        Error error = {0};
+        assert_ok(context_make_current(&screens[i].context, &error), error);
+        assert_ok(canvas_paint(screens[i].canvas, &drawing, BLACK, NULL, screens[i].image, &error), error);
+    }
+    ImageDifference difference;
+    image_compare(screens[0].image, screens[1].image, &difference);
+    assert_true(difference.equal);
+    drawing_clear(&drawing);
+    return screens[0].image;
+}
+
+static inline const uint8_t *pixel(const Image *image, int x, int y) {
+    return image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) * 4;
+}
+
+static inline uint32_t rgb(const Image *image, int x, int y) {
+    const uint8_t *p = pixel(image, x, y);
+    return (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
+}

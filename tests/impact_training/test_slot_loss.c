@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loss of a slot network on impacts of the stack, and its gradient against differences. */
+#include "impacts.h"
+
+#include "collision/uniform.h"
+#include "reference/solution_error.h"
+#include "impact_training/slot_loss.h"
+
+#include <math.h>
+
+enum { LAUNCHES = 4, SWEEPS = 6, OF_EACH_BLOCK = 6 };
+
+static const double by_hand[SWEEPS] = {0, 0.3, 0.5, 0.6, 0.7, 0.8}, plain[SWEEPS] = {0};
+
+/* A network, where its loss is looked at. */
+typedef struct Trial {
+    SlotSamples samples;
+    SlotNetwork *network;
+    const SlotSample *sample;
+    SlotLoss loss;
+    SlotTask task;
+    double factors[SWEEPS];
+} Trial;
+
+/* Outputs as large as the scales, and biases that do something. */
+static void begin(Trial *trial) {
+    uint32_t seed = 4;
+    *trial = (Trial){.samples = labelled_impacts(LAUNCHES)};
+    SlotNetwork *network = trial->network = network_for(&trial->samples);
+    const int hidden = slot_network_hidden(network), outputs = 2 * network->slot_count;
+    for (int i = 0; i < hidden; i++) network->first.biases[i] = uniform(&seed, -0.5f, 0.5f);
+    for (int i = 0; i < hidden; i++) network->second.biases[i] = uniform(&seed, -0.5f, 0.5f);
+    for (int i = 0; i < hidden * outputs; i++) network->rows[i] *= 5;
+    for (int i = 0; i < outputs; i++) network->biases[i] = uniform(&seed, -0.5f, 0.5f);
+    slot_network_pack(network);
+}
+
+static void end(Trial *trial) {
+    slot_loss_free(&trial->loss);
+    slot_network_destroy(trial->network);
+    slot_samples_free(&trial->samples);
+}
+
+static void choose(Trial *trial, int sample, double near, double far, const double *factors) {
+    memcpy(trial->factors, factors, sizeof trial->factors);
+    trial->sample = &trial->samples.items[sample];
+    trial->task = (SlotTask){near, far, SWEEPS, trial->factors};
+}
+
+static double loss_of(Trial *trial) {
+    SlotScore score;
+    assert_true(slot_loss(&trial->loss, trial->network, trial->sample, &trial->task, NULL, NULL, &score));
+    return score.loss;
+}
+
+/* Pieces that the sweeps took: where they differ, a kink lies between. */
+static uint8_t *pieces_of(const Trial *trial) {
+    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
+    uint8_t *pieces = malloc(count + 1);
+    assert_non_null(pieces);
+    memcpy(pieces, trial->loss.unrolled.pieces, count);
+    return pieces;
+}
+
+typedef struct Tally {
+    int checked, kinks, moved;
+} Tally;
+
+/* What a step either way did to the loss, beside what the gradient says it does. Outputs are of single precision, which is
+   what the tolerance has to be for. */
+static void compare(Trial *trial, double ahead, const uint8_t *taken, double behind, double expected, double unit,
+                    Tally *tally) {
+    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
+    if (trial->task.far > 0 && memcmp(taken, trial->loss.unrolled.pieces, count) != 0) {
+        tally->kinks++;
+        return;
+    }
+    assert_near(expected, ahead - behind, unit + 0.02 * fabs(ahead - behind));
+    tally->checked++;
+    tally->moved += fabs(ahead - behind) > 10 * unit;
+}
+
+/* A step of every number of a block along its derivatives, or of one number of it. */
+static void check_block(Trial *trial, float *block, const float *gradient, int count, int only, double step,
+                        Tally *tally) {
+    double length = 0, expected = 0;
+    for (int i = 0; i < count; i++) length = hypot(length, (double)gradient[i]);
+    float *kept = malloc((size_t)count * sizeof *kept);
+    assert_non_null(kept);
+    memcpy(kept, block, (size_t)count * sizeof *kept);
+    double loss[2];
+    uint8_t *taken = NULL;
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < count; i++) {
+            const double share = only < 0 ? (double)gradient[i] / length : i == only;
+            block[i] = (float)((double)kept[i] + (side == 0 ? step : -step) * share);
+            expected += (side == 0 ? 1 : -1) * (double)gradient[i] * (double)(block[i] - kept[i]);
+        }
+        loss[side] = loss_of(trial);
+        if (side == 0) taken = pieces_of(trial);
+    }
+    memcpy(block, kept, (size_t)count * sizeof *kept);
+    compare(trial, loss[0], taken, loss[1], expected, 1e-6 * (1 + loss[0]), tally);
+    free(taken);
+    free(kept);
+}
+
+/* Packed rows change by a step of a number, or all numbers of a row by its unit. */
+static void check_byte(Trial *trial, const PackedRows *packed, const float *gradient, int64_t place, Tally *tally) {
+    const int8_t kept = packed->numbers[place];
+    if (kept == INT8_MAX || kept == -INT8_MAX) return;
+    packed->numbers[place] = (int8_t)(kept + 1);
+    const double ahead = loss_of(trial);
+    uint8_t *taken = pieces_of(trial);
+    packed->numbers[place] = (int8_t)(kept - 1);
+    const double behind = loss_of(trial);
+    packed->numbers[place] = kept;
+    const double expected = 2 * (double)packed->units[place / packed->width] * (double)gradient[place];
+    compare(trial, ahead, taken, behind, expected, 1e-6 * (1 + ahead), tally);
+    free(taken);
+}
+
+static void check_rows(Trial *trial, const PackedRows *packed, const float *gradient, uint32_t *seed, Tally *tally) {
+    float *by_units = calloc((size_t)packed->count, sizeof *by_units);
+    assert_non_null(by_units);
+    for (int i = 0; i < packed->count; i++)
+        for (int64_t k = i * packed->width; k < (i + 1) * packed->width; k++)
+            by_units[i] += gradient[k] * (float)packed->numbers[k];
+    check_block(trial, packed->units, by_units, packed->count, -1, 2e-5, tally);
+    free(by_units);
+    for (int i = 0; i < OF_EACH_BLOCK; i++)
+        check_byte(trial, packed, gradient, (int64_t)uniform(seed, 0, (float)(packed->count * packed->width) - 1),
+                   tally);
+}
+
+static void check_biases(Trial *trial, float *biases, const float *gradient, int count, uint32_t *seed, Tally *tally) {
+    const float *part = gradient + (biases - trial->network->parameters);
+    check_block(trial, biases, part, count, -1, 2e-3, tally);
+    for (int i = 0; i < OF_EACH_BLOCK; i++)
+        check_block(trial, biases, part, count, (int)uniform(seed, 0, (float)count - 0.01f), 2e-3, tally);
+}
+
+static void check_parameters(Trial *trial, const float *gradient, uint32_t *seed, Tally tallies[6]) {
+    SlotNetwork *network = trial->network;
+    const int hidden = slot_network_hidden(network), outputs = 2 * network->slot_count;
+    check_rows(trial, &network->first.packed, gradient + (network->first.rows - network->parameters), seed,
+               &tallies[0]);
+    check_rows(trial, &network->second.packed, gradient + (network->second.rows - network->parameters), seed,
+               &tallies[1]);
+    check_rows(trial, &network->packed, gradient + (network->rows - network->parameters), seed, &tallies[2]);
+    check_biases(trial, network->first.biases, gradient, hidden, seed, &tallies[3]);
+    check_biases(trial, network->second.biases, gradient, hidden, seed, &tallies[4]);
+    check_biases(trial, network->biases, gradient, outputs, seed, &tallies[5]);
+}
+
+static void check_factors(Trial *trial, const double *by_factors, Tally *tally) {
+    const double step = 1e-3;
+    for (int s = 1; s < SWEEPS; s++) {
+        const double kept = trial->factors[s];
+        trial->factors[s] = kept + step;
+        const double ahead = loss_of(trial);
+        uint8_t *taken = pieces_of(trial);
+        trial->factors[s] = kept - step;
+        compare(trial, ahead, taken, loss_of(trial), 2 * step * by_factors[s], 1e-9, tally);
+        trial->factors[s] = kept;
+        free(taken);
+    }
+}
+
+/* Gradients are added to what is there. Kinks and numbers without effect must be few, or errors would go unseen. */
+static void assert_gradient(double near, double far, const double *factors) {
+    Trial trial;
+    Tally parameters[6] = {{0}}, of_factors = {0};
+    uint32_t seed = 8;
+    begin(&trial);
+    const size_t count = trial.network->parameter_count;
+    float *gradient = calloc(count, sizeof *gradient);
+    assert_non_null(gradient);
+    for (int i = 0; i < trial.samples.count; i += 3) {
+        double by_factors[SWEEPS];
+        SlotScore score;
+        choose(&trial, i, near, far, factors);
+        for (size_t p = 0; p < count; p++) gradient[p] = 1;
+        for (int s = 0; s < SWEEPS; s++) by_factors[s] = 7;
+        assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, gradient, by_factors, &score));
+        assert_true(score.loss == loss_of(&trial));
+        for (size_t p = 0; p < count; p++) gradient[p] -= 1;
+        for (int s = 0; s < SWEEPS; s++) by_factors[s] -= 7;
+        check_parameters(&trial, gradient, &seed, parameters);
+        if (far > 0) check_factors(&trial, by_factors, &of_factors);
+    }
+    for (int b = 0; b < 6; b++) {
+        assert_true(parameters[b].kinks * 4 < parameters[b].checked);
+        assert_true(parameters[b].moved >= 5);
+    }
+    assert_true(of_factors.kinks * 4 < of_factors.checked || far == 0);
+    assert_true(of_factors.moved * 2 > of_factors.checked || far == 0);
+    free(gradient);
+    end(&trial);
+}
+
+static void nearness_has_the_gradient_of_differences(void **state) {
+    (void)state;
+    assert_gradient(1, 0, by_hand);
+}
+
+static void what_sweeps_leave_has_the_gradient_of_differences(void **state) {
+    (void)state;
+    assert_gradient(0, 1, plain);
+    assert_gradient(0, 1, by_hand);
+}
+
+static void both_have_the_gradient_of_differences(void **state) {
+    (void)state;
+    assert_gradient(0.4, 2, by_hand);
+}
+
+/* As solution_error.h counts it, and bent into a square where there is nearly none. */
+static void the_error_is_that_of_the_studies(void **state) {
+    (void)state;
+    Trial trial;
+    begin(&trial);
+    for (int i = 0; i < trial.samples.count; i++) {
+        choose(&trial, i, 0, 3, by_hand);
+        SlotScore score;
+        assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, NULL, NULL, &score));
+        BodyVelocity velocities[16];
+        assert_in_range(trial.sample->problem.body_count, 2, 16);
+        for (int k = 0; k < trial.sample->problem.body_count; k++) {
+            const double *v = trial.loss.unrolled.velocities + 3 * k;
+            velocities[k] = (BodyVelocity){vec2((float)v[0], (float)v[1]), (float)v[2]};
+        }
+        assert_near(score.error, solution_error(&trial.sample->problem, velocities, trial.sample->reference).rms, 1e-5);
+        assert_near(score.loss, 3 * hypot(score.error, 0.01), 1e-12 * (1 + score.loss));
+    }
+    end(&trial);
+}
+
+/* A network that says nothing stays at the base: what it costs is a mean over normals and tangents of the slots. */
+static void nearness_is_a_mean_over_slots(void **state) {
+    (void)state;
+    Trial trial;
+    int straight = 0, bent = 0;
+    begin(&trial);
+    SlotNetwork *network = trial.network;
+    memset(network->rows, 0,
+           (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
+    slot_network_pack(network);
+    for (int i = 0; i < trial.samples.count; i++) {
+        choose(&trial, i, 2, 0, plain);
+        const SceneView *view = &trial.sample->view;
+        double sum = 0;
+        for (int k = 0; k < view->slots.slot_count; k++) {
+            const ContactImpulse base = view->base[view->contacts[k]], goal = trial.sample->goal[view->contacts[k]];
+            const double scale = (double)network->scale[view->slots.slots[k]];
+            const double apart[2] = {fabs((double)base.normal - (double)goal.normal) / scale,
+                                     fabs((double)base.tangent - (double)goal.tangent) / scale};
+            for (int c = 0; c < 2; c++) {
+                sum += apart[c] < 0.3 ? apart[c] * apart[c] / 0.6 : apart[c] - 0.15;
+                straight += apart[c] >= 0.3;
+                bent += apart[c] < 0.3;
+            }
+        }
+        assert_near(loss_of(&trial), 2 * sum / view->slots.slot_count, 1e-9 * sum);
+    }
+    assert_true(straight > 50 && bent > 50);
+    end(&trial);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nearness_has_the_gradient_of_differences),
+        cmocka_unit_test(what_sweeps_leave_has_the_gradient_of_differences),
+        cmocka_unit_test(both_have_the_gradient_of_differences),
+        cmocka_unit_test(the_error_is_that_of_the_studies),
+        cmocka_unit_test(nearness_is_a_mean_over_slots),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "paper/study/law_study.h"
+
+#include <math.h>
+
+static Dataset *record(bool context) {
+    Error error = {0};
+    const char *const scenes[] = {SOURCE_DIR "/scenes/single.yaml"};
+    DatasetOptions options = {.scenes = scenes, .scene_count = 1, .context = context, .seed = 1};
+    assert_true(parse_range("-2:2:1", 10, &options.bomb_x));
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    return dataset;
+}
+
+static LawResult run(const Dataset *dataset, const char *laws, double weight, uint64_t seed) {
+    Error error = {0};
+    LawResult result = {0};
+    const LawStudy study = {.laws = laws, .weight = weight, .seed = seed, .iterations = 60};
+    assert_ok(law_study_train(dataset, &study, &result, NULL, &error), error);
+    return result;
+}
+
+/* The engine's impulses are equal and opposite and within the cone, by construction. */
+static void the_engine_keeps_what_it_keeps(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *dataset = record(true);
+    LawResult labels;
+    assert_ok(law_study_labels(dataset, &labels, &error), error);
+    assert_true(isnan(labels.test) && isnan(labels.constant));
+    assert_near(labels.violations.of[LAW_MOMENTUM], 0, 1e-3);
+    assert_near(labels.violations.of[LAW_CONE], 0, 1e-3);
+    assert_true(labels.violations.of[LAW_ENERGY] >= 0 && labels.violations.of[LAW_APPROACH] >= 0);
+    dataset_destroy(dataset);
+}
+
+static void a_heavy_law_is_broken_less(void **state) {
+    (void)state;
+    Dataset *dataset = record(true);
+    const LawResult none = run(dataset, "none", 10, 1), cone = run(dataset, "cone", 10, 1),
+                    again = run(dataset, "cone", 10, 1), other = run(dataset, "cone", 10, 2);
+    assert_true(cone.violations.of[LAW_CONE] < 0.7 * none.violations.of[LAW_CONE]);
+    assert_true(none.constant == cone.constant && none.constant > 0);
+    assert_true(none.test > 0 && none.test < 2 * none.constant);
+    assert_memory_equal(&cone, &again, sizeof cone);
+    assert_true(cone.test != other.test);
+    dataset_destroy(dataset);
+}
+
+static bool stop(void *context, double done, double total) {
+    (void)context;
+    return done < total / 2;
+}
+
+static void what_is_not_whole_does_not_count(void **state) {
+    (void)state;
+    Error error = {0};
+    LawResult result;
+    Dataset *dataset = record(true), *without = record(false);
+    const Progress progress = {stop, NULL};
+    LawStudy study = {.laws = "all", .weight = 1, .seed = 1, .iterations = 60};
+    assert_false(law_study_train(dataset, &study, &result, &progress, &error));
+    assert_error(error, ERROR_INPUT, "training: error: stopped");
+    error = (Error){0};
+    assert_false(law_study_train(without, &study, &result, NULL, &error));
+    assert_error(error, ERROR_INPUT, "--context");
+    study.laws = "gravity";
+    error = (Error){0};
+    assert_false(law_study_train(dataset, &study, &result, NULL, &error));
+    assert_error(error, ERROR_INPUT, "there is no 'gravity'");
+    dataset_destroy(without);
+    dataset_destroy(dataset);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_engine_keeps_what_it_keeps),
+                                       cmocka_unit_test(a_heavy_law_is_broken_less),
+                                       cmocka_unit_test(what_is_not_whole_does_not_count)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rates that follow from what a network is: the engine agrees with itself, a network that says nothing new is the warm
+   start, one that always says the mean is the constant. */
+#include "testing.h"
+
+#include "pair/pair.h"
+#include "network/network.h"
+#include "scene/launch.h"
+#include "paper/study/pair_rates.h"
+
+#include <math.h>
+
+static const Sampling sampling = {.after = 20, .rest = 60};
+
+/* Sampled from one launch of the stack. */
+static SnapshotList *sample_stack(Scene *scene) {
+    Error error = {0};
+    SnapshotList *list = calloc(1, sizeof *list);
+    assert_non_null(list);
+    assert_ok(snapshots_add(list, scene, &sampling, &error), error);
+    return list;
+}
+
+static Scene *read_stack(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
+    assert_ok(scene != NULL, error);
+    scene->frames = 150;
+    return scene;
+}
+
+/* Without hidden layers, weights 0: it says `mean`, whatever it sees. */
+static const char *write_constant(PairView view, PairTarget target, int outputs, const float *mean) {
+    Error error = {0};
+    Network *network = network_create(1, (const int[]){pair_views[view].count, outputs}, &error);
+    assert_ok(network != NULL, error);
+    strcpy(network->inputs, pair_views[view].inputs);
+    strcpy(network->outputs, pair_output_names(view, target, outputs));
+    strcpy(network->target, pair_target_names[target]);
+    for (int k = 0; k < outputs; k++) network->biases[0][k] = network->output_mean[k] = mean[k];
+    const char *path = temporary_path("constant.npz");
+    assert_ok(network_write(network, path, &error), error);
+    network_destroy(network);
+    return path;
+}
+
+static PairRates measure(const char *path, const Scene *scene, const SnapshotList *list) {
+    Error error = {0};
+    PairRates rates;
+    assert_ok(pair_rates_measure(path, scene, list, 1, &sampling, &rates, &error), error);
+    return rates;
+}
+
+static void the_engine_agrees_with_itself(void **state) {
+    (void)state;
+    Scene *scene = read_stack();
+    SnapshotList *list = sample_stack(scene);
+    PairRates rates = measure(NULL, scene, list);
+    for (int phase = 0; phase < RATE_PHASES; phase++) {
+        assert_near(rates.share[RATE_RANGE][phase][RATE_ENGINE10], 1, 0);
+        assert_near(rates.share[RATE_ABSOLUTE][phase][RATE_ENGINE10], 1, 0);
+        assert_true(isnan(rates.share[RATE_RANGE][phase][RATE_CONSTANT]));
+        assert_true(isnan(rates.share[RATE_BODIES][phase][RATE_CONSTANT]));
+    }
+    /* At the impact one sweep is not ten, and ten are not converged. */
+    assert_true(rates.share[RATE_ABSOLUTE][PHASE_IMPACT][RATE_ENGINE1] < 0.9);
+    assert_true(rates.share[RATE_BODIES][PHASE_IMPACT][RATE_ENGINE10] < 0.9);
+    snapshots_free(list);
+    free(list);
+    scene_destroy(scene);
+}
+
+static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
+    (void)state;
+    Scene *scene = read_stack();
+    SnapshotList *list = sample_stack(scene);
+    const PairRates warm = measure(NULL, scene, list);
+    const char *path = write_constant(PAIR_NEIGHBOURS, TARGET_POINTS, PAIR_POINT_CHANGES, (const float[4]){0});
+    const PairRates rates = measure(path, scene, list);
+    for (int definition = 0; definition < RATE_DEFINITIONS; definition++)
+        for (int phase = 0; phase < RATE_PHASES; phase++)
+            assert_near(rates.share[definition][phase][RATE_NETWORK], warm.share[definition][phase][RATE_NETWORK], 0);
+    snapshots_free(list);
+    free(list);
+    scene_destroy(scene);
+}
+
+/* For every target: what the network says is what its constant says. */
+static void a_network_that_says_the_mean_is_the_constant(void **state) {
+    (void)state;
+    static const struct {
+        PairView view;
+        PairTarget target;
+        int outputs;
+    } kinds[] = {{PAIR_RELATIVE, TARGET_PAIR, 2},   {PAIR_RELATIVE, TARGET_PAIR, 6},
+                 {PAIR_RAW, TARGET_NET, 2},         {PAIR_CONTACT, TARGET_PAIR, 2},
+                 {PAIR_NEIGHBOURS, TARGET_NET, 2},  {PAIR_RELATIVE, TARGET_IMPULSE, 2},
+                 {PAIR_CONTACT, TARGET_IMPULSE, 2}, {PAIR_CONTACT, TARGET_POINTS, 4}};
+    const float mean[6] = {0.125f, 0.25f, 0, 0.375f, 0.5f, 0};
+    Scene *scene = read_stack();
+    SnapshotList *list = sample_stack(scene);
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        const char *path = write_constant(kinds[i].view, kinds[i].target, kinds[i].outputs, mean);
+        const PairRates rates = measure(path, scene, list);
+        for (int definition = 0; definition < RATE_DEFINITIONS; definition++) {
+            double network = rates.share[definition][RATE_ALL][RATE_NETWORK];
+            double constant = rates.share[definition][RATE_ALL][RATE_CONSTANT];
+            bool no_step = definition == RATE_BODIES && kinds[i].target == TARGET_IMPULSE && i == 6;
+            if (no_step)
+                assert_true(isnan(network) && isnan(constant));
+            else
+                assert_near(network, constant, 1e-12);
+        }
+    }
+    snapshots_free(list);
+    free(list);
+    scene_destroy(scene);
+}
+
+/* all = (impact + 20 after + 60 rest) / (their numbers, weighed the same way) lies between its parts. */
+static void all_lies_between_the_phases(void **state) {
+    (void)state;
+    Scene *scene = read_stack();
+    SnapshotList *list = sample_stack(scene);
+    const PairRates rates = measure(NULL, scene, list);
+    const double(*share)[RATE_COLUMNS] = rates.share[RATE_ABSOLUTE];
+    double least = 1, most = 0;
+    for (int phase = 0; phase < PHASES; phase++) {
+        least = fmin(least, share[phase][RATE_ENGINE1]);
+        most = fmax(most, share[phase][RATE_ENGINE1]);
+    }
+    assert_true(least < share[RATE_ALL][RATE_ENGINE1] && share[RATE_ALL][RATE_ENGINE1] < most);
+    snapshots_free(list);
+    free(list);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_engine_agrees_with_itself),
+                                       cmocka_unit_test(a_contact_net_that_says_nothing_is_the_warm_start),
+                                       cmocka_unit_test(a_network_that_says_the_mean_is_the_constant),
+                                       cmocka_unit_test(all_lies_between_the_phases)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

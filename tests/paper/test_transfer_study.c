@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "dataset/dataset_subset.h"
+#include "paper/study/transfer_study.h"
+
+#include <math.h>
+
+static Dataset *record(const char *scene, PairView view) {
+    Error error = {0};
+    DatasetOptions options = {.scenes = &scene, .scene_count = 1, .view = view, .seed = 1};
+    assert_true(parse_range("-2:2:1", 10, &options.bomb_x));
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    return dataset;
+}
+
+/* The stack stands in for the pyramid: the study asks nothing of it but launches. */
+static const char *const single = SOURCE_DIR "/scenes/single.yaml", *const stack = SOURCE_DIR "/scenes/stack.yaml";
+
+static TransferResult run(const TransferData *data, TransferStudy study) {
+    Error error = {0};
+    TransferResult result = {0};
+    assert_ok(transfer_study_run(data, &study, &result, NULL, &error), error);
+    return result;
+}
+
+/* Mean square of the distance of the test rows' relative changes from the mean of the rows to train on, by hand. */
+static double constant_by_hand(const Dataset *dataset) {
+    double sum[2][2] = {{0}}, count[2] = {0}, squares = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const int test = dataset_is_test(dataset, r);
+        const float *c = dataset->changes + r * PAIR_CHANGES;
+        count[test]++;
+        for (int k = 0; k < 2; k++) sum[test][k] += (double)(c[3 + k] - c[k]);
+    }
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *c = dataset->changes + r * PAIR_CHANGES;
+        for (int k = 0; k < 2 && dataset_is_test(dataset, r); k++)
+            squares += pow((double)(c[3 + k] - c[k]) - sum[0][k] / count[0], 2);
+    }
+    return sqrt(squares / (2 * count[1]));
+}
+
+static void errors_stand_beside_the_constant(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
+    assert_ok(drawn != NULL, error);
+    const TransferData data = {NULL, NULL, pyramid};
+    /* After no step a network says anything; after some, with the contact in sight, it beats the constant. */
+    const TransferResult begun = run(&data, (TransferStudy){.seed = 3, .launches = 2});
+    const TransferResult trained = run(&data, (TransferStudy){.seed = 3, .launches = 2, .iterations = 40});
+    assert_near(begun.constant, constant_by_hand(drawn), 1e-9);
+    assert_true(begun.constant == trained.constant);
+    if (!(trained.error < 0.9 * begun.error && trained.error < begun.constant))
+        fail_msg("%g to %g, %g", begun.error, trained.error, begun.constant);
+    dataset_destroy(drawn);
+    dataset_destroy(pyramid);
+}
+
+/* Without a step, a network that comes from elsewhere differs from one that begins here by its normalisation alone, which
+   is that of its first stage: not at all where that was the same rows. */
+static void the_first_stage_decides_the_units(void **state) {
+    (void)state;
+    Error error = {0};
+    Dataset *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
+    Dataset *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
+    assert_ok(drawn != NULL, error);
+    const TransferData same = {drawn, elsewhere, pyramid}, other = {elsewhere, drawn, pyramid};
+    TransferStudy study = {.seed = 5, .launches = 2};
+    const TransferResult scratch = run(&same, study);
+    study.transfer = true;
+    const TransferResult from_same = run(&same, study), from_other = run(&other, study);
+    assert_memory_equal(&from_same, &scratch, sizeof scratch);
+    assert_true(from_other.error != scratch.error && from_other.constant == scratch.constant);
+    dataset_destroy(drawn);
+    dataset_destroy(pyramid);
+    dataset_destroy(elsewhere);
+}
+
+/* By any view; the same again, and something else for each way of getting there. */
+static void stages_follow_each_other(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const PairView view = i == 0 ? PAIR_RELATIVE : PAIR_CONTACT;
+        Dataset *first = record(single, view), *pyramid = record(stack, view);
+        const TransferData data = {first, pyramid, pyramid}, changed = {first, first, pyramid};
+        TransferStudy study = {.seed = 2, .launches = 4, .iterations = 20};
+        const TransferResult scratch = run(&data, study);
+        study.transfer = true;
+        const TransferResult transfer = run(&data, study), again = run(&data, study), other = run(&changed, study);
+        assert_memory_equal(&transfer, &again, sizeof again);
+        assert_true(transfer.error != scratch.error && transfer.error != other.error);
+        assert_true(transfer.constant == scratch.constant);
+        dataset_destroy(pyramid);
+        dataset_destroy(first);
+    }
+}
+
+static bool stop(void *context, double done, double total) {
+    int *stages = context;
+    *stages += done == total;
+    return *stages < 2;
+}
+
+static void what_cannot_be_run_is_refused(void **state) {
+    (void)state;
+    Dataset *pyramid = record(stack, PAIR_RELATIVE), *other = record(single, PAIR_RAW);
+    const TransferData data = {pyramid, pyramid, pyramid}, mixed = {other, pyramid, pyramid};
+    TransferResult result;
+    int stages = 0;
+    const Progress progress = {stop, &stages};
+    Error error = {0};
+    TransferStudy study = {.transfer = true, .seed = 1, .launches = 5, .iterations = 3};
+    assert_false(transfer_study_run(&data, &study, &result, NULL, &error));
+    assert_error(error, ERROR_INPUT, "5 launches to train on asked for; 1 to 4 are possible");
+    error = (Error){0};
+    study.launches = 1;
+    assert_false(transfer_study_run(&data, &study, &result, &progress, &error));
+    assert_error(error, ERROR_INPUT, "training: error: stopped");
+    error = (Error){0};
+    assert_false(transfer_study_run(&mixed, &study, &result, NULL, &error));
+    assert_error(error, ERROR_INPUT, "trained on other inputs");
+    dataset_destroy(other);
+    dataset_destroy(pyramid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_stand_beside_the_constant), cmocka_unit_test(the_first_stage_decides_the_units),
+        cmocka_unit_test(stages_follow_each_other), cmocka_unit_test(what_cannot_be_run_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The three formats of a sketch. Areas have closed forms; a PDF's table of objects can be followed. */
+#include "testing.h"
+
+#include "common/file.h"
+#include "sketch/sketch_formats.h"
+#include "sketch/type.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Ten pixels a mm. */
+static const SketchOutput white = {254, false}, clear = {254, true};
+
+static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
+    Error error = {0};
+    const char *path = temporary_path("sketch.png");
+    assert_ok(sketch_write(sketch, path, output, &error), error);
+    Image *image = image_read_png(path, &error);
+    assert_ok(image != NULL, error);
+    assert_int_equal(image->width, (int)lrint(10 * sketch->width));
+    assert_int_equal(image->height, (int)lrint(10 * sketch->height));
+    return image;
+}
+
+/* Square mm that are covered, of a sketch on nothing. */
+static double covered(Sketch *sketch) {
+    Image *image = as_pixels(sketch, &clear);
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) sum += image->pixels[4 * i + 3];
+    image_destroy(image);
+    sketch_free(sketch);
+    return sum / 255 / 100;
+}
+
+static const Pen black = {0, 1, NO_COLOUR, 0, NULL};
+
+static void areas_are_those_of_geometry(void **state) {
+    (void)state;
+    Sketch sketch;
+    sketch_begin(&sketch, 20, 10);
+    sketch_dot(&sketch, (Point){10.03, 5.02}, 4, &black); /* of 36 corners */
+    assert_near(covered(&sketch), 18 * 16 * sin(2 * M_PI / 36), 0.02);
+    sketch_begin(&sketch, 20, 10);
+    const Point triangle[] = {{1.23, 1.11}, {15.7, 2.9}, {7.77, 8.08}};
+    sketch_shape(&sketch, triangle, 3, &black);
+    assert_near(covered(&sketch), 0.5 * ((15.7 - 1.23) * (8.08 - 1.11) - (7.77 - 1.23) * (2.9 - 1.11)), 0.02);
+    sketch_begin(&sketch, 20, 10);
+    const Pen line = pen_line(0, 10, NULL), dashed = pen_line(0, 10, "(10,20)");
+    sketch_line(&sketch, (Point){2, 2}, (Point){14, 7}, &line);
+    assert_near(covered(&sketch), 13 * 10 * LINE_UNIT, 0.05);
+    sketch_begin(&sketch, 20, 10);
+    sketch_line(&sketch, (Point){2, 5}, (Point){2 + 3 * 30 * LINE_UNIT, 5}, &dashed); /* three dashes */
+    assert_near(covered(&sketch), 30 * LINE_UNIT * 10 * LINE_UNIT, 0.02);
+}
+
+/* What winds around twice is not covered twice, and a line that turns back is not lost. */
+static void overlaps_count_once(void **state) {
+    (void)state;
+    Sketch sketch;
+    sketch_begin(&sketch, 10, 10);
+    const Point twice[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}, {2, 2}, {6, 2}, {6, 6}, {2, 6}};
+    sketch_shape(&sketch, twice, 8, &(Pen){0, 0.5, NO_COLOUR, 0, NULL});
+    assert_near(covered(&sketch), 16 * 128 / 255.0, 0.01);
+    sketch_begin(&sketch, 10, 10);
+    const Point back[] = {{2, 5}, {8, 5}, {2, 5}};
+    const Pen line = pen_line(0, 10, NULL);
+    sketch_path(&sketch, back, 3, &line);
+    double bar = 6 * 1.7, cap = M_PI / 2 * 0.85 * 0.85;
+    assert_near(covered(&sketch), bar + cap, 0.05);
+}
+
+static const uint8_t *pixel(const Image *image, int x, int y) {
+    return image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+}
+
+static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
+    const uint8_t *p = pixel(image, x, y);
+    unsigned found = (unsigned)p[0] << 24 | (unsigned)p[1] << 16 | (unsigned)p[2] << 8 | p[3];
+    if (found != rgba) fail_msg("pixel (%d, %d) is %08x, not %08x", x, y, found, rgba);
+}
+
+static void shapes_lie_at_their_place_and_colour(void **state) {
+    (void)state;
+    Sketch sketch;
+    sketch_begin(&sketch, 10, 10);
+    sketch_rectangle(&sketch, (Point){2, 1}, (Point){5, 6}, &(Pen){0x204060, 1, NO_COLOUR, 0, NULL});
+    sketch_rectangle(&sketch, (Point){4, 1}, (Point){5, 6}, &(Pen){0xFFFFFF, 0.2, NO_COLOUR, 0, NULL});
+    Image *image = as_pixels(&sketch, &white);
+    expect_pixel(image, 19, 50, 0xFFFFFFFF);
+    expect_pixel(image, 20, 40, 0x204060FF);
+    expect_pixel(image, 39, 89, 0x204060FF);
+    expect_pixel(image, 40, 89, 0x4D6680FF); /* a fifth of the way to white */
+    expect_pixel(image, 20, 39, 0xFFFFFFFF);
+    expect_pixel(image, 20, 90, 0xFFFFFFFF);
+    image_destroy(image);
+    image = as_pixels(&sketch, &clear);
+    expect_pixel(image, 19, 50, 0);
+    expect_pixel(image, 20, 40, 0x204060FF);
+    image_destroy(image);
+    sketch_free(&sketch);
+}
+
+static void a_picture_of_its_places_size_keeps_its_pixels(void **state) {
+    (void)state;
+    Error error = {0};
+    Sketch sketch;
+    Image *picture = image_create(20, 10, &error);
+    for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
+    picture->pixels[3] = 0;
+    sketch_begin(&sketch, 10, 5);
+    sketch_image(&sketch, picture, (Point){3, 2}, 2);
+    Image *image = as_pixels(&sketch, &white);
+    expect_pixel(image, 30, 20, 0xFFFFFFFF);
+    for (int y = 0; y < 10; y++)
+        for (int x = 0; x < 20; x++)
+            if (x + y > 0) assert_memory_equal(pixel(image, 30 + x, 20 + y), pixel(picture, x, y), 4);
+    image_destroy(image);
+    image_destroy(picture);
+    sketch_free(&sketch);
+}
+
+/* Left and right edge of what is not white, mm. */
+static void find_ink(const Image *image, double *left, double *right) {
+    *left = HUGE_VAL, *right = -HUGE_VAL;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            if (pixel(image, x, y)[0] < 128) *left = fmin(*left, x / 10.0), *right = fmax(*right, (x + 1) / 10.0);
+}
+
+static void words_are_as_wide_as_they_say(void **state) {
+    (void)state;
+    const double points = 20, end = 15;
+    double left, right;
+    Sketch sketch;
+    sketch_begin(&sketch, 60, 10);
+    sketch_text(&sketch, (Point){end, 5}, &(TextStyle){points, TEXT_LEFT, 0, 0, false}, "HHHH");
+    Image *image = as_pixels(&sketch, &white);
+    find_ink(image, &left, &right);
+    double bearing = left - end;
+    assert_true(bearing > 0 && bearing < 1);
+    assert_near(right, end + type_width("HHHH", points) - bearing, 0.11);
+    image_destroy(image);
+    sketch_free(&sketch);
+    /* The capitals' middle is where it was asked for: 20 points are 7.06 mm, capitals of Inter 0.727 of that. */
+    sketch_begin(&sketch, 60, 10);
+    sketch_text(&sketch, (Point){end, 5}, &(TextStyle){points, TEXT_LEFT, 0, 90, false}, "HHHH");
+    image = as_pixels(&sketch, &white);
+    find_ink(image, &left, &right);
+    assert_near((left + right) / 2, end, 0.06);
+    assert_near(right - left, 0.727 * points * MM_PER_POINT, 0.11);
+    image_destroy(image);
+    sketch_free(&sketch);
+}
+
+static void draw_something(Sketch *sketch) {
+    Error error = {0};
+    Image *picture = image_create(3, 2, &error);
+    sketch_begin(sketch, 30, 20);
+    sketch_image(sketch, picture, (Point){1, 1}, 5);
+    sketch_text(sketch, (Point){15, 10}, &(TextStyle){8, TEXT_CENTER, 0x123456, 30, true}, "a < b & \"c\" \xFF\x01 ±");
+    sketch_rectangle(sketch, (Point){1, 1}, (Point){9, 9}, &(Pen){0x336699, 0.25, 0, 1, "(3,2)"});
+    sketch_arrow(sketch, (Point){1, 1}, (Point){20, 9}, HEADS_AT_BOTH, 0, 2);
+    image_destroy(picture);
+}
+
+static void the_same_sketch_gives_the_same_bytes(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int format = 0; format < SKETCH_FORMATS; format++) {
+        static const char *const names[2][SKETCH_FORMATS] = {{"a.png", "a.svg", "a.pdf"}, {"b.png", "b.svg", "b.pdf"}};
+        char *data[2];
+        size_t size[2];
+        for (int i = 0; i < 2; i++) {
+            Sketch sketch;
+            draw_something(&sketch);
+            const char *path = temporary_path(names[i][format]);
+            assert_ok(sketch_write(&sketch, path, &white, &error), error);
+            data[i] = file_read(path, 1 << 20, &size[i], &error);
+            assert_ok(data[i] != NULL, error);
+            sketch_free(&sketch);
+        }
+        assert_int_equal(size[0], size[1]);
+        assert_memory_equal(data[0], data[1], size[0]);
+        free(data[0]);
+        free(data[1]);
+    }
+}
+
+static void an_svg_says_its_words(void **state) {
+    (void)state;
+    Error error = {0};
+    Sketch sketch;
+    size_t size;
+    draw_something(&sketch);
+    char *svg = sketch_as_svg(&sketch, &white, &size, &error);
+    assert_ok(svg != NULL, error);
+    assert_non_null(strstr(svg, "aria-label=\"a &lt; b &amp; &quot;c&quot; ?? ±\""));
+    assert_non_null(strstr(svg, "width=\"30.000mm\" height=\"20.000mm\" viewBox=\"0 0 30.000 20.000\""));
+    assert_non_null(strstr(svg, "M1.000 19.000L9.000 19.000L9.000 11.000L1.000 11.000Z\" fill=\"#336699\" "
+                                "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
+    free(svg);
+    sketch_free(&sketch);
+}
+
+/* Every entry of the table leads to its object, and nothing tells when or where the file was made. */
+static void a_pdf_can_be_followed(void **state) {
+    (void)state;
+    Error error = {0};
+    Sketch sketch;
+    size_t size;
+    draw_something(&sketch);
+    char *pdf = sketch_as_pdf(&sketch, &white, &size, &error);
+    assert_ok(pdf != NULL, error);
+    sketch_free(&sketch);
+    assert_memory_equal(pdf, "%PDF-1.5\n", 9);
+    char *tail = pdf + size - 40;
+    const char *start = strstr(tail, "startxref\n");
+    assert_non_null(start);
+    const char *table = pdf + atol(start + 10);
+    int count = 0, used = 0;
+    assert_int_equal(sscanf(table, "xref\n0 %d\n%n", &count, &used), 1);
+    assert_int_equal(count, 12); /* nine, a picture and its alpha, and the one that is none */
+    for (int i = 1; i < count; i++) {
+        char begin[32];
+        long offset = atol(table + used + 20 * i);
+        snprintf(begin, sizeof begin, "%d 0 obj\n", i);
+        assert_memory_equal(pdf + offset, begin, strlen(begin));
+    }
+    assert_non_null(strstr(table, "trailer\n<</Size 12/Root 1 0 R>>"));
+    static const char *const untold[] = {"CreationDate", "ModDate", "/ID", "/Info", "/Producer"};
+    for (size_t k = 0; k < sizeof untold / sizeof *untold; k++)
+        for (size_t i = 0; i + strlen(untold[k]) < size; i++)
+            assert_memory_not_equal(pdf + i, untold[k], strlen(untold[k]));
+    free(pdf);
+}
+
+static void expect_refused(const char *path, double width, double dpi, const char *message) {
+    Error error = {0};
+    Sketch sketch;
+    sketch_begin(&sketch, width, width);
+    assert_false(sketch_write(&sketch, path, &(SketchOutput){dpi, false}, &error));
+    if (strstr(error.message, message) == NULL) fail_msg("'%s' lacks '%s'", error.message, message);
+    sketch_free(&sketch);
+}
+
+static void what_cannot_be_written_is_refused(void **state) {
+    (void)state;
+    expect_refused(temporary_path("a.gif"), 10, 300, "a figure's name ends in .png, .svg or .pdf");
+    expect_refused("png", 10, 300, "png: error: a figure's name ends in");
+    expect_refused(".d.png/figure", 10, 300, "a figure's name ends in");
+    expect_refused(temporary_path("large.png"), 400, 1200, "18898 x 18898 pixels; at most 40000000");
+    expect_refused("/nowhere/at/all.pdf", 10, 300, "/nowhere/at/all.pdf");
+    assert_int_equal(access(temporary_path("large.png"), F_OK), -1);
+}
+
+/* A run may have gone to any number, and nothing of that is drawn. */
+static void what_has_no_place_draws_nothing(void **state) {
+    (void)state;
+    static const double nowhere[] = {NAN, INFINITY, -INFINITY, 1e30};
+    Sketch sketch;
+    sketch_begin(&sketch, 10, 10);
+    const Pen dashed = pen_line(0, 2, "(1,1)");
+    for (size_t i = 0; i < sizeof nowhere / sizeof *nowhere; i++) {
+        sketch_line(&sketch, (Point){1, 1}, (Point){nowhere[i], 2}, &dashed);
+        sketch_dot(&sketch, (Point){nowhere[i], 2}, 1, &black);
+        sketch_arrow(&sketch, (Point){1, 1}, (Point){2, nowhere[i]}, HEAD_AT_END, 0, 1);
+        sketch_text(&sketch, (Point){nowhere[i], 2}, &(TextStyle){8, TEXT_LEFT, 0, 0, false}, "lost");
+    }
+    assert_int_equal(sketch.mark_count, 0);
+    assert_near(covered(&sketch), 0, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(areas_are_those_of_geometry),
+        cmocka_unit_test(overlaps_count_once),
+        cmocka_unit_test(shapes_lie_at_their_place_and_colour),
+        cmocka_unit_test(a_picture_of_its_places_size_keeps_its_pixels),
+        cmocka_unit_test(words_are_as_wide_as_they_say),
+        cmocka_unit_test(the_same_sketch_gives_the_same_bytes),
+        cmocka_unit_test(an_svg_says_its_words),
+        cmocka_unit_test(a_pdf_can_be_followed),
+        cmocka_unit_test(what_cannot_be_written_is_refused),
+        cmocka_unit_test(what_has_no_place_draws_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

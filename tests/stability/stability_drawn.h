@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of a stability study made up by a test, and what is drawn of them. */
+#pragma once
+#include "python.h"
+
+#include "stability/stability_figures.h"
+
+#include "common/file.h"
+#include "stability/stability_table.h"
+
+#include <math.h>
+#include <sys/stat.h>
+
+#define MAPS "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
+#define BORDERS "study,method,setting,parameter,unit,holds_at,fails_at,verdict\n"
+#define ONE_CELL "stack,engine,k=10,ratio,,1,height,boxes,2,falls,100,1,0.5,m\n"
+#define ONE_BORDER "stack,engine,k=10,height,boxes,10,11,falls\n"
+
+static inline void write_table(const char *name, const char *text) {
+    Error error = {0};
+    assert_ok(file_write_soon(temporary_path(name), text, strlen(text), &error), error);
+}
+
+static inline void start_afresh(const char *maps, const char *borders) {
+    remove_temporary_folder();
+    assert_int_equal(mkdir(temporary_folder, 0700), 0);
+    write_table("maps.csv", maps);
+    write_table("stability.csv", borders);
+}
+
+static inline void draw(void) {
+    Error error = {0};
+    assert_ok(stability_figures_write(temporary_folder, &error), error);
+}
+
+/* Defines count(svg, "#RRGGBB"): filled areas of a colour; and texts(svg). */
+#define SVG_FUNCTIONS                                                                         \
+    "import sys, re, xml.etree.ElementTree as tree\n"                                         \
+    "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                 \
+    "def count(svg, colour):\n"                                                               \
+    "    rgb = 'rgb(%3d, %3d, %3d)' % tuple(int(colour[i:i + 2], 16) for i in (1, 3, 5))\n"   \
+    "    return sum(rgb in part and part.startswith('polygon') for part in svg.split('<'))\n" \
+    "def texts(svg):\n"                                                                       \
+    "    found = tree.fromstring(svg).iter('{http://www.w3.org/2000/svg}text')\n"             \
+    "    return [' '.join(''.join(e.itertext()).split()) for e in found]\n"                   \
+    "def expect(found, wanted, what):\n"                                                      \
+    "    assert found == wanted, (what, found, wanted)\n"
+
+/* Nothing is drawn of a table that is refused. */
+static inline void expect_refused(const char *maps, const char *borders, const char *message) {
+    Error error = {0};
+    start_afresh(maps, borders);
+    assert_false(stability_figures_write(temporary_folder, &error));
+    assert_error(error, ERROR_INPUT, message);
+    assert_int_equal(access(temporary_path("borders.png"), F_OK), -1);
+    assert_int_equal(access(temporary_path("map-stack.png"), F_OK), -1);
+}
+
+/* A map of methods x `across` x `up` cells of the verdicts in turn. */
+static inline char *make_map(int methods, int across, int up) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    fputs(MAPS, file);
+    for (int method = 0; method < methods; method++)
+        for (int cell = 0; cell < across * up; cell++)
+            fprintf(file, "grid,engine,k=%d,ratio,,%g,height,boxes,%d,%s,,,,\n", method, pow(10, cell % across),
+                    3 + cell / across, verdict_words[cell % LOOK_MISSING]);
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
