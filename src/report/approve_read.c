@@ -11,7 +11,7 @@
 
 enum { MAX_SIZE = 1 << 25 };
 
-/* Members of the whole. Those after them (verdict, fuzzy, masks) are for other readers. */
+/* The members that are needed. Others (verdict, fuzzy, masks) are skipped. */
 enum { FORMAT, EXPECTED, ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
 static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
 
@@ -108,7 +108,7 @@ static bool read_member(JsonReader *json, int member, ApprovalList *list, Error 
     return true;
 }
 
-/* The key of the next member, MEMBERS if it is none of those above, and its colon. */
+/* The next member's key and colon. *member is MEMBERS for a key that is not in the list. */
 static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *error) {
     const json_t *key = json_read_value(json, error);
     if (key == NULL) return false;

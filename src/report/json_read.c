@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A stack that jansson's memory comes from. A full one is left by longjmp: jansson (2.14, 2.15) must never see malloc()
-   fail, because it ignores a failure to lengthen a token, and then writes beyond a buffer. */
+/* A stack that jansson's memory comes from. When it is full, longjmp leaves jansson: it (2.14, 2.15) must never see
+   malloc() fail, because it ignores a failure to lengthen a token and then runs past the end of its buffers. */
 typedef struct JsonMemory {
     jmp_buf full;
     size_t used; /* blocks */
