@@ -2,6 +2,7 @@
 #include "stability/stability.h"
 
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
@@ -28,7 +29,7 @@ static const struct argp_option option_table[] = {
      "robust, momentum, substepping, nncg, the reference, pair-net, contact-net and scene-net)",
      0},
     {"study", STUDY, "NAME", 0, "One of the studies or maps (may be repeated; default: all)", 0},
-    {"scenes", SCENES, "DIR", 0, "Folder in which stability/ holds the scenes (default: scenes)", 0},
+    {"scenes", SCENES, "DIR", 0, "Folder in which stability/ holds the scenes (default: scenes, or the installed one)", 0},
     {"quick", QUICK, NULL, 0, "Few studies, small maps: under two minutes", 0},
     {"clip", CLIP, "CELL", 0,
      "Only this: the moving picture of a cell of a map that DIR has, MAP:METHOD:X,Y, beside a method that holds there",
@@ -96,7 +97,7 @@ static bool study(const StabilityOptions *options, Error *error) {
 }
 
 int command_stability(int argc, char **argv, Error *error) {
-    Options options = {.study.scenes = "scenes"};
+    Options options = {.study.scenes = installed_path("scenes")};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     bool ok = options.clip != NULL ? make_clip(&options, error) : study(&options.study, error);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/train_momentum.h"
@@ -88,7 +89,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case SCALE: options->scale = value; break;
     case LOSS: options->loss = value; break;
     case LAWS_IN_LOSS: options->laws = value; break;
-    case LAUNCHES: options->launches = value; break;
+    case LAUNCHES: options->launches = installed_path(value); break;
     case ROUNDS: options->rounds = value; break;
     case WIDTH: options->width = value; break;
     case SWEEPS: options->sweeps = value; break;
@@ -97,7 +98,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case WITHIN: options->within = value; break;
     case ARGP_KEY_ARG:
         if (options->data != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
-        options->data = value;
+        options->data = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->data == NULL) argp_error(state, "a dataset (or scene) is needed");
