@@ -6,14 +6,15 @@
 #include <stdio.h>
 
 static error_t parse(int key, char *value, struct argp_state *state) {
-    if (key == ARGP_KEY_ARG) argp_error(state, "no arguments are taken ('%s')", value);
+    if (key == ARGP_KEY_ARG) argp_error(state, "takes no arguments (got '%s')", value);
     return ARGP_ERR_UNKNOWN;
 }
 
 static const struct argp argp = {NULL,
                                  parse,
                                  "",
-                                 "List the methods and their settings.\v"
+                                 "List the methods and their settings. A method is given as NAME or "
+                                 "NAME:KEY=VALUE,...\v"
                                  "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz",
                                  NULL,
                                  NULL,

@@ -19,7 +19,7 @@ static bool same(const Csv *csv, int row, int other, int first, int last) {
     return true;
 }
 
-/* "14 | 15 falls"; nothing on the other side: "40 | - sways". */
+/* "14 | 15 falls"; if no value fails: "40 | - sways". */
 static void describe(const Csv *csv, int row, char text[LABEL_SIZE]) {
     const char *holds = csv_text(csv, row, HOLDS_AT), *fails = csv_text(csv, row, FAILS_AT);
     const char *verdict = csv_text(csv, row, VERDICT);
@@ -35,7 +35,7 @@ static void write_label(char label[LABEL_SIZE], const Csv *csv, int row) {
     snprintf(label, LABEL_SIZE, "%s%s%s", csv_text(csv, row, METHOD), setting[0] != '\0' ? ":" : "", setting);
 }
 
-/* The borders of one method, from a row on, over as many lines as it takes. Returns the row after them. */
+/* Prints the borders of one method, from this row, over as many lines as needed. Returns the row after them. */
 static int print_method(const Csv *csv, int row) {
     char label[LABEL_SIZE], border[LABEL_SIZE];
     write_label(label, csv, row);
@@ -67,7 +67,7 @@ static bool holds(const Csv *csv, int row) {
     return false;
 }
 
-/* "11 creeps, 0.154 m, -0.217 J" of the last value at which the method holds, else of the first. */
+/* "11 creeps, 0.154 m, -0.217 J": the last value at which the method holds, else the first. */
 static int print_method_at_rest(const Csv *csv, int row) {
     char label[LABEL_SIZE];
     int next = row, shown = row;
@@ -85,7 +85,7 @@ static int print_method_at_rest(const Csv *csv, int row) {
 static void print_rest(const Csv *csv) {
     for (int row = 1; row < csv->rows;) {
         if (row == 1 || !same(csv, row, row - 1, STUDY, STUDY))
-            printf("%s: the last %s that holds, drift and energy from %d s on\n", csv_text(csv, row, STUDY),
+            printf("%s: the last %s that holds, drift and energy after %d s\n", csv_text(csv, row, STUDY),
                    csv_text(csv, row, PARAMETER), VERDICT_CREEP_FROM);
         row = print_method_at_rest(csv, row);
     }
@@ -107,9 +107,9 @@ bool stability_print(const char *folder, Error *error) {
     if (!print_table(folder, "stability", print_borders, error) || !print_table(folder, "rest", print_rest, error))
         return false;
     printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
-    printf("their figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
-    printf("why methods do not apply -> %s/refusals.csv\n", folder);
-    printf("what networks said and was not done -> %s/fallbacks.csv\n", folder);
-    printf("drift and energy of what is left alone -> %s/rest.csv\n", folder);
+    printf("figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
+    printf("methods that cannot run a scene -> %s/refusals.csv\n", folder);
+    printf("network outputs that were not used -> %s/fallbacks.csv\n", folder);
+    printf("drift and energy at rest -> %s/rest.csv\n", folder);
     return true;
 }

@@ -35,7 +35,7 @@ draw -o free --size 640x360 --jobs 1
 draw -o priced --size 640x360 --jobs 2 --costs chart/chart.csv
 run 1 compare free priced
 run 2 render "$runs/stack-engine.npz" -o x --costs chart/chart.csv
-complains "chart.csv: error: has no time of any of these runs"
+complains "chart.csv: error: has no closed-loop time at the impact for any of these runs"
 run 2 render "$engine" -o x --costs nowhere.csv
 complains "nowhere.csv"
 printf 'method,us\nengine,3\n' >other.csv
