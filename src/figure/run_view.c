@@ -43,17 +43,6 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
-int run_first_touch(const Trajectory *run) {
-    for (int step = 1; run->bomb >= 0 && step < run->frames; step++)
-        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            const TrajectoryContact *contact = &run->contacts[i];
-            if ((contact->a == run->bomb || contact->b == run->bomb) && !run->fixed[contact->a] &&
-                !run->fixed[contact->b])
-                return step;
-        }
-    return -1;
-}
-
 /* Of a box, from its place. */
 static void reach(const Trajectory *run, int frame, int body, double *x, double *y) {
     double angle = (double)run->angle[(size_t)frame * (size_t)run->bodies + (size_t)body];

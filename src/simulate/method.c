@@ -127,18 +127,24 @@ void stepper_destroy(Stepper *stepper) {
     free(stepper);
 }
 
-/* The step of Box2D-Lite around a contact solver. */
-static bool standard_step(const ContactSolver *solver, World *world, const Step *step, Error *error) {
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(step);
-    bool solved = solver->kind->solve(solver->state, &problem, solution, error);
-    step_solving_ends(step);
-    return solved && world_end_step(world, error);
+/* A contact solver whose cost a step meters. */
+typedef struct MeteredSolver {
+    const ContactSolver *solver;
+    const Step *step;
+} MeteredSolver;
+
+static bool solve_metered(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const MeteredSolver *metered = state;
+    step_solving_begins(metered->step);
+    bool solved = metered->solver->kind->solve(metered->solver->state, problem, solution, error);
+    step_solving_ends(metered->step);
+    return solved;
 }
+
+static const ContactSolverKind metered_kind = {.name = "metered", .solve = solve_metered};
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
-    return standard_step(&stepper->solver, world, step, error);
+    MeteredSolver metered = {&stepper->solver, step};
+    return world_step(world, &(ContactSolver){&metered_kind, &metered}, step->scene->dt, error);
 }
