@@ -29,7 +29,7 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
         assert_near(mark->at.y, first->at.y - i / 3 * (height + 1.2), 1e-9);
         assert_true(mark->at.x > 0 && mark->at.x + mark->width < sketch.width);
     }
-    assert_near(sketch.width, FIGURE_PAGE, 0);
+    assert_near(sketch.width, FIGURE_PAGE_WIDTH, 0);
     sketch_free(&sketch);
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
