@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "simulate/method.h"
 
+#include "common/names.h"
 #include "solvers/solvers.h"
 
 #include <stdio.h>
@@ -33,13 +34,10 @@ static const SteppingKind *stepping_find(const char *name) {
 }
 
 static bool unknown_method(const char *text, Error *error) {
-    char names[512] = "";
+    NameList known = {0};
     MethodInfo info;
-    for (int i = 0; method_info(i, &info); i++) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", info.name);
-    }
-    return error_input(error, text, "no such method; there are %s", names);
+    for (int i = 0; method_info(i, &info); i++) name_list_add(&known, info.name);
+    return error_unknown(error, "method", text, "a method", &known);
 }
 
 bool method_parse(Method *method, const char *text, Error *error) {
