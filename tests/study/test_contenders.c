@@ -66,7 +66,7 @@ static void refuse(const char *text, const char *reason) {
 
 static void bad_lists_are_refused(void **state) {
     (void)state;
-    refuse("engin", "engin: error: is not a method");
+    refuse("engin", "method: error: 'engin' is not a method");
     refuse("engine,", "is not a method");
     refuse("", "is not a method");
     refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
