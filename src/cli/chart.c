@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "common/file.h"
 #include "study/speed_accuracy.h"
 
 #include <stdio.h>
@@ -82,8 +83,7 @@ static const Progress *begin_stage(void *context, const char *what) {
 
 static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
     char csv[STUDY_PATH_SIZE];
-    if (snprintf(csv, sizeof csv, "%s/chart.csv", options->folder) >= (int)sizeof csv)
-        return error_input(error, options->folder, "the name is too long");
+    if (!file_path(csv, sizeof csv, error, "%s/chart.csv", options->folder)) return false;
     for (int i = 0; i < options->scene_count; i++) {
         if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
         printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,

@@ -2,6 +2,7 @@
 /* The settings of a method. */
 #include "common/settings.h"
 
+#include "common/names.h"
 #include "common/parse.h"
 
 #include <stddef.h>
@@ -21,11 +22,9 @@ static bool is_known(const SettingSpec *known, const char *key) {
 }
 
 static bool unknown_key(const SettingSpec *known, const char *key, const char *where, Error *error) {
-    if (known->key == NULL) return error_input(error, where, "unknown setting '%s'; it takes none", key);
-    char list[512] = "";
-    for (size_t used = 0; known->key != NULL && used < sizeof list; known++)
-        used += (size_t)snprintf(list + used, sizeof list - used, " %s", known->key);
-    return error_input(error, where, "unknown setting '%s'; known are:%s", key, list);
+    NameList keys = {0};
+    for (; known->key != NULL; known++) name_list_add(&keys, known->key);
+    return error_unknown(error, where, key, "a setting", &keys);
 }
 
 /* One "key=value" of `length` bytes. A value may hold further '='. */

@@ -15,9 +15,6 @@ typedef struct Font {
 /* A space as wide as a figure: pads numbers. */
 #define FIGURE_SPACE "\xE2\x80\x87"
 
-/* Decodes a character of UTF-8 and moves *text behind it; 0xFFFD for a byte that begins no valid one. */
-unsigned font_next_character(const char **text);
-
 /* The largest size not above `pixels`. */
 Font font_pick(FontFace face, double pixels);
 

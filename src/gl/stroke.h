@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines, dots and arrows, all made of the one shape that every machine draws alike. Pixels, y down. */
 #pragma once
+#include "common/point.h"
 #include "gl/drawing.h"
-
-typedef struct Point {
-    double x, y;
-} Point;
 
 /* A line with round ends. */
 void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint32_t color, const Rect *clip);
@@ -26,10 +23,10 @@ typedef struct Dash {
     double on, off, on2, off2;
 } Dash;
 
-/* Keeps the place in the dashes from one piece of a line to the next; begin with 0. */
-typedef struct Pen {
+/* A dashed line in pieces: `travelled` keeps the position in the dashes from one piece to the next and begins with 0. */
+typedef struct DashedLine {
     double thickness, travelled;
     uint32_t color;
     Dash dash;
-} Pen;
-void stroke_dashed(Drawing *drawing, Point from, Point to, Pen *pen, const Rect *clip);
+} DashedLine;
+void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip);

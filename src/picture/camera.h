@@ -10,6 +10,9 @@ typedef struct Camera {
     double left, top;
 } Camera;
 
-/* Shows what the trajectory asks to see; where it asks nothing, all that its bodies pass over the whole run.
-   Of static bodies only what lies near that counts. The panel's size in pixels. */
+/* True if the scene of the trajectory sets a view of a usable size. */
+bool camera_is_set(const Trajectory *trajectory);
+
+/* Shows the view that the scene sets; without one, everything its dynamic bodies pass during the whole run. The panel's
+   size is in pixels. */
 Camera camera_fit(const Trajectory *trajectory, int width, int height);

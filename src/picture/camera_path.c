@@ -3,6 +3,8 @@
    speed and in acceleration, and looks ahead. */
 #include "picture/camera_path.h"
 
+#include "picture/extent.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +15,6 @@ static const double BEFORE = 0.7;        /* s before the divergence that the way
 static const double STAYS = 1.2;         /* s that the camera stays there */
 static const double CLOSER = 0.5;        /* of the whole view's size: the one that follows the bomb */
 static const double BODIES_SEEN = 6;     /* a close view is at least so many of its body's sides wide and high */
-static const double FARTHEST = 1e5;      /* m; what is further off is not followed */
 static const double MOST_REACH = 500;    /* frames; or tiny steps would take long */
 enum { PASSES = 3 };
 
@@ -51,7 +52,7 @@ static void want_bomb(View *views, const Trajectory *run, int frames, const View
     for (int frame = 0; frame < frames; frame++) {
         if (frame < run->frames && trajectory_has(run, frame, run->bomb)) {
             Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb];
-            if (fabs((double)at.x) < FARTHEST && fabs((double)at.y) < FARTHEST)
+            if (fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
                 wanted = close_view(whole, (double)at.x, (double)at.y, size, height);
         }
         views[frame] = wanted;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "simulate/method.h"
 
+#include "common/names.h"
 #include "solvers/solvers.h"
 
 #include <stdio.h>
@@ -33,13 +34,10 @@ static const SteppingKind *stepping_find(const char *name) {
 }
 
 static bool unknown_method(const char *text, Error *error) {
-    char names[512] = "";
+    NameList known = {0};
     MethodInfo info;
-    for (int i = 0; method_info(i, &info); i++) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", info.name);
-    }
-    return error_input(error, text, "no such method; there are %s", names);
+    for (int i = 0; method_info(i, &info); i++) name_list_add(&known, info.name);
+    return error_unknown(error, "method", text, "a method", &known);
 }
 
 bool method_parse(Method *method, const char *text, Error *error) {
@@ -127,18 +125,24 @@ void stepper_destroy(Stepper *stepper) {
     free(stepper);
 }
 
-/* The step of Box2D-Lite around a contact solver. */
-static bool standard_step(const ContactSolver *solver, World *world, const Step *step, Error *error) {
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(step);
-    bool solved = solver->kind->solve(solver->state, &problem, solution, error);
-    step_solving_ends(step);
-    return solved && world_end_step(world, error);
+/* A contact solver whose cost a step meters. */
+typedef struct MeteredSolver {
+    const ContactSolver *solver;
+    const Step *step;
+} MeteredSolver;
+
+static bool solve_metered(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const MeteredSolver *metered = state;
+    step_solving_begins(metered->step);
+    bool solved = metered->solver->kind->solve(metered->solver->state, problem, solution, error);
+    step_solving_ends(metered->step);
+    return solved;
 }
+
+static const ContactSolverKind metered_kind = {.name = "metered", .solve = solve_metered};
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
-    return standard_step(&stepper->solver, world, step, error);
+    MeteredSolver metered = {&stepper->solver, step};
+    return world_step(world, &(ContactSolver){&metered_kind, &metered}, step->scene->dt, error);
 }

@@ -2,6 +2,7 @@
 #include "stability/stability_case.h"
 
 #include "common/array.h"
+#include "common/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +11,7 @@
 static const float shift = 1e-6f; /* m */
 
 bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error) {
-    return snprintf(path, STABILITY_PATH_SIZE, "%s/stability/%s.yaml", place->scenes, place->scene) <
-               STABILITY_PATH_SIZE ||
-           error_input(error, place->scenes, "the name is too long");
+    return file_path(path, STABILITY_PATH_SIZE, error, "%s/stability/%s.yaml", place->scenes, place->scene);
 }
 
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error) {

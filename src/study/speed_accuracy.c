@@ -152,8 +152,7 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
 
 static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
     char path[STUDY_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/chart.csv", run->options->folder) >= (int)sizeof path)
-        return error_input(error, run->options->folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/chart.csv", run->options->folder)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
     if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;

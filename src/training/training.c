@@ -2,6 +2,7 @@
 /* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
 #include "training/training.h"
 
+#include "common/names.h"
 #include "training/checks.h"
 #include "training/form.h"
 #include "training/optimizer.h"
@@ -17,13 +18,12 @@
 const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_gd, &optimizer_lm, NULL};
 
 static const Optimizer *find_optimizer(const char *name, Error *error) {
-    char known[128] = "";
+    NameList known = {0};
     for (int i = 0; optimizers[i] != NULL; i++) {
         if (strcmp(optimizers[i]->name, name) == 0) return optimizers[i];
-        size_t length = strlen(known);
-        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", optimizers[i]->name);
+        name_list_add(&known, optimizers[i]->name);
     }
-    error_input(error, "optimizer", "there is no \"%s\"; known are %s", name, known);
+    error_unknown(error, "optimizer", name, "an optimizer", &known);
     return NULL;
 }
 

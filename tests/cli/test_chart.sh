@@ -89,7 +89,7 @@ complains "bad.csv:1:3: error: "
 run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
 complains "single.yaml: error: there is a scene of that name already"
 run 2 chart "$scenes/single.yaml" -o none --methods magic
-complains "magic: error: no such method"
+complains "'magic' is not a method; known: "
 run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10
 complains "is given twice"
 run 2 chart nowhere.yaml -o none --quick

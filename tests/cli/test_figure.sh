@@ -71,7 +71,7 @@ refused() {
     run 2 figure "$@"
     complains "$message"
 }
-refused "'stripes' is no kind of figure; there are strip, annotated, divergence, strobe, network, narrow-phase" \
+refused "'stripes' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
     stripes engine.npz -o a.png
 refused "a.gif: error: a figure's name ends in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: a figure's name ends in" strip engine.npz -o ./png

@@ -66,12 +66,12 @@ static void refuse(const char *text, const char *reason) {
 
 static void bad_lists_are_refused(void **state) {
     (void)state;
-    refuse("engin", "engin: error: no such method");
-    refuse("engine,", "no such method");
-    refuse("", "no such method");
+    refuse("engin", "method: error: 'engin' is not a method");
+    refuse("engine,", "is not a method");
+    refuse("", "is not a method");
     refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
     refuse("engine,engine:k=10", "is given twice");
-    refuse("engine:sweeps=3", "unknown setting 'sweeps'");
+    refuse("engine:sweeps=3", "'sweeps' is not a setting");
     char text[1000];
     memset(text, 'x', sizeof text);
     text[999] = '\0';
