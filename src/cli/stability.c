@@ -24,8 +24,8 @@ static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures go",
      0},
     {"methods", METHODS, "LIST", 0,
-     "Methods, separated by commas; a name alone has as many iterations as the scene says (default: the engine, "
-     "robust, momentum, substepping, nncg, the reference, pair-net, contact-net and scene-net)",
+     "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
+     "does not report as left out)",
      0},
     {"study", STUDY, "NAME", 0, "One of the studies or maps (may be repeated; default: all)", 0},
     {"scenes", SCENES, "DIR", 0, "Folder in which stability/ holds the scenes (default: scenes)", 0},
@@ -92,7 +92,11 @@ static bool study(const StabilityOptions *options, Error *error) {
     progress_bar_begin(&bar, "stability");
     bool ok = stability_run(options, &bar.progress, error);
     progress_bar_end(&bar);
-    return ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    const ContenderNames left_out = contenders_left_out(STUDY_STABILITY);
+    if (ok && options->methods == NULL && left_out.text[0] != '\0')
+        printf("left out unless named in --methods: %s\n", left_out.text);
+    return ok;
 }
 
 int command_stability(int argc, char **argv, Error *error) {
