@@ -11,9 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
-                                      "reference,pair-net,contact-net,scene-net";
-
 /* The study in progress. */
 typedef struct Run {
     const StabilityOptions *options;
@@ -111,8 +108,7 @@ static bool write_tables(const Run *run, Error *error) {
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {
     Run run = {.options = options, .parts = {.progress = progress}};
     uint64_t key;
-    if (!know_names(options, error) ||
-        !contenders_read(&run.methods, options->methods != NULL ? options->methods : default_methods, error))
+    if (!know_names(options, error) || !contenders_parse(&run.methods, options->methods, STUDY_STABILITY, error))
         return false;
     for (int i = 0; i < stability_study_count; i++)
         if (does_study(&run, i)) run.parts.total += stability_studies[i].weight;

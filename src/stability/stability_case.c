@@ -42,19 +42,9 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error) {
     return applies;
 }
 
-bool stability_has_setting(const Method *method, const char *key) {
-    if (method->solver == NULL) return false;
-    for (const SettingSpec *spec = method->solver->settings; spec->key != NULL; spec++)
-        if (strcmp(spec->key, key) == 0) return true;
-    return false;
-}
-
-bool stability_is_reference(const Method *method) {
-    return method->solver != NULL && strcmp(method->solver->name, "reference") == 0;
-}
-
 bool stability_takes_iterations(const Method *method) {
-    return stability_has_setting(method, "k") && settings_get(&method->settings, "k") == NULL;
+    return method->kind->solver != NULL && settings_known(method->kind->description->settings, "k") &&
+           settings_get(&method->settings, "k") == NULL;
 }
 
 bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
