@@ -16,13 +16,3 @@ size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
     *character = c;
     return length;
 }
-
-size_t utf8_encode(char *out, uint32_t character) {
-    static const uint32_t above[] = {0x80, 0x800, 0x10000};
-    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
-    size_t length = 1;
-    while (length < 4 && character >= above[length - 1]) length++;
-    for (size_t i = length; i-- > 1; character >>= 6) out[i] = (char)(0x80 | (character & 0x3f));
-    out[0] = (char)(leads[length - 1] | character);
-    return length;
-}

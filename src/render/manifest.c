@@ -4,7 +4,7 @@
 
 #include "common/file.h"
 #include "common/hash.h"
-#include "common/json.h"
+#include "common/json_write.h"
 #include "render/frame_texts.h"
 #include "render/sink.h"
 
