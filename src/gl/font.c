@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { PEN_UNIT = 64 }; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
+enum { PEN_UNIT = 64 }; /* pen positions are in 1/64 pixel, so that rounding errors of glyphs do not accumulate */
 #define ELLIPSIS "\xE2\x80\xA6"
 
 Font font_pick(FontFace face, double pixels) {

@@ -55,9 +55,9 @@ complains "'' is not a valid value"
 run 2 render "$engine" -o x --show "$(printf 'x%.0s' $(seq 5000))"
 complains "xxx' is not a valid value"
 run 2 render "$engine" -o x --show timeline
-complains "'timeline' compares runs, and there is but one"
+complains "'timeline' compares runs, but there is only one"
 run 2 render "$engine" "$runs/stack-engine.npz" -o x --compare overlay
-complains "of other worlds (bodies: "
+complains "their worlds differ (bodies: "
 sed "s|^frames:.*|frames: 3|; s|networks/|$scenes/networks/|; /^bomb:/d" "$scenes/single.yaml" >calm.yaml
 run 2 render calm.yaml -o x --camera bomb
 complains "no bomb"

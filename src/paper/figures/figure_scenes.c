@@ -29,7 +29,7 @@ static Image *cut_window(const Image *frame, const Picture *picture, Error *erro
     int y0 = panel->top + (int)lrint(camera->top - camera->scale * (bottom + high));
     int columns = (int)lrint(camera->scale * wide), rows = (int)lrint(camera->scale * high);
     if (x0 < panel->left || y0 < panel->top || x0 + columns > panel->right || y0 + rows > panel->bottom) {
-        error_input(error, picture->panels[0]->scene, "the picture does not show all of the figure's window");
+        error_input(error, picture->runs[0]->scene, "the picture does not show all of the figure's window");
         return NULL;
     }
     Image *window = image_create(columns, rows, error);
