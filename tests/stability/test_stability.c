@@ -263,7 +263,7 @@ static void names_and_methods_that_there_are_not_are_refused(void **state) {
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "luck: error: no such study or map; there are stack_height, ");
+    assert_error(error, ERROR_INPUT, "'luck' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     error = (Error){0};
