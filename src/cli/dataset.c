@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "common/names.h"
 #include "dataset/dataset.h"
 
 #include <stdio.h>
@@ -78,13 +79,12 @@ static const struct argp argp = {
 /* The place of a word in a list; the message names them all. */
 static bool find_word(const char *option, const char *word, const char *const *words, int count, int *place,
                       Error *error) {
-    char known[128] = "";
+    NameList known = {0};
     for (*place = 0; *place < count; ++*place) {
         if (strcmp(words[*place], word) == 0) return true;
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "", words[*place]);
+        name_list_add(&known, words[*place]);
     }
-    return error_input(error, option, "'%.64s' is none of %s", word, known);
+    return error_unknown(error, option, word, "a valid value", &known);
 }
 
 static bool choose(Options *options, Error *error) {

@@ -77,9 +77,9 @@ static void write_help(char help[HELP_SIZE]) {
 static bool read_width(const char *text, double *width, Error *error) {
     float number;
     if (strcmp(text, "column") == 0)
-        *width = FIGURE_COLUMN;
+        *width = FIGURE_COLUMN_WIDTH;
     else if (strcmp(text, "page") == 0)
-        *width = FIGURE_PAGE;
+        *width = FIGURE_PAGE_WIDTH;
     else if (option_float("--width", text, (float)FIGURE_LEAST_WIDTH, (float)FIGURE_LARGEST_WIDTH, &number, error))
         *width = (double)number;
     else
@@ -142,7 +142,8 @@ static bool read_options(const Options *options, const FigureKind *kind, FigureS
                          Error *error) {
     int moments;
     SketchFormat format;
-    *spec = (FigureSpec){.width = FIGURE_PAGE, .points = FIGURE_POINTS, .dpi = SKETCH_DPI, .scene = options->scene};
+    *spec =
+        (FigureSpec){.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI, .scene = options->scene};
     if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
     if (options->at != NULL && !kind->takes_times) return refuse("--at", kind, error);
     if (options->moments != NULL && !kind->takes_moments) return refuse("--moments", kind, error);

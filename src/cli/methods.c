@@ -23,10 +23,10 @@ static const struct argp argp = {NULL,
 int command_methods(int argc, char **argv, Error *error) {
     (void)error;
     if (!options_parse(&argp, argc, argv, NULL)) return STATUS_DIFFERENT;
-    MethodInfo info;
-    for (int i = 0; method_info(i, &info); i++) {
-        printf("%-17s %s\n", info.name, info.summary);
-        for (const SettingSpec *setting = info.settings; setting->key != NULL; setting++)
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        printf("%-17s %s\n", method->name, method->summary);
+        for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++)
             printf("    %s: %s\n", setting->key, setting->summary);
     }
     return STATUS_SAME;

@@ -79,8 +79,7 @@ bool panels_store(const Panels *panels, const char *directory, Error *error) {
         }
         char number[16] = "";
         if (same > 1) snprintf(number, sizeof number, "-%d", same);
-        if (snprintf(path, sizeof path, "%s/%s%s.npz", directory, stem, number) >= (int)sizeof path)
-            return error_input(error, directory, "the name is too long");
+        if (!file_path(path, sizeof path, error, "%s/%s%s.npz", directory, stem, number)) return false;
         if (!trajectory_write(panels->runs[i], path, error)) return false;
     }
     return true;

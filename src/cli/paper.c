@@ -58,8 +58,7 @@ static const struct argp argp = {
 static bool draw_and_report(const PaperOptions *study, Error *error) {
     enum { PATH_SIZE = 4096 };
     char figures[PATH_SIZE];
-    if (snprintf(figures, sizeof figures, "%s/figures", study->folder) >= (int)sizeof figures)
-        return error_input(error, study->folder, "the name is too long");
+    if (!file_path(figures, sizeof figures, error, "%s/figures", study->folder)) return false;
     if (!file_make_directory(figures, error) || !engine_figures_draw(study->scenes, figures, error) ||
         !result_figures_draw(study->folder, error) || !paper_report_write(study->folder, error))
         return false;

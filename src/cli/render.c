@@ -122,7 +122,7 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
     return render_look_read(&options->look, &render->look, error) &&
            choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
-           (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
+           (options->size == NULL || option_size("--size", options->size, RENDER_SIDE_MIN, RENDER_SIDE_MAX,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||
             option_frames("--frames", options->frames, &render->first, &render->last, error)) &&

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/render_look.h"
 
+#include "common/names.h"
 #include "picture/picture.h"
 #include "study/chart_csv.h"
 
@@ -8,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { COMPARE = 512, SHOW, CAMERA, THEME, COSTS, LIST_SIZE = 256 };
+enum { COMPARE = 512, SHOW, CAMERA, THEME, COSTS };
 
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "Look:", 2},
@@ -49,13 +50,11 @@ static int find(const char *const *names, const char *name, size_t length) {
 }
 
 static bool unknown(const char *option, const char *name, size_t length, const char *const *names, Error *error) {
-    char list[LIST_SIZE] = "";
-    for (int i = 0; names[i] != NULL; i++) {
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", names[i]);
-    }
-    int shown = length < 60 ? (int)length : 60;
-    return error_input(error, option, "'%.*s' is none of %s", shown, name, list);
+    NameList known = {0};
+    for (int i = 0; names[i] != NULL; i++) name_list_add(&known, names[i]);
+    char shown[64];
+    snprintf(shown, sizeof shown, "%.*s", (int)(length < sizeof shown ? length : sizeof shown), name);
+    return error_unknown(error, option, shown, "a valid value", &known);
 }
 
 /* NULL leaves *index unchanged. */

@@ -24,8 +24,8 @@ static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0,
      "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures", 0},
     {"methods", METHODS, "LIST", 0,
-     "Methods, separated by commas; a name without settings uses the scene's number of iterations (default: engine, "
-     "robust, momentum, substepping, nncg, reference, pair-net, contact-net and scene-net)",
+     "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
+     "does not report as left out)",
      0},
     {"study", STUDY, "NAME", 0, "Only this study or map (may be repeated; default: all)", 0},
     {"scenes", SCENES, "DIR", 0, "Folder whose subfolder stability/ has the scenes (default: scenes)", 0},
@@ -92,7 +92,11 @@ static bool study(const StabilityOptions *options, Error *error) {
     progress_bar_begin(&bar, "stability");
     bool ok = stability_run(options, &bar.progress, error);
     progress_bar_end(&bar);
-    return ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    const ContenderNames left_out = contenders_left_out(STUDY_STABILITY);
+    if (ok && options->methods == NULL && left_out.text[0] != '\0')
+        printf("left out unless named in --methods: %s\n", left_out.text);
+    return ok;
 }
 
 int command_stability(int argc, char **argv, Error *error) {

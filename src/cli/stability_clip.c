@@ -107,10 +107,9 @@ static bool draw(Clip *clip, Error *error) {
     char name[MAP_CLIP_SIZE], folder[PATH_MAX], video[PATH_MAX], title[TITLE_SIZE];
     char notes[2][NOTE_SIZE];
     map_cell_clip(name, own);
-    int length = snprintf(folder, sizeof folder, "%s/%s", clip->options->folder, name);
-    if (length < 0 || length + 4 >= (int)sizeof folder)
-        return error_input(error, clip->options->folder, "the name is too long");
-    snprintf(video, sizeof video, "%s/%s.mp4", clip->options->folder, name);
+    if (!file_path(folder, sizeof folder, error, "%s/%s", clip->options->folder, name) ||
+        !file_path(video, sizeof video, error, "%s.mp4", folder))
+        return false;
     snprintf(title, sizeof title, "%s %.4g %s, %s %.4g %s", own->x_parameter, own->x, own->x_unit, own->y_parameter,
              own->y, own->y_unit);
     RenderOptions render = draw_panels_defaults(folder);

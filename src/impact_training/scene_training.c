@@ -64,7 +64,8 @@ static bool make_driver(void *context, ContactSolver *solver, Error *error) {
     if (of->driver == BY_NETWORK) return scene_net_make(solver, of->network, rollout_near, error);
     Settings settings;
     const ContactSolverKind *kind = of->driver == BY_MOMENTUM ? &solver_momentum : &solver_reference;
-    if (!settings_parse(&settings, of->driver == BY_MOMENTUM ? "k=20" : "", kind->settings, kind->name, error))
+    if (!settings_parse(&settings, of->driver == BY_MOMENTUM ? "k=20" : "", kind->description.settings,
+                        kind->description.name, error))
         return false;
     void *state = kind->create(&settings, error);
     if (state == NULL) return false;

@@ -4,7 +4,7 @@
 
 #include "common/file.h"
 #include "common/hash.h"
-#include "common/json.h"
+#include "common/json_write.h"
 #include "render/frame_texts.h"
 #include "render/sink.h"
 
@@ -35,7 +35,7 @@ static uint64_t hash_run(const Trajectory *run) {
 static void put_runs(JsonWriter *json, const Manifest *manifest) {
     json_begin_array(json, "runs", JSON_LINES);
     for (int i = 0; i < manifest->picture->count; i++) {
-        const Trajectory *run = manifest->picture->panels[i];
+        const Trajectory *run = manifest->picture->runs[i];
         json_begin_object(json, NULL, JSON_ONE_LINE);
         json_put_text(json, "scene", run->scene);
         json_put_hash(json, "scene_hash", run->scene_hash);
@@ -88,7 +88,7 @@ static void put_head(JsonWriter *json, const Manifest *manifest) {
     json_put_int(json, NULL, options->width);
     json_put_int(json, NULL, options->height);
     json_end(json);
-    json_put_number(json, "dt", (double)manifest->picture->panels[0]->dt);
+    json_put_number(json, "dt", (double)manifest->picture->runs[0]->dt);
     json_put_text(json, "png", options->small ? "small" : "fast");
     json_put_text(json, "title", options->title);
     json_put_text(json, "end", options->look.end);
@@ -112,8 +112,7 @@ static void put_picture(JsonWriter *json, const Manifest *manifest, int index, P
     if (moment.kind == MOMENT_BETWEEN) json_put_text(json, "part", text);
     json_begin_array(json, "states", JSON_ONE_LINE);
     for (int i = 0; i < picture->count; i++)
-        json_put_hash(json, NULL,
-                      trajectory_frame_hash(picture->panels[i], picture_panel_frame(picture, i, moment.frame)));
+        json_put_hash(json, NULL, trajectory_frame_hash(picture->runs[i], picture_run_frame(picture, i, moment.frame)));
     json_end(json);
     json_put_hash(json, "pixels", hashes.pixels);
     json_put_hash(json, "file_hash", hashes.file);

@@ -47,7 +47,7 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
     Picture picture;
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
     Renderer *renderer = NULL;
-    if (picture_dress(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
+    if (picture_apply_options(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
     if (renderer == NULL)
         picture_free(&picture);
     else

@@ -155,8 +155,8 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
     MomentPlan plan;
     int first, last;
     if (!choose_range(options, picture, &first, &last, error) ||
-        !moments_plan(&plan, picture->panels, picture->count, first, last, options, error) ||
-        !picture_dress(picture, options, error) || !file_make_directory(options->directory, error))
+        !moments_plan(&plan, picture->runs, picture->count, first, last, options, error) ||
+        !picture_apply_options(picture, options, error) || !file_make_directory(options->directory, error))
         return false;
     result->first = first;
     result->last = moments_last(&plan);

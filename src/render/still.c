@@ -17,9 +17,9 @@ struct Still {
 };
 
 static bool set_up(Still *still, int width, int height, Error *error) {
-    if (width < 1 || height < 1 || width > RENDER_LARGEST_SIDE || height > RENDER_LARGEST_SIDE)
+    if (width < 1 || height < 1 || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
         return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be 1 to %d", width,
-                           height, RENDER_LARGEST_SIDE);
+                           height, RENDER_SIDE_MAX);
     if ((still->on_white = image_create(width, height, error)) == NULL ||
         !context_create(&still->context, CONTEXT_AUTO, error) ||
         !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
@@ -53,7 +53,7 @@ static Picture plan(const Still *still, const StillShot *shot) {
     Picture picture = {.count = shot->colours + 1, .frames = shot->run->frames, .camera = shot->camera};
     for (int i = 0; i <= shot->colours; i++) {
         picture.layout.panels[i] = (Rect){0, 0, still->on_white->width, still->on_white->height};
-        picture.panels[i] = shot->run;
+        picture.runs[i] = shot->run;
     }
     picture.theme = theme_get(LOOK_LIGHT);
     return picture;

@@ -16,7 +16,7 @@ typedef struct StillShot {
 
 typedef struct Still Still;
 
-/* For images of this size, each side 1 .. RENDER_LARGEST_SIDE pixels. Sets Mesa's environment variables (context.c). */
+/* For images of this size, each side 1 .. RENDER_SIDE_MAX pixels. Sets Mesa's environment variables (context.c). */
 Still *still_create(int width, int height, Error *error);
 void still_destroy(Still *still);
 

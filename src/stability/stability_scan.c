@@ -51,7 +51,7 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     Scene *scene = scene_at(scan, value, error);
     const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
     if (scene != NULL) stability_shift(scene, seed);
-    if (scene != NULL && stability_is_reference(method)) scene->warm_starting = true;
+    if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
     bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
     scene_destroy(scene);
     return ok;
@@ -156,7 +156,7 @@ static void put_rest(const Run *run, int i, const ScanRun *scan_run, FILE *lines
 }
 
 static void put_runs(const Run *run, int i, FILE *lines) {
-    const bool network = stability_has_setting(&run->scan->methods->items[i].method, "network");
+    const bool network = run->scan->methods->items[i].method.kind->description->needs_network;
     Result *result = &run->results[i];
     if (result->run_count == 0) return;
     qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);

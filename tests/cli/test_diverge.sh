@@ -69,7 +69,7 @@ says "all states of frame 39 are equal, but contacts of step 30 differ: 1 in imp
 says "growth of the largest distance: there are no frames with a distance"
 
 run 2 diverge sorcery.npz engine.npz --scene "$stack"
-complains "no such method"
+complains "is not a method; known: engine"
 run 2 diverge engine.npz hostile.npz
 complains "hostile.npz: error: contact_start"
 head -c 1000 engine.npz >cut.npz

@@ -41,6 +41,9 @@ for layout in "$sources"/golden/figures/layout/*.svg; do
     checks=$((checks + 1))
     cmp -s "$layout" "page/layout/$(basename "$layout")" || fail "$(basename "$layout") has another layout"
 done
+# Bytes of every kind in every format: equal on Debian 12 and 13.
+equal "figures with other bytes" "$(diff "$sources/golden/figures/figures.sha256" page/figures.sha256)" ""
+equal "files hashed" "$(wc -l <page/figures.sha256)" 18
 cmp -s "$sources/golden/figures/README.md" page/README.md || fail "golden/figures/README.md is not what golden/figures/draw writes"
 
 /usr/bin/python3 - <<'PYTHON' || fail "an SVG is not XML"
@@ -68,7 +71,7 @@ refused() {
     run 2 figure "$@"
     complains "$message"
 }
-refused "'stripes' is no kind of figure; there are strip, annotated, divergence, strobe, network, narrow-phase" \
+refused "'stripes' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
     stripes engine.npz -o a.png
 refused "a.gif: error: a figure's name ends in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: a figure's name ends in" strip engine.npz -o ./png

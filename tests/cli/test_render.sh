@@ -56,7 +56,7 @@ import numpy
 run = numpy.load('top/top-engine.npz', allow_pickle=False)
 assert (~numpy.isnan(run['angle'][:, 11])).tolist() == [True, True, False, False, False]" || fail "the top goes"
 run 2 render single.yaml short.npz short.npz -o x --set ratio=3
-complains "there is no parameter 'ratio' to set"
+complains "'ratio' is not a parameter"
 run 2 render short.npz -o x --set ratio=3
 complains "--set: error: needs exactly one scene (got 0)"
 run 2 render top.yaml top.yaml -o x --set ratio=3

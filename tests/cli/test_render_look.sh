@@ -43,21 +43,21 @@ run 2 render "$engine" -o x --costs other.csv
 complains "other.csv:1:1: error"
 
 run 2 render "$engine" -o x --compare both
-complains "--compare: error: 'both' is none of split, overlay, difference"
+complains "--compare: error: 'both' is not a valid value; known: split, overlay, difference"
 run 2 render "$engine" -o x --camera ''
-complains "--camera: error: '' is none of fit, bomb, divergence"
+complains "--camera: error: '' is not a valid value; known: fit, bomb, divergence"
 run 2 render "$engine" -o x --theme grey
-complains "'grey' is none of light, dark"
+complains "'grey' is not a valid value; known: light, dark"
 run 2 render "$engine" -o x --show trails,ghost
-complains "--show: error: 'ghost' is none of ghosts, distance, trails, contacts, impulses, velocities, timeline"
+complains "--show: error: 'ghost' is not a valid value; known: ghosts, distance, trails, contacts, impulses, velocities, timeline"
 run 2 render "$engine" -o x --show trails,
-complains "'' is none of"
+complains "'' is not a valid value"
 run 2 render "$engine" -o x --show "$(printf 'x%.0s' $(seq 5000))"
-complains "xxx' is none of"
+complains "xxx' is not a valid value"
 run 2 render "$engine" -o x --show timeline
-complains "'timeline' compares runs, and there is but one"
+complains "'timeline' compares runs, but there is only one"
 run 2 render "$engine" "$runs/stack-engine.npz" -o x --compare overlay
-complains "of other worlds (bodies: "
+complains "their worlds differ (bodies: "
 sed "s|^frames:.*|frames: 3|; s|networks/|$scenes/networks/|; /^bomb:/d" "$scenes/single.yaml" >calm.yaml
 run 2 render calm.yaml -o x --camera bomb
 complains "no bomb"

@@ -86,7 +86,7 @@ complains "height must be a whole number"
 run 2 simulate "$stability/stack_height.yaml" --set hight=3
 complains "did you mean 'height'?"
 run 2 simulate "$scenes/stack.yaml" --set height=3
-complains "there is no parameter 'height' to set; there are none"
+complains "'height' is not a parameter; known: none"
 run 2 simulate "$stability/stack_height.yaml" $(for i in 1 2 3 4 5 6 7; do echo --set height=3; done)
 complains "the parameter 'height' is set twice"
 run 2 simulate nowhere.yaml
@@ -94,9 +94,9 @@ complains "nowhere.yaml: error:"
 run 2 simulate "$scenes/single.yaml" -o run.txt
 complains "must end in .npz or .csv"
 run 2 simulate "$scenes/single.yaml" --method magic
-complains "no such method; there are engine, "
+complains "is not a method; known: engine, "
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
-complains "unknown setting 'sweeps'"
+complains "'sweeps' is not a setting"
 run 2 simulate "$scenes/single.yaml" --method engine:k=none
 complains "k: error: a whole number"
 for value in nan 1e9999 1/0 0 -1/60 60x; do

@@ -63,9 +63,9 @@ equal "other borders" "$(diff one/stability.csv part/stability.csv | grep -c '^>
 equal "files" "$(echo $(ls part))" "borders.png borders.svg borders.txt $tables"
 
 run 2 stability --scenes "$scenes" --study nothing -o none
-complains "nothing: error: no such study or map; there are stack_height"
+complains "'nothing' is not a study or map; known: stack_height"
 run 2 stability --scenes "$scenes" --methods magic -o none
-complains "magic: error: no such method"
+complains "'magic' is not a method; known: "
 run 2 stability --scenes "$scenes" --methods engine,engine -o none
 complains "is given twice"
 run 2 stability --study bomb_speed -o none

@@ -66,13 +66,13 @@ static void without_options_a_picture_is_a_frame(void **state) {
         assert_int_equal(moments_last(&plan) + 1, FRAMES);
         for (int i = 0; i < FRAMES; i++) {
             Moment moment = moments_at(&plan, i);
-            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.part == 0 && moment.slow == 1);
+            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.fraction == 0 && moment.slow == 1);
         }
     }
 }
 
 /* The time of the run, in frames. */
-static double time_of(Moment moment) { return moment.frame + moment.part; }
+static double time_of(Moment moment) { return moment.frame + moment.fraction; }
 
 static void slow_motion_adds_parts_around_the_impact(void **state) {
     (void)state;
@@ -84,7 +84,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
             Moment moment = moments_at(&plan, i);
             bool inside = moment.frame >= IMPACT - BEFORE && moment.frame < IMPACT + AFTER;
             assert_int_equal(moment.slow, inside ? slow : 1);
-            assert_int_equal(moment.kind, moment.part > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
+            assert_int_equal(moment.kind, moment.fraction > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
             stored += moment.kind == MOMENT_STORED;
             if (i == 0) continue;
             /* From each to the next passes what the one before says. */
@@ -126,7 +126,7 @@ static void the_first_impact_of_all_panels_counts(void **state) {
 }
 
 static void assert_same_moment(Moment a, Moment b) {
-    assert_true(a.kind == b.kind && a.frame == b.frame && a.part == b.part && a.slow == b.slow);
+    assert_true(a.kind == b.kind && a.frame == b.frame && a.fraction == b.fraction && a.slow == b.slow);
 }
 
 static void cards_and_hold_stand_around_the_run(void **state) {

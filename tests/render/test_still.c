@@ -69,7 +69,7 @@ static void alpha_is_coverage(void **state) {
 static void sizes_are_limited(void **state) {
     (void)state;
     Error error = {0};
-    assert_null(still_create(RENDER_LARGEST_SIDE + 1, 10, &error));
+    assert_null(still_create(RENDER_SIDE_MAX + 1, 10, &error));
     assert_error(error, ERROR_INPUT, "8193 x 10 pixels");
     error = (Error){0};
     assert_null(still_create(10, 0, &error));

@@ -160,7 +160,7 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
 static void assert_refused(const ContactSolverKind *kind, const char *text, const char *message) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
     assert_null(kind->create(&settings, &error));
     assert_error(error, ERROR_INPUT, message);
 }

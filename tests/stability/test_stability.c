@@ -190,7 +190,7 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
-    assert_ok(contenders_read(&methods, "robust,pair-net", &error), error);
+    assert_ok(contenders_parse(&methods, "robust,pair-net", STUDY_STABILITY, &error), error);
     StabilityScan scan = {&study, scenes, &methods};
     char *text = NULL;
     size_t size = 0;

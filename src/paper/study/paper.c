@@ -134,8 +134,7 @@ static bool all_parts(Run *run, Error *error) {
 static bool write_facts(const Run *run, Error *error) {
     const PaperSize *size = run->size;
     char path[PAPER_PATH_SIZE], text[1024];
-    if (snprintf(path, sizeof path, "%s/study.csv", run->options->folder) >= (int)sizeof path)
-        return error_input(error, run->options->folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/study.csv", run->options->folder)) return false;
     int length = snprintf(text, sizeof text,
                           "key,value\nquick,%s\nseed,%" PRIu64 "\nnetworks,%d\niterations,%d\nlaunches_swept,%s\n"
                           "launches_swept_finely,%s\nlaunches_swept_most_finely,%s\n"
@@ -170,9 +169,8 @@ static bool find_key(const Run *run, uint64_t *key, Error *error) {
 
 static bool begin(Run *run, Error *error) {
     uint64_t key;
-    if (snprintf(run->networks_folder, sizeof run->networks_folder, "%s/networks", run->options->folder) >=
-        (int)sizeof run->networks_folder)
-        return error_input(error, run->options->folder, "the name is too long");
+    if (!file_path(run->networks_folder, sizeof run->networks_folder, error, "%s/networks", run->options->folder))
+        return false;
     run->networks = malloc((size_t)paper_network_count * sizeof *run->networks);
     if (run->networks == NULL) return error_memory(error, "paper");
     choose_networks(run);
