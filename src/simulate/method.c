@@ -120,7 +120,7 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
     return solved;
 }
 
-static const ContactSolverKind metered_kind = {.name = "metered", .solve = solve_metered};
+static const ContactSolverKind metered_kind = {.description.name = "metered", .solve = solve_metered};
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
