@@ -84,8 +84,8 @@ static void trees_are_solved_as_sweeps_would_in_the_end(void **state) {
         World *world = make_trees(&seed);
         const ContactProblem problem = begin(world);
         ContactSolution found = make_solution(&problem), converged = make_solution(&problem);
-        solve_once(&solver_robust, "k=1", &problem, &found);
-        solve_once(&solver_reference, "", &problem, &converged);
+        solve_with(&solver_robust, "k=1", &problem, &found);
+        solve_with(&solver_reference, "", &problem, &converged);
         assert_consistent(&problem, &found);
         if (answer_to(&problem) == FOREST_WHOLE) {
             whole++;

@@ -23,7 +23,7 @@ static inline ContactSolver make_engine(const char *text) { return make_solver(&
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
 
 /* Solves a problem by a solver made for this once. */
-static inline void solve_once(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+static inline void solve_with(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
                               ContactSolution *solution) {
     Error error = {0};
     ContactSolver solver = make_solver(kind, text);
