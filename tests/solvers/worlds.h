@@ -22,6 +22,15 @@ static inline ContactSolver make_engine(const char *text) { return make_solver(&
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
 
+/* Solves a problem by a solver made for this once. */
+static inline void solve_with(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                              ContactSolution *solution) {
+    Error error = {0};
+    ContactSolver solver = make_solver(kind, text);
+    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
+    free_solver(&solver);
+}
+
 static inline World *make_world(void) {
     Error error = {0};
     const WorldDef def = {.gravity = {0, -10}, .warm_starting = true, .position_correction = true};
