@@ -74,7 +74,7 @@ complains "'tiny' is neither fast nor small"
 run 2 render single.yaml -o x --context vulkan
 complains "neither osmesa nor egl"
 run 2 render single.yaml -o x --size 193x108 --video odd.mp4
-complains "even width and height"
+complains "width and height must be even"
 run 2 render single.yaml -o x --video clip.avi
 complains ".mp4"
 run 2 render nowhere.npz -o x
@@ -87,7 +87,7 @@ run 2 render single.yaml -o x --video a.mp4 --video a.mp4
 complains "'a.mp4' twice"
 mkdir folder.gif
 run 2 render single.yaml -o x --video folder.gif
-complains "folder.gif: error: is no regular file"
+complains "folder.gif: error: is not a regular file"
 run 2 render single.yaml -o x --slow 1
 complains "--slow"
 run 2 render single.yaml -o x --slow 17
@@ -193,7 +193,7 @@ says "nothing to resume: broken/manifest.json:"
 equal "frames of another run" "$(ls broken | grep -c png)" 4
 echo '{"mine": 1}' >broken/manifest.json
 run 2 render short.npz -o broken --size 480x270 --resume
-complains "broken/manifest.json: error: is no manifest of twinbox"
+complains "broken/manifest.json: error: is not a manifest of twinbox"
 equal "a foreign file" "$(cat broken/manifest.json)" '{"mine": 1}'
 
 # No file is written outside the folder, whatever the name of a run.
