@@ -21,6 +21,7 @@ typedef struct Picture {
     double largest[RENDER_PANELS_MAX]; /* the same of each run from the first */
     const char *title;                 /* as in RenderOptions; outlive the picture */
     const char *notes[RENDER_PANELS_MAX];
+    const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
     RenderLook look;
     const Theme *theme;
     int shown; /* panels that are drawn */

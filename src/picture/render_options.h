@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is drawn, how large and where to: the options of render/render.h, of which a picture needs a part. */
 #pragma once
+#include "common/method_description.h"
 #include "gl/context.h"
 #include "picture/look.h"
 
@@ -24,9 +25,12 @@ typedef struct RenderOptions {
     bool small;                           /* files as small as libpng can make them, which takes long */
     const char *title;                    /* at the head of the picture; NULL: the scene's name */
     const char *notes[RENDER_PANELS_MAX]; /* behind what solved a panel; NULL: none */
-    RenderLook look;                      /* zeroed: bodies side by side */
-    int slow;                             /* times slower around the impact; 0, 1: nowhere */
-    double hold;                          /* s that the last frame stays */
-    bool title_card, end_card;            /* before and after the run */
-    bool resume;                          /* keep what an earlier, equal call has drawn */
+    /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of the
+       method is its title. */
+    const MethodDescription *(*describe)(const char *method);
+    RenderLook look;           /* zeroed: bodies side by side */
+    int slow;                  /* times slower around the impact; 0, 1: nowhere */
+    double hold;               /* s that the last frame stays */
+    bool title_card, end_card; /* before and after the run */
+    bool resume;               /* keep what an earlier, equal call has drawn */
 } RenderOptions;
