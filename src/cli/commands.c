@@ -8,7 +8,7 @@ const Command commands[] = {{"simulate", "run a scene by one method and store th
                             {"diverge", "tell why two trajectories part, and how fast", command_diverge},
                             {"figure", "draw a figure for a paper from runs", command_figure},
                             {"dataset", "record what the engine's solver does to each touching pair", command_dataset},
-                            {"train", "train the paper's network on a dataset", command_train},
+                            {"train", "train the network of a method", command_train},
                             {"chart", "chart speed against accuracy for every method", command_chart},
                             {"paper", "reproduce the paper, from seed to report", command_paper},
                             {"stability", "find where each method fails", command_stability},
