@@ -85,7 +85,7 @@ static void broken_launches_are_refused_with_their_place(void **state) {
         CASE("x,spin,x\n1,2,3\n", "1:8: error: column 'x' is there twice"),
         CASE("x,spin\n1\n", "2:1: error: 1 field, but the header has 2"),
         CASE("x,spin\n1,2\n1,2,3\n", "3:1: error: 3 fields, but the header has 2"),
-        CASE("x\n", "2:1: error: no line behind the header"),
+        CASE("x\n", "2:1: error: the table has no rows"),
         CASE("", "1:1: error: an empty table"),
         CASE("x\n1\n\0\n", "3:1: error: control character 0x00"),
         CASE("spin,x\n1,two\n", "2:3: error: x must be a number (got two)"),
