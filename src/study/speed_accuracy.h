@@ -28,9 +28,9 @@ typedef struct SpeedAccuracyOptions {
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    ContenderNames without_network; /* methods left out, since neither their settings nor the scene name a network */
-    double frozen_residual;         /* m/s: the largest of the reference solves of frozen steps */
-    int solves, unconverged; /* in closed loop, by this run of the program: reference solves, those that left more than
+    NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
+    double frozen_residual;   /* m/s: the largest of the reference solves of frozen steps */
+    int solves, unconverged;  /* in closed loop, by this run of the program: reference solves, those that left more than
                                 SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 
