@@ -186,7 +186,7 @@ static int compare_rows(const void *left, const void *right) {
     return order != 0 ? order : (a->phase > b->phase) - (a->phase < b->phase);
 }
 
-/* Equal rows lie side by side once sorted. */
+/* Equal rows are neighbours once sorted. */
 static bool check_doubles(const Csv *csv, const ChartTable *table, Error *error) {
     const ChartRow **sorted = malloc((size_t)table->count * sizeof(const ChartRow *));
     if (sorted == NULL) return error_memory(error, csv->path);

@@ -30,10 +30,10 @@ typedef struct Run {
     const StageProgress *progress;
     ContenderList contenders;
     PartFile part;
-    ChartRow *rows; /* of all scenes done, and behind them of the scene in hand */
-    int row_count;  /* of the scenes done */
+    ChartRow *rows; /* of the finished scenes, then of the current one */
+    int row_count;  /* of the finished scenes */
     SceneStudy study;
-    bool *scored; /* [contenders] of the scene in hand */
+    bool *scored; /* [contenders] of the current scene */
 } Run;
 
 static const Progress *begin_stage(const Run *run, const char *what) {
@@ -45,7 +45,7 @@ static const Progress *begin_stage(const Run *run, const char *what) {
 
 static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run->row_count + contender * ROWS_EACH; }
 
-/* All that is done: rows of the scenes before, and of the contenders scored in this one. */
+/* Stores the rows of finished scenes and of the contenders scored in this one. */
 static bool keep_part(const Run *run, Error *error) {
     int count = run->row_count;
     size_t most = (size_t)(run->row_count + run->study.contender_count * ROWS_EACH);
@@ -75,8 +75,8 @@ static bool score(void *context, int i, Error *error) {
     return ok;
 }
 
-/* Takes over what an earlier run scored. True where it also has all costs. */
-static bool take_over(Run *run) {
+/* Copies the rows that an earlier run scored. True if it also has all costs. */
+static bool resume_scene(Run *run) {
     bool timed = true;
     for (int i = 0; i < run->study.contender_count; i++) {
         ChartRow *rows = rows_of(run, i);
@@ -92,7 +92,7 @@ static bool take_over(Run *run) {
 
 static bool measure_scene(Run *run, Error *error) {
     SceneStudy *study = &run->study;
-    if (take_over(run)) return true;
+    if (resume_scene(run)) return true;
     const ParallelWork work = {score, run};
     return scene_study_prepare(study, begin_stage(run, "converged runs"), error) &&
            parallel_for(&work, study->contender_count, study->scene->name, begin_stage(run, "scores"), error) &&
@@ -105,7 +105,7 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     for (int i = 0; i < run->row_count; i++)
         if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
             scene_study_end(&run->study);
-            return error_input(error, path, "there is a scene of that name already");
+            return error_input(error, path, "a scene of that name was given before");
         }
     int count = run->study.contender_count;
     size_t rows = (size_t)(run->row_count + count * ROWS_EACH);
@@ -132,7 +132,7 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     return ok;
 }
 
-/* A network that is not there matters only to the method that asks for it. */
+/* A missing network matters only to the method that uses it. */
 static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
@@ -141,7 +141,7 @@ static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     return study_key_add_file(key, path, error);
 }
 
-/* Of everything that decides the result: the program, every option and every file. */
+/* A hash of everything that determines the result: the program, every option and every file. */
 static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
