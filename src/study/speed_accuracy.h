@@ -8,7 +8,7 @@
 #include "common/progress.h"
 #include "study/chart_csv.h"
 
-enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
+enum { STUDY_MAX_SCENES = 16 };
 
 /* A study goes through stages; each has a progress of its own. */
 typedef struct StageProgress {
