@@ -62,7 +62,7 @@ static bool draw(const Panels *panels, const RenderOptions *render, RenderResult
     return ok;
 }
 
-/* A reader that has gone is an error to tell, not the end of the program. */
+/* A closed pipe is reported as an error; without this, SIGPIPE would end the program. */
 static bool write_output(VideoOptions *video, const Progress *progress, Error *error) {
     video->path = "standard output";
     void (*before)(int) = signal(SIGPIPE, SIG_IGN);
@@ -86,7 +86,7 @@ static bool encode(const char *path, const Panels *panels, const RenderOptions *
     return ok;
 }
 
-/* Frames of an earlier, longer run would pass for this one's. */
+/* Frames of an earlier, longer run would look like frames of this one. */
 static void remove_stale_frames(const RenderOptions *render, int last) {
     char path[PATH_MAX];
     for (int frame = last + 1; sink_frame_path(path, sizeof path, render->directory, frame); frame++)

@@ -11,10 +11,10 @@
 /* What the scores are told to. */
 typedef struct Listener {
     ProgressBar bar;
-    SceneScore last;
+    SceneNetScore last;
 } Listener;
 
-static void print_score(void *context, const SceneScore *score) {
+static void print_score(void *context, const SceneNetScore *score) {
     Listener *listener = context;
     listener->last = *score;
     progress_bar_clear(&listener->bar);
@@ -50,7 +50,7 @@ static bool store(SlotNetwork *network, const TrainSceneNet *options, int width,
     return true;
 }
 
-static SlotNetwork *train(const Scene *scene, SceneTraining *training, SceneScore *score, Error *error) {
+static SlotNetwork *train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
     Listener listener = {.last = {0}};
     progress_bar_begin(&listener.bar, "training");
     training->context = &listener;
@@ -65,7 +65,7 @@ static SlotNetwork *train(const Scene *scene, SceneTraining *training, SceneScor
 /* Tries one width after the other. NULL without an error: the sweeps alone are good enough. */
 static SlotNetwork *train_smallest(const Scene *scene, SceneTraining *training, double within, Error *error) {
     static const int widths[] = {16, 32, 48, 64, 96, 128, 192, 256};
-    SceneScore score = {0};
+    SceneNetScore score = {0};
     for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
         training->widths.hidden = widths[i];
         SlotNetwork *network = train(scene, training, &score, error);
@@ -86,7 +86,7 @@ static bool train_and_store(const Scene *scene, const TrainSceneNet *options, Sc
     if (options->smallest != (options->within != NULL))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
     if (options->smallest && !option_float("--within", options->within, 0, 1000, &within, error)) return false;
-    SceneScore score;
+    SceneNetScore score;
     SlotNetwork *network = options->smallest ? train_smallest(scene, training, (double)within, error)
                                              : train(scene, training, &score, error);
     bool ok = network != NULL ? store(network, options, training->widths.hidden, error) : error->kind == ERROR_NONE;

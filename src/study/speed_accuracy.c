@@ -115,11 +115,13 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     if (!ok) error_memory(error, "study");
     ok = ok && measure_scene(run, error);
     if (ok) {
-        *summary = (SpeedAccuracyScene){.contenders = count,
-                                        .launches = run->study.launch_count,
-                                        .frozen_residual = run->study.frozen_residual,
-                                        .solves = run->study.solves,
-                                        .unconverged = run->study.unconverged};
+        *summary =
+            (SpeedAccuracyScene){.contenders = count,
+                                 .launches = run->study.launch_count,
+                                 .without_network = contenders_without_network(&run->contenders, run->study.scene),
+                                 .frozen_residual = run->study.frozen_residual,
+                                 .solves = run->study.solves,
+                                 .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
         /* The scene ends here, its rows do not. */
         for (size_t i = (size_t)run->row_count; i < rows; i++) run->rows[i].scene = summary->name;
@@ -165,7 +167,8 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
                         Error *error) {
     Run run = {.options = options, .progress = progress};
     uint64_t key;
-    if (!contenders_parse(&run.contenders, options->methods, options->quick, error)) return false;
+    if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
     bool ok = study_key(options, &key, error) && file_make_directory(options->folder, error) &&
               part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
     part_file_close(&run.part);
