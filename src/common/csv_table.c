@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/csv_table.h"
 
+#include "common/file.h"
+#include "common/names.h"
 #include "common/parse.h"
 
 #include <assert.h>
@@ -61,13 +63,12 @@ static bool read_text(const Cell *cell, const char **member) {
 
 static bool read_word(const Cell *cell, int *member) {
     const char *const *words = cell->column->words;
-    char what[256] = "is not one of ";
+    NameList known = {0};
+    char what[256];
     *member = csv_word(words, cell->text);
     if (*member >= 0) return true;
-    for (int i = 0; words[i] != NULL; i++) {
-        size_t used = strlen(what);
-        snprintf(what + used, sizeof what - used, "%s%s", i > 0 ? ", " : "", words[i]);
-    }
+    for (int i = 0; words[i] != NULL; i++) name_list_add(&known, words[i]);
+    snprintf(what, sizeof what, "is not one of %.200s", known.text);
     return refuse(cell, what);
 }
 
@@ -136,13 +137,10 @@ static int find_column(const CsvLayout *layout, const char *name) {
 
 static bool refuse_column(const Reading *reading, int field) {
     const CsvLayout *layout = reading->layout;
-    char names[512] = "";
-    for (int i = 0; i < layout->column_count; i++) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", layout->columns[i].name);
-    }
+    NameList names = {0};
+    for (int i = 0; i < layout->column_count; i++) name_list_add(&names, layout->columns[i].name);
     return csv_error(&reading->table->csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
-                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names);
+                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names.text);
 }
 
 static bool place_column(const Reading *reading, int field) {
@@ -228,8 +226,7 @@ bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, 
 }
 
 bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayout *layout, Error *error) {
-    return snprintf(path, CSV_PATH_SIZE, "%s/%s.csv", folder, layout->name) < CSV_PATH_SIZE ||
-           error_input(error, folder, "the path is too long");
+    return file_path(path, CSV_PATH_SIZE, error, "%s/%s.csv", folder, layout->name);
 }
 
 bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *layout, Error *error) {
