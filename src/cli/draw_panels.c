@@ -4,6 +4,7 @@
 #include "cli/progress_bar.h"
 #include "render/sink.h"
 #include "render/video.h"
+#include "simulate/method.h"
 
 #include <limits.h>
 #include <signal.h>
@@ -20,7 +21,8 @@ RenderOptions draw_panels_defaults(const char *directory) {
                            .jobs = cores < 1                 ? 1
                                    : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
                                                              : (int)cores,
-                           .directory = directory};
+                           .directory = directory,
+                           .describe = method_describe};
 }
 
 int panels_last_frame(const Panels *panels) {

@@ -269,7 +269,7 @@ static void names_and_methods_that_there_are_not_are_refused(void **state) {
     options.methods = "sorcery";
     error = (Error){0};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "no such method");
+    assert_error(error, ERROR_INPUT, "'sorcery' is not a method");
     options.methods = "engine";
     options.scenes = "nowhere";
     error = (Error){0};
