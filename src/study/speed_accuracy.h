@@ -8,7 +8,7 @@
 #include "common/progress.h"
 #include "study/contenders.h"
 
-enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
+enum { STUDY_MAX_SCENES = 16 };
 
 /* A study has stages, each with its own progress. */
 typedef struct StageProgress {
