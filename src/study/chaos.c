@@ -21,7 +21,7 @@ static double shift_x(BodyDef *body) {
     return (double)body->position.x - before;
 }
 
-/* In any step up to the one that leads to the frame. */
+/* In any step up to that of the frame. */
 static bool touches(const Trajectory *run, int body, int frame) {
     for (int64_t i = 0; i < run->contact_start[frame + 1]; i++)
         if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
@@ -37,7 +37,7 @@ int chaos_body(const Trajectory *run, int parted, int frame) {
     return body;
 }
 
-/* A copy with bodies of its own, to be freed. The place alone changes: a bomb that aims keeps its velocity. */
+/* A copy with its own bodies, to be freed. Only the position changes: an aimed bomb keeps its velocity. */
 static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *chaos, Error *error) {
     *shifted = *scene;
     size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
@@ -51,7 +51,7 @@ static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *c
     return true;
 }
 
-/* The shifted run beside the other, which is recorded. */
+/* Compares the shifted run with the recorded one. */
 typedef struct Watch {
     Chaos *chaos;
     const Trajectory *still;
@@ -77,14 +77,14 @@ static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, 
     for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
     chaos->distance[0] = trajectory_has(watch->still, 0, chaos->body) ? chaos->shift : 0;
     Error failure = {0};
-    /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+    /* An input error in the middle of a run: the state is NaN or infinite, which is a result. */
     if (simulate_observed(scene, method, &observer, &failure) || (failure.kind == ERROR_INPUT && !watch->stage.stopped))
         return true;
     *error = failure;
     return false;
 }
 
-/* still: the scene as it is. */
+/* still: the run of the unchanged scene. */
 static bool run_beside(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *still,
                        const Trajectory *run, int body, const Progress *progress, Error *error) {
     TrajectoryDifference difference;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A method in place of the solver, beside the engine, each on the states that its own last step left. */
+/* A method and the engine in closed loop, side by side. */
 #pragma once
 #include "study/frozen.h"
 
@@ -12,13 +12,13 @@ typedef struct ClosedLoop {
                                   over the launches; CLOSED_LOOP_FRAMES: never */
     double penetration_max;    /* m: the deepest contact of all launches */
     double momentum_error;     /* N s made from nothing per step (ContactSolution), mean */
-    double energy_ratio;       /* the largest mechanical energy over what there was once the bomb was in; largest */
+    double energy_ratio;       /* largest mechanical energy divided by that after the bomb appeared; largest */
 } ClosedLoop;
 
-/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. A run whose state leaves the finite numbers ends there. */
+/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. A run whose state becomes NaN or infinite ends there. */
 bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error);
 
-/* Microseconds that a step takes, from the engine's states, by a method and by the engine in turns: means over the
-   states, medians over the repetitions. */
+/* Microseconds per step of the method and of the engine, in turns, from the engine's states: mean over the states,
+   median over the repetitions. */
 bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
                       double *us_step_engine, Error *error);

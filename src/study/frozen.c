@@ -24,7 +24,7 @@ static World *empty_world(const Scene *scene, Error *error) {
     return scene_world(&empty, error);
 }
 
-/* Keeps the state before the step that `after` has just taken. */
+/* Stores the state `before` the step that led to `after`. */
 static bool keep(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
                  Phase phase, Reference *reference, Error *error) {
     const ContactProblem *problem = world_problem(after);

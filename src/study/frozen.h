@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frozen protocol: states sampled from the engine's runs, from which every method takes one and the same step. */
+/* The frozen protocol: every method takes the same steps, sampled from the engine's runs. */
 #pragma once
 #include "study/rollout.h"
 
@@ -19,9 +19,9 @@ typedef struct SnapshotList {
     double residual; /* m/s: the largest of the reference solves */
 } SnapshotList;
 
-/* Adds the sampled steps of the engine's run of a launched scene, which must outlive the list. */
+/* Adds sampled steps of the engine's run of a launched scene, which must outlive the list. */
 bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error);
 void snapshots_free(SnapshotList *list);
 
-/* Takes every step by a method; world: room for a copy. */
+/* Takes every step with a method. world: work space. */
 bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES], Error *error);

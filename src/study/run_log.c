@@ -46,7 +46,7 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
 
 static double distance(const Vec2 *a, const Vec2 *b) { return hypot((double)(a->x - b->x), (double)(a->y - b->y)); }
 
-/* A run that broke off has moved them all: nothing is where it was. */
+/* A run that ended early counts as having moved all boxes. */
 static double count_moved(const RunLog *log, const Scene *scene) {
     int moved = 0;
     const Vec2 *before = log->position + (size_t)log->launch_frame * (size_t)log->bodies;

@@ -79,11 +79,11 @@ bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *err
     return parallel_for(&work, study->launch_count, "converged runs", progress, error);
 }
 
-/* What the launches of one contender gave. */
+/* The results of one contender. */
 typedef struct Scores {
     StepScores frozen[PHASES], closed[PHASES];
     RunFigures *figures;  /* [launch_count] */
-    double worst[PHASES]; /* m/s: largest of the launches' mean errors in closed loop; NAN without a step scored */
+    double worst[PHASES]; /* m/s: largest mean error of a launch in closed loop; NAN without a scored step */
 } Scores;
 
 static void scores_free(Scores *scores) {
@@ -94,13 +94,13 @@ static void scores_free(Scores *scores) {
     free(scores->figures);
 }
 
-/* A launch's own steps are those behind the ones that the launches before it left: scored[PHASES] of them. */
+/* The steps of a launch come after those of the earlier launches, scored[PHASES] of them. */
 static void keep_worst(Scores *scores, const int scored[PHASES]) {
     for (int phase = 0; phase < PHASES; phase++) {
         const StepScores *closed = &scores->closed[phase];
         if (closed->count == scored[phase]) continue;
         double mean = statistics_mean(closed->error + scored[phase], closed->count - scored[phase]);
-        scores->worst[phase] = fmax(scores->worst[phase], mean); /* passes over NAN */
+        scores->worst[phase] = fmax(scores->worst[phase], mean); /* ignores NAN */
     }
 }
 
@@ -128,14 +128,14 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error) {
     Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures)), .worst = {NAN, NAN, NAN}};
     if (scores.figures == NULL) return error_memory(error, "study");
-    const Contender *who = study->contenders[contender];
-    Stepper *stepper = stepper_create(&who->method, study->scene, error);
+    const Contender *chosen = study->contenders[contender];
+    Stepper *stepper = stepper_create(&chosen->method, study->scene, error);
     bool ok = stepper != NULL && score_launches(study, stepper, &scores, error);
     stepper_destroy(stepper);
     for (int phase = 0; ok && phase < PHASES; phase++) {
         ChartRow *frozen = &rows[PROTOCOL_FROZEN * PHASES + phase], *closed = &rows[PROTOCOL_CLOSED * PHASES + phase];
-        *frozen = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_FROZEN, phase);
-        *closed = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_CLOSED, phase);
+        *frozen = scene_row(study->scene->name, study->launch_count, chosen, PROTOCOL_FROZEN, phase);
+        *closed = scene_row(study->scene->name, study->launch_count, chosen, PROTOCOL_CLOSED, phase);
         scene_row_errors(frozen, &scores.frozen[phase]);
         scene_row_errors(closed, &scores.closed[phase]);
         closed->error_worst = scores.worst[phase];
@@ -145,7 +145,7 @@ bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *
     return ok;
 }
 
-/* The launches to time: evenly from all; each until the frames after are over, with some at rest before and behind. */
+/* Chooses launches evenly, and as the last frame one some time after the frames that follow the impact. */
 static bool choose_timed(const SceneStudy *study, Scene *launches, SnapshotList *snapshots, TimingOptions *options,
                          Error *error) {
     options->last_frame = 0;

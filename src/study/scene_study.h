@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One scene of a study of speed against accuracy. */
+/* One scene of a chart of speed against accuracy. */
 #pragma once
 #include "study/contenders.h"
 #include "study/frozen.h"
 #include "study/timing.h"
 
-/* How much is run. */
+/* The size of a study. */
 typedef struct StudySize {
-    int launches;            /* where none are given */
+    int launches;            /* if none are given */
     Sampling closed, frozen; /* steps to score */
     int timed_launches, repetitions;
 } StudySize;
@@ -16,7 +16,7 @@ typedef struct SceneStudy {
     Scene *scene;
     int launch_count, contender_count;
     Scene *launches;              /* [launch_count] launched */
-    const Contender **contenders; /* [contender_count] that can run here */
+    const Contender **contenders; /* [contender_count] those that can run in the scene */
     RunLog *converged;            /* [launch_count] */
     SnapshotList *snapshots;      /* [launch_count] */
     const StudySize *size;
@@ -29,12 +29,12 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
                        const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
 
-/* The converged run of every launch, and the frozen steps of the engine's. */
+/* Makes the converged run and the frozen steps of every launch. */
 bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *error);
 
 enum { ROWS_EACH = PROTOCOLS * PHASES };
 
-/* Scores one contender into rows[ROWS_EACH], costs left empty. May be called by several threads at once. */
+/* Scores one contender into rows[ROWS_EACH], without costs. Thread-safe. */
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error);
 
 /* Fills the costs of all rows[contender_count * ROWS_EACH]. */

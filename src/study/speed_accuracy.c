@@ -30,10 +30,10 @@ typedef struct Run {
     const StageProgress *progress;
     ContenderList contenders;
     PartFile part;
-    ChartRow *rows; /* of all scenes done, and behind them of the scene in hand */
-    int row_count;  /* of the scenes done */
+    ChartRow *rows; /* of the finished scenes, then of the current one */
+    int row_count;  /* of the finished scenes */
     SceneStudy study;
-    bool *scored; /* [contenders] of the scene in hand */
+    bool *scored; /* [contenders] of the current scene */
 } Run;
 
 static const Progress *begin_stage(const Run *run, const char *what) {
@@ -45,7 +45,7 @@ static const Progress *begin_stage(const Run *run, const char *what) {
 
 static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run->row_count + contender * ROWS_EACH; }
 
-/* All that is done: rows of the scenes before, and of the contenders scored in this one. */
+/* Stores the rows of finished scenes and of the contenders scored in this one. */
 static bool keep_part(const Run *run, Error *error) {
     int count = run->row_count;
     size_t most = (size_t)(run->row_count + run->study.contender_count * ROWS_EACH);
@@ -75,15 +75,14 @@ static bool score(void *context, int i, Error *error) {
     return ok;
 }
 
-/* Takes over what an earlier run scored. True where it also has all costs. */
-static bool take_over(Run *run) {
+/* Copies the rows that an earlier run scored. True if it also has all costs. */
+static bool resume_scene(Run *run) {
     bool timed = true;
     for (int i = 0; i < run->study.contender_count; i++) {
         ChartRow *rows = rows_of(run, i);
-        *rows = (ChartRow){0};
-        snprintf(rows->scene, sizeof rows->scene, "%s", run->study.scene->name);
-        snprintf(rows->method, sizeof rows->method, "%s", run->study.contenders[i]->name);
-        snprintf(rows->setting, sizeof rows->setting, "%s", run->study.contenders[i]->setting);
+        *rows = (ChartRow){.scene = run->study.scene->name,
+                           .method = run->study.contenders[i]->name,
+                           .setting = run->study.contenders[i]->setting};
         run->scored[i] = part_file_find(&run->part, rows, ROWS_EACH);
         timed &= run->scored[i] && !isnan(rows[PROTOCOL_CLOSED * PHASES + PHASE_REST].us_solver);
     }
@@ -92,7 +91,7 @@ static bool take_over(Run *run) {
 
 static bool measure_scene(Run *run, Error *error) {
     SceneStudy *study = &run->study;
-    if (take_over(run)) return true;
+    if (resume_scene(run)) return true;
     const ParallelWork work = {score, run};
     return scene_study_prepare(study, begin_stage(run, "converged runs"), error) &&
            parallel_for(&work, study->contender_count, study->scene->name, begin_stage(run, "scores"), error) &&
@@ -105,7 +104,7 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     for (int i = 0; i < run->row_count; i++)
         if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
             scene_study_end(&run->study);
-            return error_input(error, path, "there is a scene of that name already");
+            return error_input(error, path, "a scene of that name was given before");
         }
     int count = run->study.contender_count;
     size_t rows = (size_t)(run->row_count + count * ROWS_EACH);
@@ -116,12 +115,16 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     if (!ok) error_memory(error, "study");
     ok = ok && measure_scene(run, error);
     if (ok) {
-        *summary = (SpeedAccuracyScene){.contenders = count,
-                                        .launches = run->study.launch_count,
-                                        .frozen_residual = run->study.frozen_residual,
-                                        .solves = run->study.solves,
-                                        .unconverged = run->study.unconverged};
+        *summary =
+            (SpeedAccuracyScene){.contenders = count,
+                                 .launches = run->study.launch_count,
+                                 .without_network = contenders_without_network(&run->contenders, run->study.scene),
+                                 .frozen_residual = run->study.frozen_residual,
+                                 .solves = run->study.solves,
+                                 .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
+        /* The scene ends here, its rows do not. */
+        for (size_t i = (size_t)run->row_count; i < rows; i++) run->rows[i].scene = summary->name;
         run->row_count = (int)rows;
     }
     free(run->scored);
@@ -130,7 +133,7 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     return ok;
 }
 
-/* A network that is not there matters only to the method that asks for it. */
+/* A missing network matters only to the method that uses it. */
 static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
@@ -139,7 +142,7 @@ static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     return study_key_add_file(key, path, error);
 }
 
-/* Of everything that decides the result: the program, every option and every file. */
+/* A hash of everything that determines the result: the program, every option and every file. */
 static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
@@ -151,12 +154,11 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
 }
 
 static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
-    char path[STUDY_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/chart.csv", run->options->folder) >= (int)sizeof path)
-        return error_input(error, run->options->folder, "the name is too long");
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, run->options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
-    if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;
+    if (!csv_table_write(path, &chart_layout, run->rows, run->row_count, error)) return false;
     part_file_remove(&run->part);
     return true;
 }
@@ -165,7 +167,8 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
                         Error *error) {
     Run run = {.options = options, .progress = progress};
     uint64_t key;
-    if (!contenders_parse(&run.contenders, options->methods, options->quick, error)) return false;
+    if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
     bool ok = study_key(options, &key, error) && file_make_directory(options->folder, error) &&
               part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
     part_file_close(&run.part);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the contenders cost: in turns on one core, many times over. */
+/* Costs of the contenders, measured in turns on one core, with repetitions. */
 #pragma once
 #include "common/progress.h"
 #include "study/contenders.h"
 #include "study/frozen.h"
 
-/* Microseconds a step of one phase, over the repetitions; NAN where the phase never came. */
+/* Cost of a step of one phase, microseconds; NAN if the phase never occurred. */
 typedef struct StepCost {
-    double solver, solver_q1, solver_q3; /* median and quartiles of what the method needs beyond the contact problem */
-    double step;                         /* median of the whole step */
-    double instructions;                 /* of the solver; NAN where they cannot be counted */
+    double solver, solver_q1,
+        solver_q3;       /* median and quartiles over the repetitions, without making the contact problem */
+    double step;         /* median of the whole step */
+    double instructions; /* of the solver; NAN if they cannot be counted */
 } StepCost;
 
 typedef struct TimingOptions {

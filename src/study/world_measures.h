@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a world's state amounts to. */
+/* Measures of a world's state. */
 #pragma once
 #include "dynamics/world.h"
 
-/* J: kinetic and potential; 0 for what is static. Heights count from y = 0; without gravity it is the kinetic alone. */
+/* J: kinetic and potential energy of a body; 0 if it is static. Heights are measured from y = 0. */
 double body_energy(const Body *body, Vec2 gravity);
 
-/* The sum. */
+/* The sum over all bodies. */
 double bodies_energy(const Body *bodies, int count, Vec2 gravity);
 double world_energy(const World *world, Vec2 gravity);
 
