@@ -3,7 +3,6 @@
 
 #include "common/file.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -23,8 +22,9 @@ static bool find(char found[PATH_SIZE], const char *path) {
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return false;
     program[length] = '\0';
-    int folder = (int)file_folder_length(program);
-    return snprintf(found, PATH_SIZE, "%.*s%s/%s", folder, program, TWINBOX_DATA, path) < PATH_SIZE &&
+    Error ignored = {0};
+    return file_path(found, PATH_SIZE, &ignored, "%.*s%s/%s", (int)file_folder_length(program), program, TWINBOX_DATA,
+                     path) &&
            access(found, R_OK) == 0;
 }
 
