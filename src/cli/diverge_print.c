@@ -148,9 +148,9 @@ void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth 
         [GROWTH_FASTER] = "faster than a tiny shift by itself",
         [GROWTH_SLOWER] = "slower than a tiny shift by itself",
     };
-    if (chaos->other >= 0)
+    if (chaos->rerun_differs >= 0)
         printf("note: the scene run again is not run 1 from frame %d on: another network, or another program\n",
-               chaos->other);
+               chaos->rerun_differs);
     printf("by itself (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);

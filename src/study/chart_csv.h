@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* chart.csv: speed and accuracy of every method, one row a scene, method, setting, protocol and phase. */
+/* chart.csv: speed and accuracy of every method; one row per scene, method, setting, protocol and phase. */
 #pragma once
 #include "common/error.h"
 #include "simulate/phases.h"
 
 enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
 
-/* Frozen: all methods on the same contact problems. Closed: each on the trajectory that it makes. */
+/* Frozen: all methods on the same contact problems. Closed: each on its own trajectory. */
 typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
 
 enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
 
-/* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve; mean,
-   median and p95 are of all steps scored, whatever their launch. error_worst is of launches in closed loop: the largest
-   of their own mean errors in the phase, each over the steps scored of its run (until it left the finite numbers, where
-   it did; a launch without such a step has no say). Frozen rows have none: their steps are of no run of the method. */
+/* NaN if a protocol does not have the value. Errors are RMS velocity errors against the reference; mean, median and p95
+   are over all scored steps of all launches. error_worst (closed loop only) is the largest mean error of a launch in
+   the phase, over its scored steps (up to where its state became NaN or infinite); launches without scored steps are
+   ignored. */
 typedef struct ChartRow {
     char scene[CHART_NAME_SIZE], method[CHART_NAME_SIZE];
     char setting[CHART_SETTING_SIZE]; /* "k=20,warm=off" */
@@ -37,12 +37,12 @@ typedef struct ChartTable {
     ChartRow *rows; /* [count] */
 } ChartTable;
 
-/* Writes the table as a whole file, numbers with six digits. Refused: texts with control characters, and figures that
-   are infinite, as neither could be read again. */
+/* Writes the table atomically, numbers with six digits. ERROR_INPUT for texts with control characters and for infinite
+   values: they could not be read back. */
 bool chart_csv_write(const char *path, const ChartRow *rows, int count, Error *error);
 
-/* Reads what chart_csv_write wrote: exactly its header, 1 to CHART_MAX_ROWS rows, no row twice, every figure within
-   what it can be (no negative time, quartiles around their median, ...). On failure error is "path:line:column:
-   error: reason" and nothing is to be freed. */
+/* Reads a file of chart_csv_write(): exactly its header, 1 to CHART_MAX_ROWS distinct rows, every value in its range
+   (no negative time, quartiles around their median, ...). On failure the error is "path:line:column: error: reason" and
+   nothing needs to be freed. */
 bool chart_csv_read(ChartTable *table, const char *path, Error *error);
 void chart_csv_free(ChartTable *table);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A long study as parts, one after the other, each kept in a file of its own once it is done: a study that is cut off
-   goes on with the part that was in hand. A part's text has lines "TABLE:row", by which the tables are put together at
-   the end. */
+/* A long study in parts. The result of each part is saved in a file, so an interrupted study resumes with the first
+   unfinished part. A result has lines "TABLE:row"; study_parts_table() collects the rows of each table. */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
@@ -14,30 +13,30 @@ enum { STUDY_PARTS_PATH_SIZE = 4096 };
 /* Zero-initialise. */
 typedef struct StudyParts {
     char folder[STUDY_PARTS_PATH_SIZE];
-    const Progress *progress; /* of the parts together; may be changed between them */
-    double done, total;       /* weights of the parts done, and of all */
-    char *text;               /* of the parts done, one after the other */
+    const Progress *progress; /* of the whole study; may be changed between parts */
+    double done, total;       /* weights of the finished parts and of all parts */
+    char *text;               /* results of the finished parts, concatenated */
     size_t size, capacity;
 } StudyParts;
 
 typedef struct StudyPart {
     const char *name; /* of its file */
-    double weight;    /* how long it takes beside other parts */
-    /* Writes the part's lines. progress is of this part alone. */
+    double weight;    /* relative duration */
+    /* Writes the part's lines. `progress` covers this part only. */
     bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error);
     void *context;
 } StudyPart;
 
-/* Makes folder/parts-KEY where it is missing. */
+/* Creates folder/parts-KEY if missing. */
 bool study_parts_open(StudyParts *parts, const char *folder, uint64_t key, Error *error);
 void study_parts_close(StudyParts *parts);
 
-/* Does the part, unless its file is there. ERROR_INPUT where progress asks to stop: the part is not kept then. */
+/* Runs the part unless its file exists. ERROR_INPUT if progress stops it; the part is then not saved. */
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error);
 
-/* Writes folder/TABLE.csv: the header, and all lines of that table in the order of the parts. */
+/* Writes folder/TABLE.csv: the header and the table's rows in the order of the parts. */
 bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
                        Error *error);
 
-/* The study is done: removes what was kept. */
+/* Deletes the saved parts: the study is complete. */
 void study_parts_remove(const StudyParts *parts);

@@ -245,7 +245,7 @@ static void what_is_cut_off_goes_on(void **state) {
     assert_ok(run_shots(whole, "engine,momentum", &all, &error), error);
     some.stop_after = all.count - 3;
     assert_false(run_shots(cut, "engine,momentum", &some, &error));
-    assert_error(error, ERROR_INPUT, "speed_thickness: error: stopped; what was done before is kept");
+    assert_error(error, ERROR_INPUT, "speed_thickness: error: stopped; finished parts are kept");
     error = (Error){0};
     assert_ok(run_shots(cut, "engine,momentum", &rest, &error), error);
     assert_int_equal(rest.count, 2 * 5 * 4);
