@@ -64,7 +64,8 @@ static bool make_driver(void *context, ContactSolver *solver, Error *error) {
     if (run->driver == BY_NETWORK) return scene_net_make(solver, run->network, rollout_near, error);
     Settings settings;
     const ContactSolverKind *kind = run->driver == BY_MOMENTUM ? &solver_momentum : &solver_reference;
-    if (!settings_parse(&settings, run->driver == BY_MOMENTUM ? "k=20" : "", kind->settings, kind->name, error))
+    if (!settings_parse(&settings, run->driver == BY_MOMENTUM ? "k=20" : "", kind->description.settings,
+                        kind->description.name, error))
         return false;
     void *state = kind->create(&settings, error);
     if (state == NULL) return false;

@@ -6,7 +6,7 @@
    (reference/reference.h) of its contact problem. */
 #pragma once
 #include "common/progress.h"
-#include "study/chart_csv.h"
+#include "study/contenders.h"
 
 enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
 
@@ -28,9 +28,10 @@ typedef struct SpeedAccuracyOptions {
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    double frozen_residual;  /* m/s: largest residual of the reference solves of frozen steps */
-    int solves, unconverged; /* reference solves in closed loop since the study was started or resumed; those with a
-                                residual above SOLVE_CONVERGED (rollout.h) */
+    ContenderNames without_network; /* methods left out, since neither their settings nor the scene name a network */
+    double frozen_residual;         /* m/s: largest residual of the reference solves of frozen steps */
+    int solves, unconverged;        /* reference solves in closed loop since the study was started or resumed; those
+                                       with a residual above SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 
 /* Writes folder/chart.csv and fills scenes[scene_count]. Finished rows are saved in folder/chart-KEY.part.csv: an

@@ -2,11 +2,10 @@
 /* A long study in parts. The result of each part is saved in a file, so an interrupted study resumes with the first
    unfinished part. A result has lines "TABLE:row"; study_parts_table() collects the rows of each table. */
 #pragma once
-#include "common/error.h"
+#include "common/csv_table.h"
 #include "common/progress.h"
 
 #include <stdint.h>
-#include <stdio.h>
 
 enum { STUDY_PARTS_PATH_SIZE = 4096 };
 
@@ -34,9 +33,11 @@ void study_parts_close(StudyParts *parts);
 /* Runs the part unless its file exists. ERROR_INPUT if progress stops it; the part is then not saved. */
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error);
 
+/* Writes a row as such a line; the table's name is the layout's. Errors as csv_row_print(). */
+bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Error *error);
+
 /* Writes folder/TABLE.csv: the header and the table's rows in the order of the parts. */
-bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
-                       Error *error);
+bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error);
 
 /* Deletes the saved parts: the study is complete. */
 void study_parts_remove(const StudyParts *parts);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "training/network_config.h"
 
+#include "common/names.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -18,13 +20,12 @@ static const Word loss_words[] = {{"mse", LOSS_MSE}, {"smooth-l1", LOSS_SMOOTH_L
 /* If name is NULL, value keeps its default. */
 static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
     if (name == NULL) return true;
-    char known[128] = "";
+    NameList known = {0};
     for (int i = 0; words[i].name != NULL; i++) {
         if (strcmp(words[i].name, name) == 0) return *value = words[i].value, true;
-        size_t length = strlen(known);
-        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", words[i].name);
+        name_list_add(&known, words[i].name);
     }
-    return error_input(error, option, "there is no \"%s\"; known are %s", name, known);
+    return error_unknown(error, option, name, "a valid value", &known);
 }
 
 bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Error *error) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "training/training.h"
 
+#include "common/names.h"
 #include "training/checks.h"
 #include "training/network_config.h"
 #include "training/optimizer.h"
@@ -16,13 +17,12 @@
 const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_gd, &optimizer_lm, NULL};
 
 static const Optimizer *find_optimizer(const char *name, Error *error) {
-    char known[128] = "";
+    NameList known = {0};
     for (int i = 0; optimizers[i] != NULL; i++) {
         if (strcmp(optimizers[i]->name, name) == 0) return optimizers[i];
-        size_t length = strlen(known);
-        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", optimizers[i]->name);
+        name_list_add(&known, optimizers[i]->name);
     }
-    error_input(error, "optimizer", "there is no \"%s\"; known are %s", name, known);
+    error_unknown(error, "optimizer", name, "an optimizer", &known);
     return NULL;
 }
 

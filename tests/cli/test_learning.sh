@@ -53,9 +53,9 @@ run 0 simulate single.yaml --method pair-net:network=raw-net.npz -o raw-run.npz
 run 2 train raw.npz -o none.npz --layers 10-8-6
 complains "the first width must be 12, the inputs of a pair (got 10)"
 run 2 dataset single.yaml -o none.npz --inputs sideways
-complains "--inputs: error: 'sideways' is none of relative, raw, raw-unturned, contact, neighbours"
+complains "--inputs: error: 'sideways' is not a valid value; known: relative, raw, raw-unturned, contact, neighbours"
 run 2 dataset single.yaml -o none.npz --target gross
-complains "--target: error: 'gross' is none of pair, net, impulse, points"
+complains "--target: error: 'gross' is not a valid value; known: pair, net, impulse, points"
 run 2 dataset single.yaml -o none.npz --target points
 complains "the target points needs the view contact or neighbours"
 run 2 dataset single.yaml -o none.npz --target impulse --inputs neighbours
@@ -155,7 +155,7 @@ PYTHON
 run 0 train pairs.npz -o smooth.npz --iterations 5 --loss smooth-l1
 equal "score of the other loss" "$(awk '$1 == 5 && $2 < $4 * 10 { print "yes" }' out)" yes
 run 2 train pairs.npz -o x.npz --loss l1
-complains "known are mse, smooth-l1"
+complains "known: mse, smooth-l1"
 run 2 train pairs.npz -o x.npz --loss smooth-l1 --optimizer lm
 complains "lm: error: needs loss mse and no laws"
 
@@ -228,9 +228,9 @@ run 2 train pairs.npz -o x.npz --optimizer magic
 complains "magic"
 run 2 train pairs.npz -o x.npz --iterations -1
 run 2 train pairs.npz -o x.npz --hidden magic
-complains "known are sigmoid, tanh, relu"
+complains "known: sigmoid, tanh, relu"
 run 2 train pairs.npz -o x.npz --output-activation tanh
-complains "known are sigmoid, linear"
+complains "known: sigmoid, linear"
 run 2 train pairs.npz -o x.npz --scale standard
 complains "standard needs linear outputs"
 run 2 train pairs.npz -o x.npz --from net.npz --hidden relu

@@ -22,7 +22,7 @@ static inline Scene *read_stack(void) {
 static inline bool make_momentum(void *context, ContactSolver *solver, Error *error) {
     (void)context;
     Settings settings;
-    if (!settings_parse(&settings, "k=20", solver_momentum.settings, solver_momentum.name, error)) return false;
+    if (!settings_parse(&settings, "k=20", solver_momentum.description.settings, "momentum", error)) return false;
     *solver = (ContactSolver){&solver_momentum, solver_momentum.create(&settings, error)};
     return solver->state != NULL;
 }

@@ -242,11 +242,12 @@ static void another_sequence_is_drawn_anew(void **state) {
     static const struct {
         RenderOptions options;
         const char *why;
-    } others[] = {{{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "is of other runs"}};
+    } others[] = {
+        {{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         Error error = {0};
@@ -280,7 +281,7 @@ static void another_run_is_drawn_anew(void **state) {
     free(result.hashes);
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
     assert_int_equal(resume(directory, why), 0);
-    assert_non_null(strstr(why, "is of other runs"));
+    assert_non_null(strstr(why, "differs: other runs"));
 }
 
 static char *replaced(const char *text, const char *from, const char *to) {
@@ -333,7 +334,7 @@ static void what_is_no_manifest_stays(void **state) {
         put(manifest_of(options.directory), foreign, sizeof foreign - 1);
         error = (Error){0};
         assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
-        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is no manifest of twinbox");
+        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is not a manifest of twinbox");
         size_t size;
         char *text = read_whole(manifest_of(options.directory), &size);
         assert_string_equal(text, foreign);

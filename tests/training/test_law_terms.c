@@ -130,7 +130,7 @@ static void weights_are_parsed(void **state) {
     assert_true(law_weights_named("none", 2, &weights, &error));
     assert_false(law_weights_any(&weights));
     assert_false(law_weights_named("gravity", 2, &weights, &error));
-    assert_error(error, ERROR_INPUT, "there is no 'gravity'; known are none, momentum, energy, approach, cone, all");
+    assert_error(error, ERROR_INPUT, "'gravity' is not a law; known: none, momentum, energy, approach, cone, all");
     assert_no_weights("gravity=1", "gravity");
     assert_no_weights("cone=1,cone=2", "cone");
     assert_no_weights("energy", "energy");

@@ -182,7 +182,7 @@ static void scores_exclude_the_laws(void **state) {
     assert_ok(training_score(dataset, network, "smooth-l1", &again, &error), error);
     assert_true(again.test < with.test && again.constant_test < with.constant_test);
     assert_false(training_score(dataset, network, "l3", &again, &error));
-    assert_error(error, ERROR_INPUT, "there is no \"l3\"");
+    assert_error(error, ERROR_INPUT, "'l3' is not a valid value");
     network_destroy(network);
     dataset_destroy(dataset);
 }

@@ -13,7 +13,7 @@ static void invalid_options_are_refused(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("magic", 1);
-    assert_refused(dataset, options, "\"magic\"; known are adam, bfgs, gd, lm");
+    assert_refused(dataset, options, "'magic' is not an optimizer; known: adam, bfgs, gd, lm");
     options = small("adam", -1);
     assert_refused(dataset, options, "iterations: error: must be 0 or more (got -1)");
     options = small("adam", 1);
@@ -67,13 +67,13 @@ static void invalid_network_config_is_refused(void **state) {
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("adam", 1);
     options.hidden = "linear";
-    assert_refused(dataset, options, "hidden: error: there is no \"linear\"; known are sigmoid, tanh, relu");
+    assert_refused(dataset, options, "hidden: error: 'linear' is not a valid value; known: sigmoid, tanh, relu");
     options = small("adam", 1);
     options.output_activation = "tanh";
-    assert_refused(dataset, options, "output activation: error: there is no \"tanh\"; known are sigmoid, linear");
+    assert_refused(dataset, options, "output activation: error: 'tanh' is not a valid value; known: sigmoid, linear");
     options = small("adam", 1);
     options.scale = "none";
-    assert_refused(dataset, options, "scale: error: there is no \"none\"; known are minmax, standard");
+    assert_refused(dataset, options, "scale: error: 'none' is not a valid value; known: minmax, standard");
     options.scale = "standard";
     assert_refused(dataset, options, "scale: error: standard needs linear outputs");
     options.widths[2] = PAIR_CHANGES;
@@ -87,7 +87,7 @@ static void invalid_losses_are_refused(void **state) {
     Dataset *dataset = make_pushed_dataset(100);
     TrainingOptions options = small("adam", 1);
     options.loss = "l1";
-    assert_refused(dataset, options, "loss: error: there is no \"l1\"; known are mse, smooth-l1");
+    assert_refused(dataset, options, "loss: error: 'l1' is not a valid value; known: mse, smooth-l1");
     options = small("lm", 1);
     options.loss = "smooth-l1";
     assert_refused(dataset, options, "lm: error: needs loss mse and no laws");
