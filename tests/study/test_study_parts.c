@@ -122,9 +122,8 @@ static void an_interrupted_part_is_not_saved(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_have_the_order_of_the_parts),
-                                       cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
-                                       cmocka_unit_test(finished_parts_are_not_run_again),
-                                       cmocka_unit_test(an_interrupted_part_is_not_saved)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_have_the_order_of_the_parts), cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
+        cmocka_unit_test(finished_parts_are_not_run_again), cmocka_unit_test(an_interrupted_part_is_not_saved)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
