@@ -83,8 +83,8 @@ static void broken_launches_are_refused_with_their_place(void **state) {
         CASE("x,\n1,2\n", "1:3: error: unknown column 'nothing'"),
         CASE("X\n1\n", "1:1: error: unknown column 'X'"),
         CASE("x,spin,x\n1,2,3\n", "1:8: error: column 'x' is there twice"),
-        CASE("x,spin\n1\n", "2:1: error: 1 fields where the header has 2"),
-        CASE("x,spin\n1,2\n1,2,3\n", "3:1: error: 3 fields where the header has 2"),
+        CASE("x,spin\n1\n", "2:1: error: 1 field, but the header has 2"),
+        CASE("x,spin\n1,2\n1,2,3\n", "3:1: error: 3 fields, but the header has 2"),
         CASE("x\n", "2:1: error: no line behind the header"),
         CASE("", "1:1: error: an empty table"),
         CASE("x\n1\n\0\n", "3:1: error: control character 0x00"),
@@ -119,7 +119,7 @@ static void ten_thousand_launches_are_the_most(void **state) {
     assert_int_equal(table.count, 10000);
     launches_free(&table);
     assert_false(launches_read(&table, write_launches(text, sizeof text), &error));
-    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: more than 10000 lines behind the header");
+    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: the table has more than 10000 rows");
 }
 
 static void expect_misfit(const char *scene_text, const char *launches, const char *message) {

@@ -268,7 +268,7 @@ static void unknown_names_and_methods_are_refused(void **state) {
     options.methods = "sorcery";
     error = (Error){0};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "no such method");
+    assert_error(error, ERROR_INPUT, "'sorcery' is not a method");
     options.methods = "engine";
     options.scenes = "nowhere";
     error = (Error){0};

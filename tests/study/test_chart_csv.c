@@ -92,8 +92,8 @@ static void broken_tables_are_refused_with_their_place(void **state) {
     static const struct {
         const char *lines, *message;
     } cases[] = {
-        {"", "chart.csv:2:1: error: no line behind the header"},
-        {"stack,engine\n", "chart.csv:2:1: error: 2 fields where the header has 20"},
+        {"", "chart.csv:2:1: error: the table has no rows"},
+        {"stack,engine\n", "chart.csv:2:1: error: 2 fields, but the header has 20"},
         {GOOD GOOD, "chart.csv:3:1: error: this row is there twice"},
         {"stack,engine,k=10,open,impact,40,5,4,6,50,,0.5,,,,,,,,\n",
          "chart.csv:2:19: error: unknown protocol (got open)"},
