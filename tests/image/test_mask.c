@@ -46,7 +46,7 @@ static void pictures_mask_where_they_are_not_black(void **state) {
     for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(masked[i], i == 3 || i == 7);
     free(masked);
     assert_null(mask_make(&mask, WIDTH + 1, HEIGHT, "frame.png", &error));
-    assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png 7 x 4");
+    assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png has 7 x 4");
     image_destroy(image);
 }
 
@@ -63,7 +63,7 @@ static void masked_pixels_do_not_count(void **state) {
     assert_int_equal(difference.largest, 7);
     assert_true(difference.first_x == 4 && difference.first_y == 1);
     assert_true(difference.left == 4 && difference.top == 1 && difference.right == 5 && difference.bottom == 4);
-    image_cover(b, a, masked);
+    image_copy_masked(b, a, masked);
     assert_true(a->pixels[4 * 8] == 0 && a->pixels[4 * 10] == 3);
     masked[10] = masked[22] = 1;
     image_compare_masked(a, b, masked, &difference);

@@ -165,7 +165,7 @@ static void truncated_files_are_refused(void **state) {
     const char *path = temporary_path("truncated.png");
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
-        assert_refused(path, "no PNG file, or a damaged one");
+        assert_refused(path, "not a PNG file, or damaged");
     }
     free(data);
 }
@@ -240,14 +240,14 @@ static void sixteen_bits_count_in_full(void **state) {
         write_kind(path, &kind, interlace);
         Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
         assert_ok(a != NULL && b != NULL, error);
-        assert_non_null(a->deep);
+        assert_non_null(a->pixels16);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++)
-                assert_int_equal(a->deep[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
+                assert_int_equal(a->pixels16[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
         ImageDifference difference;
         image_compare(a, b, &difference);
         assert_true(difference.equal);
-        b->deep[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
+        b->pixels16[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
         image_compare(a, b, &difference);
         assert_true(difference.pixels == 1 && difference.largest == 1);
         assert_true(difference.first_x == 7 && difference.first_y == 5);
@@ -264,7 +264,7 @@ static void depths_are_compared_by_what_they_mean(void **state) {
     Image deep = {1, 1, (uint8_t[]){1, 128, 255, 255}, (uint16_t[]){257, 128 * 257, 65535, 65535}};
     image_compare(&shallow, &deep, &difference);
     assert_true(difference.equal);
-    deep.deep[0]++;
+    deep.pixels16[0]++;
     image_compare(&shallow, &deep, &difference);
     assert_true(difference.pixels == 1 && difference.largest == 1);
 }

@@ -95,8 +95,8 @@ static void assert_refused(const char *path, const char *text) {
 static void doubtful_folders_are_refused(void **state) {
     (void)state;
     assert_refused(folder_of("twice", "frame_1.png frame_01.png"), "has the same number as");
-    assert_refused(folder_of("bytes", "frame_\xFF.png"), "no text");
-    assert_refused(folder_of("line", "frame_\x01.png"), "no text");
+    assert_refused(folder_of("bytes", "frame_\xFF.png"), "is not UTF-8 or has control characters");
+    assert_refused(folder_of("line", "frame_\x01.png"), "is not UTF-8 or has control characters");
     assert_refused(temporary_path("nowhere"), "nowhere: error: cannot be read");
     Error error = {0};
     int count;

@@ -124,7 +124,7 @@ static void a_damaged_frame_makes_no_video(void **state) {
     Error error = {0};
     Image *small = image_create(8, 8, &error);
     for (int i = 0; i < 4; i++) {
-        static const char *const texts[] = {"cannot open", "it ends too early", "differ from those drawn",
+        static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
                                             "frame 4 is 8x8, but the first is 96x64"};
         VideoOptions options = options_for(path);
         put(path, "old", 3);
