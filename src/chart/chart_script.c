@@ -107,8 +107,8 @@ static void put_axes(const ChartLayout *layout, int p) {
     fprintf(script, "set bmargin at screen %.5f\nset tmargin at screen %.5f\n", y->from / CHART_HEIGHT,
             y->to / CHART_HEIGHT);
     fprintf(script, "set xrange [%.8g:%.8g]\nset yrange [%.8g:%.8g]\n", x->low, x->high, y->low, y->high);
-    log_axis_put_tics(x, 'x', true, script);
-    log_axis_put_tics(y, 'y', p == 0, script);
+    log_axis_write_tics(x, 'x', true, script);
+    log_axis_write_tics(y, 'y', p == 0, script);
     fprintf(script, "set xlabel 'Solver time per step (µs)' offset 0,0.6\n");
     fprintf(script, "set ylabel '%s' offset 0.6,0\n", p == 0 ? "Mean velocity error (m/s)" : "");
     double top = (CHART_HEIGHT - top_margin / 2) / CHART_HEIGHT;

@@ -31,7 +31,7 @@ void figure_log(FigurePage *page, char letter, const FigureAxis *axis, const cha
     LogAxis tics = axis->log;
     tics.low = axis->least;
     fprintf(page->script, "set logscale %c\nset %crange [%.8g:%.8g]\n", letter, letter, axis->log.low, axis->log.high);
-    log_axis_put_tics(&tics, letter, label != NULL, page->script);
+    log_axis_write_tics(&tics, letter, label != NULL, page->script);
     if (axis->zero > 0 && label != NULL) fprintf(page->script, "set %ctics add ('0' %.8g)\n", letter, axis->zero);
     if (label != NULL) figure_axis_label(page, letter, label);
 }

@@ -152,7 +152,7 @@ static bool read_options(const Options *options, const FigureKind *kind, FigureS
     if (options->at != NULL && options->moments != NULL)
         return error_input(error, "--moments", "--at says already which moments");
     if ((options->width != NULL && !read_width(options->width, &spec->width, error)) ||
-        !read_number("--dpi", options->dpi, SKETCH_LEAST_DPI, SKETCH_LARGEST_DPI, &spec->dpi, error) ||
+        !read_number("--dpi", options->dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX, &spec->dpi, error) ||
         !read_number("--font-size", options->points, FIGURE_LEAST_POINTS, FIGURE_LARGEST_POINTS, &spec->points,
                      error) ||
         (options->at != NULL && !read_times(options->at, spec, error)) ||

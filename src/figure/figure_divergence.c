@@ -196,7 +196,7 @@ static bool put_plot(const Divergence *d, Sketch *sketch, Range range, Error *er
     Point *points = malloc(2 * (size_t)d->frames * sizeof *points);
     if (points == NULL) return error_memory(error, "figure");
     if (d->low != NULL) put_band(d, sketch, &plot, points);
-    plot_put_axes(&plot, sketch, "time (s)", "largest distance (m)");
+    plot_draw_axes(&plot, sketch, "time (s)", "largest distance (m)");
     put_impact(d, sketch, &plot);
     for (int i = 1; i < spec->run_count; i++) put_line(d, sketch, &plot, i, points);
     put_legend(d, sketch, left, sketch->height, spec->width - left);

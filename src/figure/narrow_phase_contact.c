@@ -185,7 +185,7 @@ void put_contact(Sketch *sketch, View window, const Collision *collision) {
     put_points(sketch, &view, collision, front);
     put_normal(sketch, &view, collision, middle, vec2_scale(0.33f * unit, front));
     put_names(sketch, &view, collision, (const Vec2(*)[2])edges, front);
-    sketch_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, view.scale, round_down(14 / view.scale), "m",
-               0.94 * collision->points);
+    sketch_scale_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, view.scale, round_down(14 / view.scale), "m",
+                     0.94 * collision->points);
     sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
 }

@@ -141,6 +141,6 @@ void put_overlaps(Sketch *sketch, View window, const Collision *collision) {
         const TextStyle words = {1.06 * collision->points, TEXT_CENTER, ink_of(collision, i), 0, false};
         sketch_text(sketch, view_place(&view, collision->boxes[i].position), &words, "%s", name_of(collision, i));
     }
-    sketch_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, view.scale, round_down(14 / view.scale), "m",
-               0.94 * collision->points);
+    sketch_scale_bar(sketch, (Point){view.low.x + 3, view.low.y + 5}, view.scale, round_down(14 / view.scale), "m",
+                     0.94 * collision->points);
 }

@@ -156,7 +156,7 @@ View run_cells_view(const RunCells *cells, Point low) {
 }
 
 void run_cells_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
-    sketch_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
+    sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
 }
 
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }

@@ -138,8 +138,8 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
         share = found;
         deepest = contact;
     }
-    watch->pixels16 = deepest != NULL ? watch->pixels16 + 1 : 0;
-    if (watch->pixels16 < verdict_steps(VERDICT_SINK_TIME, watch->run.dt)) return;
+    watch->deep = deepest != NULL ? watch->deep + 1 : 0;
+    if (watch->deep < verdict_steps(VERDICT_SINK_TIME, watch->run.dt)) return;
     int body = step->bodies[deepest->b].inv_mass != 0 ? deepest->b : deepest->a;
     verdict_note(watch, VERDICT_SINKS, body, -(double)deepest->separation, "m");
 }

@@ -30,7 +30,7 @@ kind svg strobe engine.npz --moments 5
 kind svg network "$scenes/networks/pair-net.npz"
 kind pdf narrow-phase engine.npz
 
-# 85 mm at 300 dots an inch; and nothing that tells when or where.
+# 85 mm at 300 dots per inch; and nothing that tells when or where.
 pngcheck one/strip.png | grep -q '(1004x' || fail "$(pngcheck one/strip.png)"
 pngcheck -v one/strip.png | grep -qE 'tIME|tEXt|zTXt|iTXt' && fail "$(pngcheck -v one/strip.png)"
 grep -aqE 'CreationDate|ModDate|Producer|/tmp' one/*.pdf one/*.svg && fail "a figure tells when or where"
@@ -73,8 +73,8 @@ refused() {
 }
 refused "'stripes' is no kind of figure; there are strip, annotated, divergence, strobe, network, narrow-phase" \
     stripes engine.npz -o a.png
-refused "a.gif: error: a figure's name ends in .png, .svg or .pdf" strip engine.npz -o a.gif
-refused "error: a figure's name ends in" strip engine.npz -o ./png
+refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
+refused "error: the name of a figure must end in" strip engine.npz -o ./png
 refused "needed" strip engine.npz
 refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
 refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
@@ -84,8 +84,8 @@ refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
 refused "--width: error: '39'" strip engine.npz -o a.png --width 39
 refused "--dpi: error: '1201'" strip engine.npz -o a.png --dpi 1201
 refused "--font-size: error: '0'" strip engine.npz -o a.png --font-size 0
-refused "dots an inch are" strip engine.npz -o a.png --width 400 --dpi 1200
-refused "dots an inch are" strip engine.npz -o a.svg --width 400 --dpi 1200
+refused "dots per inch are" strip engine.npz -o a.png --width 400 --dpi 1200
+refused "dots per inch are" strip engine.npz -o a.svg --width 400 --dpi 1200
 refused "--at: error: '0.5,0.2' does not rise" strip engine.npz -o a.png --at 0.5,0.2
 refused "--at: error: '0.5,' is no list" strip engine.npz -o a.png --at 0.5,
 refused "--at: error: 'nan' is no list" strip engine.npz -o a.png --at nan

@@ -26,7 +26,7 @@ static void expect_tics(LogAxis axis, bool labelled, const char *expected) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    log_axis_put_tics(&axis, 'x', labelled, file);
+    log_axis_write_tics(&axis, 'x', labelled, file);
     fclose(file);
     assert_string_equal(text, expected);
     free(text);
@@ -47,7 +47,7 @@ static void long_axes_have_tics_at_decades(void **state) {
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
     LogAxis axis = {0.008, 12, 0, 1, false};
-    log_axis_put_tics(&axis, 'y', true, file);
+    log_axis_write_tics(&axis, 'y', true, file);
     fclose(file);
     assert_non_null(strstr(text, "'0.01' 0.01 0"));
     assert_non_null(strstr(text, "'10' 10 0"));

@@ -256,9 +256,9 @@ static void expect_refused(const char *path, double width, double dpi, const cha
 
 static void what_cannot_be_written_is_refused(void **state) {
     (void)state;
-    expect_refused(temporary_path("a.gif"), 10, 300, "a figure's name ends in .png, .svg or .pdf");
-    expect_refused("png", 10, 300, "png: error: a figure's name ends in");
-    expect_refused(".d.png/figure", 10, 300, "a figure's name ends in");
+    expect_refused(temporary_path("a.gif"), 10, 300, "the name of a figure must end in .png, .svg or .pdf");
+    expect_refused("png", 10, 300, "png: error: the name of a figure must end in");
+    expect_refused(".d.png/figure", 10, 300, "the name of a figure must end in");
     expect_refused(temporary_path("large.png"), 400, 1200, "18898 x 18898 pixels; at most 40000000");
     expect_refused("/nowhere/at/all.pdf", 10, 300, "/nowhere/at/all.pdf");
     assert_int_equal(access(temporary_path("large.png"), F_OK), -1);
