@@ -71,7 +71,7 @@ refused() {
     run 2 figure "$@"
     complains "$message"
 }
-refused "'stripes' is no kind of figure; there are strip, annotated, divergence, strobe, network, narrow-phase" \
+refused "'stripes' is not a kind of figure; the kinds are strip, annotated, divergence, strobe, network, narrow-phase" \
     stripes engine.npz -o a.png
 refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: the name of a figure must end in" strip engine.npz -o ./png
@@ -92,16 +92,16 @@ refused "--at: error: 'nan' is no list" strip engine.npz -o a.png --at nan
 refused "--at: error: more than 60 moments" strip engine.npz -o a.png --at "$(seq -s, 0 0.01 0.7)"
 refused "--moments: error: '61'" strip engine.npz -o a.png --moments 61
 refused "--moments: error: --at says already" strip engine.npz -o a.png --moments 3 --at 0.5
-refused "engine.npz: error: shows no moment at 2 s: it goes from 0 to 1 s" strip engine.npz -o a.png --at 2
+refused "engine.npz: error: has no moment at 2 s; its moments are 0 to 1 s" strip engine.npz -o a.png --at 2
 refused "--scene: error: is not for the kind strip" strip engine.npz -o a.png --scene "$scenes/stack.yaml"
 refused "--bodies: error: is not for the kind strobe" strobe engine.npz -o a.png --bodies 1,2
 refused "--bodies: error: '1' is no pair" narrow-phase engine.npz -o a.png --bodies 1
 refused "--bodies: error: '1,1' is no pair" narrow-phase engine.npz -o a.png --bodies 1,1
 refused "there is no body 99" narrow-phase engine.npz -o a.png --bodies 1,99
 refused "cannot be shown beside engine.npz: bodies: 12 and 3" strip engine.npz "$sources/golden/trajectories/single-engine.npz" -o a.png
-refused "never parts from engine.npz" divergence engine.npz engine.npz -o a.png
+refused "never diverges from engine.npz" divergence engine.npz engine.npz -o a.png
 refused "single.yaml: error: is not the scene" divergence engine.npz momentum.npz --scene "$scenes/single.yaml" -o a.png
-refused "engine.npz: error: holds no network" network engine.npz -o a.png
+refused "engine.npz: error: contains no network" network engine.npz -o a.png
 head -c 900 "$scenes/networks/pair-net.npz" >cut.npz
 refused "cut.npz: error:" network cut.npz -o a.png
 head -c 900 engine.npz >cut.npz
@@ -120,7 +120,7 @@ numpy.savez("far.npz", **{**run, "position": far})
 numpy.savez("wild.npz", **{**run, "contact_impulse": run["contact_impulse"] * numpy.float32("nan")})
 PYTHON
 refused "bare.npz: error: the run has no contacts" annotated bare.npz -o a.png
-refused "bare.npz: error: no two bodies that can move touch" narrow-phase bare.npz -o a.png
+refused "bare.npz: error: no two dynamic bodies touch" narrow-phase bare.npz -o a.png
 run 0 figure strip bare.npz -o bare.png
 run 0 figure strip far.npz --at 0.5 -o far.png
 run 0 figure strobe far.npz -o far.svg

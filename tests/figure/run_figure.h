@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What tests of figures of runs share. Include testing.h first. */
 #pragma once
-#include "figure/run_figures.h"
+#include "figure/figure.h"
 #include "render/runs.h"
 
 static inline FigureSpec spec_of(Trajectory *const *runs, int count) {

@@ -115,15 +115,16 @@ static void what_cannot_be_shown_is_refused(void **state) {
     expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");
     spec = spec_of(&run, 1);
     spec.time_count = 2, spec.times[1] = 0.1;
-    expect_kind_refused("annotated", &spec, "this kind shows one moment, not 2");
+    expect_kind_refused("annotated", &spec, "this kind of figure shows one moment (got 2)");
     spec.time_count = 1, spec.times[0] = 10 / 60.0;
-    expect_kind_refused("annotated", &spec, "a.npz: error: shows no moment at 0.166667 s: steps follow those from 0");
+    expect_kind_refused("annotated", &spec,
+                        "a.npz: error: has no moment at 0.166667 s with a step after it; its moments are 0");
     run->contact_start[1] = run->contact_start[2]; /* step 1 has them all, step 2 none */
     spec.times[0] = 1 / 60.0;
     run->contact_start[2] = run->contact_start[3];
     run->contact_start[1] = run->contact_start[2];
     expect_kind_refused("annotated", &spec,
-                        "a.npz: error: has no contacts with an impulse in the step from 0.0166667 s on");
+                        "a.npz: error: has no contacts with an impulse in the step after 0.0166667 s");
     trajectory_destroy(without);
     trajectory_destroy(run);
 }

@@ -113,7 +113,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     (void)state;
     Trajectory *runs[] = {run_make("engine", 11), run_make("engine", 11)};
     FigureSpec spec = spec_of(runs, 2);
-    expect_kind_refused("divergence", &spec, "b.npz: error: never parts from a.npz");
+    expect_kind_refused("divergence", &spec, "b.npz: error: never diverges from a.npz");
     runs[1]->size[1] = vec2(3, 3);
     expect_kind_refused("divergence", &spec, "b.npz: error: cannot be shown beside a.npz");
     runs[1]->size[1] = runs[0]->size[1];
@@ -125,7 +125,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     spec = spec_of(changed, 2);
     spec.scene = STACK;
     changed[0]->velocity[7 * changed[0]->bodies + 3].x += 1;
-    expect_kind_refused("divergence", &spec, "stack.yaml run again is not this run from frame 7 on");
+    expect_kind_refused("divergence", &spec, "stack.yaml run again differs from this run from frame 7 on");
     trajectory_destroy(changed[0]);
     trajectory_destroy(changed[1]);
 }

@@ -165,12 +165,12 @@ static void damaged_files_are_refused(void **state) {
     FigureSpec spec = spec_for(path);
     expect_kind_refused("network", &spec, "cut.npz: error:");
     spec.network = NETWORKS "momentum-stack.npz";
-    expect_kind_refused("network", &spec, "momentum-stack.npz: error: holds no network with layers");
+    expect_kind_refused("network", &spec, "momentum-stack.npz: error: contains no network with layers");
     spec.network = temporary_path("nowhere.npz");
     expect_kind_refused("network", &spec, "nowhere.npz");
     spec = spec_for(NETWORKS "contact-net.npz");
     spec.width = 40, spec.points = 14;
-    expect_kind_refused("network", &spec, "its names leave");
+    expect_kind_refused("network", &spec, "the names of inputs and outputs leave");
 }
 
 int main(void) {

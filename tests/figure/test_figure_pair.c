@@ -91,12 +91,12 @@ static void what_cannot_be_shown_is_refused(void **state) {
     (void)state;
     Trajectory *run = run_touching(), *without = run_make("engine", 3);
     FigureSpec spec = spec_of(&without, 1);
-    expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two bodies that can move touch");
+    expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");
     spec = spec_of(&run, 1);
     spec.bodies[0] = 2, spec.bodies[1] = 3;
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: bodies 2 and 3 do not touch");
     spec.bodies[1] = 44;
-    expect_kind_refused("narrow-phase", &spec, "there is no body 44: the run has 4");
+    expect_kind_refused("narrow-phase", &spec, "there is no body 44; the run has 4");
     spec.bodies[0] = 0, spec.bodies[1] = 1;
     expect_kind_refused("narrow-phase", &spec, "bodies 0 and 1 have sides from 1 to 100 m");
     spec.bodies[0] = 1, spec.bodies[1] = 2;
@@ -104,7 +104,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     expect_kind_refused("narrow-phase", &spec, "bodies 1 and 2 do not touch in that step");
     spec.times[0] = 3 / 60.0;
     *run_position(run, 3, SECOND_BOX) = vec2(9, 9);
-    expect_kind_refused("narrow-phase", &spec, "touch in the step from 0.05 s on, but not at the poses");
+    expect_kind_refused("narrow-phase", &spec, "touch in the step after 0.05 s, but not at the poses");
     trajectory_destroy(run);
     trajectory_destroy(without);
 }

@@ -104,16 +104,16 @@ static void what_cannot_be_shown_is_refused(void **state) {
     FigureSpec spec = spec_of(runs, 2);
     spec.time_count = 1;
     spec.times[0] = 0.3;
-    expect_kind_refused("strip", &spec, "b.npz: error: shows no moment at 0.3 s: it goes from 0 to 0.16666");
+    expect_kind_refused("strip", &spec, "b.npz: error: has no moment at 0.3 s; its moments are 0 to 0.16666");
     spec.times[0] = -1;
-    expect_kind_refused("strip", &spec, "a.npz: error: shows no moment at -1 s");
+    expect_kind_refused("strip", &spec, "a.npz: error: has no moment at -1 s");
     spec.time_count = 0, spec.moments = 60;
     expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
     spec.moments = 1;
     runs[1]->size[2] = vec2(3, 3);
     expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
     assert_null(figure_kind("stripe", &error));
-    assert_error(error, ERROR_INPUT, "'stripe' is no kind of figure; there are strip");
+    assert_error(error, ERROR_INPUT, "'stripe' is not a kind of figure; the kinds are strip");
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
 }

@@ -93,7 +93,7 @@ static void moments_are_as_many_as_asked_for(void **state) {
     assert_int_equal(count_words(&sketch, "engine, 0.33 s"), 1);
     sketch_free(&sketch);
     spec.time_count = 1, spec.times[0] = 1;
-    expect_kind_refused("strobe", &spec, "a.npz: error: shows no moment at 1 s");
+    expect_kind_refused("strobe", &spec, "a.npz: error: has no moment at 1 s");
     trajectory_destroy(run);
 }
 

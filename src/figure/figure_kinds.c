@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -16,6 +16,6 @@ const FigureKind *figure_kind(const char *name, Error *error) {
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", kinds[i]->name);
     }
-    error_input(error, "figure", "'%s' is no kind of figure; there are %s", name, names);
+    error_input(error, "figure", "'%s' is not a kind of figure; the kinds are %s", name, names);
     return NULL;
 }
