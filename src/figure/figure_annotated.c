@@ -28,7 +28,7 @@ typedef struct Annotated {
 /* The frame before the step in which the bomb first touches a box; otherwise the frame before the largest impulse;
    -1 without contacts. */
 static int find_moment(const Trajectory *run) {
-    int touch = run_first_touch(run), frame = -1;
+    int touch = trajectory_impact(run), frame = -1;
     if (touch > 0) return touch - 1;
     double largest = -1;
     for (int step = 1; step < run->frames; step++)

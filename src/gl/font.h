@@ -15,9 +15,6 @@ typedef struct Font {
 /* A space as wide as a digit, to pad numbers. */
 #define FIGURE_SPACE "\xE2\x80\x87"
 
-/* Decodes one UTF-8 character and moves *text past it; 0xFFFD for an invalid byte. */
-unsigned font_next_character(const char **text);
-
 /* The largest size not above `pixels`. */
 Font font_pick(FontFace face, double pixels);
 

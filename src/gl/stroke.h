@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines, dots and arrows, all made of drawing.h's shape, which is pixel-exact on every machine. Pixels, y down. */
 #pragma once
+#include "common/point.h"
 #include "gl/drawing.h"
-
-typedef struct Point {
-    double x, y;
-} Point;
 
 /* A line with round caps. */
 void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint32_t color, const Rect *clip);
@@ -27,9 +24,9 @@ typedef struct Dash {
 } Dash;
 
 /* Carries the dash phase from one segment of a polyline to the next; start with travelled = 0. */
-typedef struct Pen {
+typedef struct DashedLine {
     double thickness, travelled;
     uint32_t color;
     Dash dash;
-} Pen;
-void stroke_dashed(Drawing *drawing, Point from, Point to, Pen *pen, const Rect *clip);
+} DashedLine;
+void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip);

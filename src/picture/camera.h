@@ -10,6 +10,9 @@ typedef struct Camera {
     double left, top;
 } Camera;
 
+/* True if the trajectory sets a view of a usable size. */
+bool camera_is_set(const Trajectory *trajectory);
+
 /* Shows the view that the trajectory sets; otherwise all that its dynamic bodies reach over the whole run (its
    static ones if it has no others). Width and height of the panel in pixels. */
 Camera camera_fit(const Trajectory *trajectory, int width, int height);

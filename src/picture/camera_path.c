@@ -3,6 +3,8 @@
    frame, make speed and acceleration continuous and let the camera anticipate. */
 #include "picture/camera_path.h"
 
+#include "picture/extent.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +15,6 @@ static const double LEAD_TIME = 0.7;      /* s before the divergence that the ca
 static const double HOLD_TIME = 1.2;      /* s that the camera stays there after it */
 static const double BOMB_VIEW = 0.5;      /* size of the view that follows the bomb / size of the whole view */
 static const double BODY_SIDES = 6;       /* a close view is at least this many sides of its body wide and high */
-static const double MAX_COORDINATE = 1e5; /* m; farther targets are not followed */
 static const double MAX_REACH = 500;      /* frames; bounds the cost with tiny time steps */
 enum { PASSES = 3 };
 
@@ -51,7 +52,7 @@ static void target_bomb(View *views, const Trajectory *run, int frames, const Vi
     for (int frame = 0; frame < frames; frame++) {
         if (frame < run->frames && trajectory_has(run, frame, run->bomb)) {
             Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb];
-            if (fabs((double)at.x) < MAX_COORDINATE && fabs((double)at.y) < MAX_COORDINATE)
+            if (fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
                 target = close_view(whole, (double)at.x, (double)at.y, size, height);
         }
         views[frame] = target;

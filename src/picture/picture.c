@@ -91,7 +91,10 @@ static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *
 bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error) {
     const RenderLook plain = {0};
     picture->title = options->title;
-    for (int i = 0; i < picture->count; i++) picture->notes[i] = options->notes[i];
+    for (int i = 0; i < picture->count; i++) {
+        picture->notes[i] = options->notes[i];
+        if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
+    }
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;

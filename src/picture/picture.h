@@ -20,6 +20,7 @@ typedef struct Picture {
     double run_largest[RENDER_PANELS_MAX]; /* the same, per run */
     const char *title;                     /* as in RenderOptions; must outlive the picture */
     const char *notes[RENDER_PANELS_MAX];
+    const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
     RenderLook look;
     const Theme *theme;
     int panel_count; /* number of panels drawn */

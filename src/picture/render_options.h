@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The options of render/render.h; a picture needs some of them. */
 #pragma once
+#include "common/method_description.h"
 #include "gl/context.h"
 #include "picture/look.h"
 
@@ -24,9 +25,12 @@ typedef struct RenderOptions {
     bool small;                           /* smallest files that libpng can write; slow */
     const char *title;                    /* in the header; NULL: the scene's name */
     const char *notes[RENDER_PANELS_MAX]; /* after a panel's method; NULL: none */
-    RenderLook look;                      /* zeros: bodies side by side */
-    int slow;                             /* slow-motion factor around the impact; 0, 1: none */
-    double hold;                          /* s, repeats the last frame */
-    bool title_card, end_card;            /* before and after the run */
-    bool resume;                          /* keep the frames that an earlier, equal call has written */
+    /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of the
+       method is its title. */
+    const MethodDescription *(*describe)(const char *method);
+    RenderLook look;           /* zeros: bodies side by side */
+    int slow;                  /* slow-motion factor around the impact; 0, 1: none */
+    double hold;               /* s, repeats the last frame */
+    bool title_card, end_card; /* before and after the run */
+    bool resume;               /* keep the frames that an earlier, equal call has written */
 } RenderOptions;

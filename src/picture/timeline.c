@@ -86,7 +86,7 @@ static int segment_end(const Picture *picture, const float *curve, int i) {
 
 static void draw_curve(const Picture *picture, int run, Drawing *drawing) {
     const float *curve = picture->curves + (size_t)run * (size_t)picture->curve_points;
-    Pen pen = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
+    DashedLine line = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
     Rect clip = picture->layout.timeline;
     clip.top -= 2, clip.bottom += 2;
     double every = (double)picture->frames / picture->curve_points;
@@ -94,7 +94,7 @@ static void draw_curve(const Picture *picture, int run, Drawing *drawing) {
         end = segment_end(picture, curve, i);
         Point from = {x_at(picture, i * every), y_at(picture, (double)curve[i])};
         Point to = {x_at(picture, end * every), y_at(picture, (double)curve[end])};
-        stroke_dashed(drawing, from, to, &pen, &clip);
+        stroke_dashed(drawing, from, to, &line, &clip);
     }
 }
 
@@ -182,11 +182,11 @@ static void draw_key(const Picture *picture, Drawing *drawing) {
     int x = layout->timeline.left, baseline = layout->key_baseline, right = layout->right;
     x = font_add_fitting(drawing, font, text, x, baseline, right - x, picture->theme->ink_soft) + 2 * font->pixels;
     for (int run = 1; run < picture->count; run++) {
-        Pen pen = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
+        DashedLine line = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
         double y = baseline - font->pixels * 0.36;
         int end = x + font->pixels * 5 / 2;
         if (end + 4 * font->pixels > right) return;
-        stroke_dashed(drawing, (Point){x, y}, (Point){end, y}, &pen, &clip);
+        stroke_dashed(drawing, (Point){x, y}, (Point){end, y}, &line, &clip);
         caption_method(picture, run, title, note);
         x = end + font->pixels / 2;
         x = font_add_fitting(drawing, font, title, x, baseline, right - x, picture->theme->ink) + font->pixels * 3 / 2;

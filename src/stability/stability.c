@@ -2,16 +2,15 @@
 #include "stability/stability.h"
 
 #include "common/file.h"
+#include "common/names.h"
 #include "stability/stability_grid.h"
 #include "stability/stability_scan.h"
+#include "stability/stability_table.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
-                                      "reference,pair-net,contact-net,scene-net";
 
 /* The study in progress. */
 typedef struct Run {
@@ -41,14 +40,10 @@ static bool is_known(const char *name) {
 }
 
 static bool refuse_name(const char *name, Error *error) {
-    char names[2048] = "";
-    size_t used = 0;
-    for (int i = 0; i < stability_study_count + stability_map_count && used < sizeof names; i++) {
-        const char *known =
-            i < stability_study_count ? stability_studies[i].name : stability_maps[i - stability_study_count].name;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", known);
-    }
-    return error_input(error, name, "no such study or map; there are %s", names);
+    NameList known = {0};
+    for (int i = 0; i < stability_study_count; i++) name_list_add(&known, stability_studies[i].name);
+    for (int i = 0; i < stability_map_count; i++) name_list_add(&known, stability_maps[i].name);
+    return error_unknown(error, "stability", name, "a study or map", &known);
 }
 
 static bool know_names(const StabilityOptions *options, Error *error) {
@@ -103,19 +98,17 @@ static bool do_parts(Run *run, Error *error) {
 }
 
 static bool write_tables(const Run *run, Error *error) {
-    const char *folder = run->options->folder;
-    return study_parts_table(&run->parts, folder, "stability", STABILITY_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "maps", MAPS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "refusals", REFUSALS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "rest", REST_HEADER, error);
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout, &refusal_layout, &fallback_layout,
+                                               &rest_layout};
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+        if (!study_parts_table(&run->parts, run->options->folder, layouts[i], error)) return false;
+    return true;
 }
 
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {
     Run run = {.options = options, .parts = {.progress = progress}};
     uint64_t key;
-    if (!know_names(options, error) ||
-        !contenders_read(&run.methods, options->methods != NULL ? options->methods : default_methods, error))
+    if (!know_names(options, error) || !contenders_parse(&run.methods, options->methods, STUDY_STABILITY, error))
         return false;
     for (int i = 0; i < stability_study_count; i++)
         if (does_study(&run, i)) run.parts.total += stability_studies[i].weight;

@@ -162,15 +162,16 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
     char *borders = read_table(folder, "stability"), *maps = read_table(folder, "maps");
     char *refusals = read_table(folder, "refusals");
     double holds_at, fails_at;
-    assert_non_null(strstr(borders, STABILITY_HEADER "\nbomb_speed,engine,,speed,m/s,"));
+    assert_non_null(strstr(
+        borders, "study,method,setting,parameter,unit,holds_at,fails_at,verdict\nbomb_speed,engine,,speed,m/s,"));
     assert_int_equal(sscanf(strstr(borders, "m/s,") + 4, "%lf,%lf,", &holds_at, &fails_at), 2);
     const double through = 60 * (0.51 + 0.25 / 2) - 10 / 60.0;
     assert_true(holds_at < through && through < fails_at && fails_at <= 1.05 * holds_at);
     assert_non_null(strstr(borders, "\nbomb_speed,engine,\"k=3,warm=off\",speed,m/s,"));
     assert_non_null(strstr(borders, ",tunnels\nbomb_speed,scene-net,,speed,m/s,,,not applicable\n"));
-    assert_string_equal(refusals,
-                        REFUSALS_HEADER "\nbomb_speed,scene-net,,scene-net: error: the scene names no network "
-                                        "for it: use scene-net:network=FILE\n");
+    assert_string_equal(refusals, "study,method,setting,reason\n"
+                                  "bomb_speed,scene-net,,scene-net: error: the scene names no network for it: use "
+                                  "scene-net:network=FILE\n");
     int lines = 0;
     for (const char *c = maps; *c != '\0'; c++) lines += *c == '\n';
     assert_int_equal(lines, 1 + 2 * 5 * 4); /* two methods, without the reference */
@@ -190,7 +191,7 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
-    assert_ok(contenders_read(&methods, "robust,pair-net", &error), error);
+    assert_ok(contenders_parse(&methods, "robust,pair-net", STUDY_STABILITY, &error), error);
     StabilityScan scan = {&study, scenes, &methods};
     char *text = NULL;
     size_t size = 0;
@@ -263,7 +264,7 @@ static void names_and_methods_that_there_are_not_are_refused(void **state) {
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "luck: error: no such study or map; there are stack_height, ");
+    assert_error(error, ERROR_INPUT, "'luck' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     error = (Error){0};

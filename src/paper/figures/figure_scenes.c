@@ -14,7 +14,7 @@
 static const double left = -8, bottom = -1, wide = 16, high = 22.6;
 
 /* On the page, mm; the scale is 39 pixels a metre in the PNG. */
-static const double width = 174, height = 87, scale = 3.302, gap = 3.4, low = 1;
+static const double width = FIGURE_PAGE_WIDTH, height = 87, scale = 3.302, gap = 3.4, low = 1;
 
 /* The renderer then has 39 pixels a metre, too. */
 enum { RENDER_WIDTH = 1300, RENDER_HEIGHT = 1075 };

@@ -57,8 +57,7 @@ static bool read_figure(PaperFiles *files, int i, const char *folder, Error *err
     DocumentFigure *figure = &files->figures[i];
     snprintf(files->figure_paths[i], sizeof files->figure_paths[i], "figures/%s.png", specs[i].name);
     char path[PAPER_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/figures/%s.png", folder, specs[i].name) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/figures/%s.png", folder, specs[i].name)) return false;
     files->pictures[i] = file_read(path, MAX_PICTURE_SIZE, &figure->png_size, error);
     if (files->pictures[i] == NULL || !check_picture(figure, path, error)) return false;
     memcpy(path + strlen(path) - 3, "txt", 3);

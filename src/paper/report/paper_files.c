@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/report/paper_files.h"
 
+#include "common/file.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,8 +113,7 @@ static bool check_shares(const PaperFiles *files, Error *error) {
 
 static bool read_tables(PaperFiles *files, const char *folder, Error *error) {
     for (int i = 0; i < PAPER_TABLES; i++) {
-        int length = snprintf(files->paths[i], PAPER_PATH_SIZE, "%s/%s", folder, specs[i].name);
-        if (length >= PAPER_PATH_SIZE) return error_input(error, folder, "the name is too long");
+        if (!file_path(files->paths[i], PAPER_PATH_SIZE, error, "%s/%s", folder, specs[i].name)) return false;
         int columns = (int)(specs[i].columns_size / sizeof(TableColumn));
         if (!table_read(&files->tables[i], files->paths[i], specs[i].columns, columns, specs[i].row_size, error))
             return false;

@@ -63,8 +63,7 @@ static bool print(Language *language, const Document *document, Error *error) {
 
 static bool put_file(const Language *language, const char *folder, Error *error) {
     char path[PAPER_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/%s", folder, language->name) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/%s", folder, language->name)) return false;
     return file_write(path, language->data, language->size, error);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The same picture by cairo, whose PNGs libpng writes with its defaults: the rectangles of the drawing, the bodies as
-   rounded boxes with outline and band, the texts. Prints the seconds that the frames took. */
+/* The same picture by cairo, written by libpng with its defaults: the rectangles of the drawing, the bodies as rounded
+   boxes with outline and band, the text. Prints the seconds that the frames took. */
 #include "runs.h"
 
 #include "picture/picture.h"
