@@ -2,7 +2,7 @@
 /* The axis of a study in the figure of borders: in mm from its panel's left edge, so that tiles keep their size on a
    logarithmic one, too. */
 #pragma once
-#include "chart/figure_page.h"
+#include "chart/gnuplot_page.h"
 #include "stability/stability_table.h"
 
 typedef struct BorderAxis {
@@ -23,4 +23,4 @@ BorderAxis border_axis(const BorderTable *table, int first, double width);
 double border_axis_place(const BorderAxis *axis, double value);
 
 /* Writes the axis of the open panel. */
-void border_axis_put(const BorderAxis *axis, FigurePage *page);
+void border_axis_put(const BorderAxis *axis, GnuplotPage *page);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A map of where each method fails: a panel a method, a tile a cell. */
 #pragma once
-#include "chart/figure_page.h"
+#include "chart/gnuplot_page.h"
 #include "stability/stability_table.h"
 
 enum { MAP_MAX_VALUES = 64, MAP_MAX_METHODS = 24 };
@@ -21,4 +21,4 @@ typedef struct MapPanels {
 bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error);
 
 /* Writes the figure and its caption. Cells are equally large, whatever their values: these are the tics. */
-void map_panels_write(const MapPanels *map, FigurePage *page);
+void map_panels_write(const MapPanels *map, GnuplotPage *page);

@@ -2,7 +2,7 @@
 /* What a verdict looks like: a tile with a symbol. The worse, the darker, so that the order reads in grey and for the
    colour-blind; what holds is light and round, what fails is dark and angular, so that it reads in black and white. */
 #pragma once
-#include "chart/figure_page.h"
+#include "chart/gnuplot_page.h"
 #include "stability/verdict.h"
 
 /* Behind the verdicts: cells that have none. */
@@ -31,13 +31,13 @@ typedef struct Tile {
 } Tile;
 
 /* Draws tiles upon the open panel: all fills, then all symbols. */
-void verdict_put_tiles(FigurePage *page, const Tile *tiles, int count, TileScale scale);
+void verdict_put_tiles(GnuplotPage *page, const Tile *tiles, int count, TileScale scale);
 
-/* Where a legend's items go: row by row, FIGURE_LEGEND_ROW apart. */
+/* Where a legend's items go: row by row, GNUPLOT_LEGEND_ROW apart. */
 typedef struct LegendPlace {
     double left, top, width; /* mm: left edge and middle of the first; from column to column */
     int columns;
 } LegendPlace;
 
 /* Puts tiles and names of the looks that are used upon a panel in mm. Returns how many. */
-int verdict_put_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place);
+int verdict_put_legend(GnuplotPage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place);

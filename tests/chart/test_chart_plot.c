@@ -103,11 +103,11 @@ static void tables_without_a_mark_are_refused(void **state) {
                    "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
                    "single", none);
     expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean cannot be -1");
-    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "cannot be the name of a scene");
+    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
     char many[8000] = "";
     for (int i = 0; i < 25; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
-    expect_refused(many, "single", "more than 24 methods");
+    expect_refused(many, "single", "at most 24 methods");
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
