@@ -77,9 +77,9 @@ static bool add_front(Labels *labels) {
 /* A thin line from a mark's ring to its label, if they are apart. */
 static void write_leader(FILE *script, double x, double y, const PageBox *box) {
     double near_x = fmin(fmax(x, box->left), box->right), near_y = fmin(fmax(y, box->bottom), box->top);
-    double apart = sqrt((near_x - x) * (near_x - x) + (near_y - y) * (near_y - y));
-    if (apart < RING_RADIUS + 1) return;
-    double share = RING_RADIUS / apart;
+    double distance = sqrt((near_x - x) * (near_x - x) + (near_y - y) * (near_y - y));
+    if (distance < RING_RADIUS + 1) return;
+    double share = RING_RADIUS / distance;
     fprintf(script, "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lw 0.8 lc rgb 'black' front\n",
             (x + share * (near_x - x)) / CHART_WIDTH, (y + share * (near_y - y)) / CHART_HEIGHT, near_x / CHART_WIDTH,
             near_y / CHART_HEIGHT);

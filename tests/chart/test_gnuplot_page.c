@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parts of figures: axes, seeds, series. */
+/* Axes, seeds and series of gnuplot pages. */
 #include "testing.h"
 
 #include "chart/gnuplot_axis.h"
@@ -31,7 +31,7 @@ static void expect(const char *script, const char *text) {
     if (strstr(script, text) == NULL) fail_msg("no \"%s\" in:\n%s", text, script);
 }
 
-/* Three values, then four: the middle one, and the mean of the two in the middle. */
+/* Three values, then four: the middle one, and the mean of the middle two. */
 static void the_median_is_in_the_middle(void **state) {
     (void)state;
     SeedPoint points[] = {{1, 8, 2}, {2, 8, 30}, {3, 8, 4}, {1, 2, 5}, {2, 2, 1}, {3, 2, 3}, {4, 8, 6}};
@@ -55,7 +55,7 @@ static void seeds_have_lines_of_their_own(void **state) {
 }
 
 /* gnuplot fails on a block without points. */
-static void what_is_empty_is_not_plotted(void **state) {
+static void empty_series_are_not_plotted(void **state) {
     (void)state;
     GnuplotLook look = gnuplot_look(0, "");
     Sheet sheet;
@@ -94,7 +94,7 @@ static void an_axis_holds_what_is_drawn(void **state) {
     assert_true(page.beyond);
 }
 
-/* Of 40 decades, as of 4, as many are named as have room; 0 has a tic of its own, the others begin behind it. */
+/* Of 40 decades, as of 4, only as many are labelled as fit; 0 has its own tic, the others begin after it. */
 static void tics_have_room(void **state) {
     (void)state;
     for (int decades = 4; decades <= 40; decades += 36) {
@@ -117,7 +117,7 @@ static void tics_have_room(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_median_is_in_the_middle),  cmocka_unit_test(seeds_have_lines_of_their_own),
-        cmocka_unit_test(what_is_empty_is_not_plotted), cmocka_unit_test(quotes_stay_within_texts),
+        cmocka_unit_test(empty_series_are_not_plotted), cmocka_unit_test(quotes_stay_within_texts),
         cmocka_unit_test(an_axis_holds_what_is_drawn),  cmocka_unit_test(tics_have_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,7 +32,7 @@ static void rectangles_are_cut_at_the_edges(void **state) {
     free(masked);
 }
 
-/* White, dark, black; the last two with nothing of them to be seen, of which the file, opaque, knows nothing. */
+/* White, dark, black; the last two transparent, which the opaque file does not preserve. */
 static void pictures_mask_where_they_are_not_black(void **state) {
     (void)state;
     Error error = {0};
@@ -72,7 +72,7 @@ static void masked_pixels_do_not_count(void **state) {
     image_destroy(b);
 }
 
-static void there_is_an_end_of_masks(void **state) {
+static void the_number_of_masks_is_limited(void **state) {
     (void)state;
     Error error = {0};
     for (int i = 0; i < MASK_PARTS; i++) assert_ok(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), error);
@@ -85,7 +85,7 @@ int main(void) {
         cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
         cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
         cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
-        cmocka_unit_test_teardown(there_is_an_end_of_masks, clear),
+        cmocka_unit_test_teardown(the_number_of_masks_is_limited, clear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of files, and which belongs to which. */
+/* File names, and the pairs of two sequences. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -62,7 +62,7 @@ static void a_longer_stem_is_another(void **state) {
                  "a_1.png=a_1.png a_b_1.png=- -=a_b_2.png");
 }
 
-/* Two tools name their frames each in its way. */
+/* Two tools name their frames differently. */
 static void where_there_is_one_stem_numbers_decide(void **state) {
     (void)state;
     assert_pairs(folder_of("ours", "frame_000002.png frame_000010.png"), folder_of("theirs", "0010.png 0003.png 2.png"),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Axes and places of labels. */
+/* Axes and placement of labels. */
 #include "testing.h"
 
 #include "sketch/label_place.h"
@@ -67,12 +67,12 @@ static void labels_go_where_nothing_is(void **state) {
     (void)state;
     LabelField *field = field_10_by_10();
     PageBox box;
-    /* The right is first choice, then the left, above, below. */
+    /* The right is preferred, then left, above, below. */
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
     assert_near(box.left, 6, 1e-12);
     assert_near(box.right, 8, 1e-12);
     assert_near(box.bottom, 4.5, 1e-12);
-    /* The first label has taken the right, and a line the left. */
+    /* The first label occupies the right, and a line the left. */
     label_add_segment(field, (Segment){0, 0, 4, 10});
     label_add_segment(field, (Segment){0, 5, 4, 5});
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
