@@ -295,7 +295,7 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
     expect_refused("figures/laws.txt: error: cannot open");
     make_study();
     put_text("figures/rates.png", "\x89PNG and no more");
-    expect_refused("figures/rates.png: error: no PNG file, or a damaged one");
+    expect_refused("figures/rates.png: error: not a PNG file, or damaged");
     make_study();
     put_text("figures/loop.txt", "two\nlines\n");
     expect_refused("figures/loop.txt: error: byte 4 is no text");
