@@ -95,7 +95,7 @@ void *csv_columns_read(const char *folder, const char *file, const CsvColumn *co
         return NULL;
     }
     Csv csv;
-    if (!csv_read(&csv, path, (size_t)CSV_MAX_ROWS * LINE_MAX_SIZE, max_rows, error)) return NULL;
+    if (!csv_read(&csv, path, (size_t)CSV_MAX_ROWS * LINE_MAX_SIZE, 1, max_rows, error)) return NULL;
     char *rows = read_rows(&csv, columns, column_count, struct_size, error);
     *row_count = csv.rows - 1;
     csv_free(&csv);

@@ -97,7 +97,7 @@ static bool print_table(const char *folder, const char *name, void (*print)(cons
     if (snprintf(path, sizeof path, "%s/%s.csv", folder, name) >= (int)sizeof path)
         return error_input(error, folder, "the name is too long");
     if (csv_is_bare(path)) return true;
-    if (!csv_read(&csv, path, MAX_SIZE, MAX_ROWS, error)) return false;
+    if (!csv_read(&csv, path, MAX_SIZE, 1, MAX_ROWS, error)) return false;
     print(&csv);
     csv_free(&csv);
     return true;

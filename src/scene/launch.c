@@ -108,7 +108,7 @@ static bool read_launches(LaunchTable *table, Error *error) {
 
 bool launches_read(LaunchTable *table, const char *path, Error *error) {
     *table = (LaunchTable){.count = 0};
-    if (!csv_read(&table->csv, path, TABLE_MAX_SIZE, LAUNCHES_MAX, error)) return false;
+    if (!csv_read(&table->csv, path, TABLE_MAX_SIZE, 1, LAUNCHES_MAX, error)) return false;
     if (read_launches(table, error)) return true;
     launches_free(table);
     return false;

@@ -215,7 +215,7 @@ static bool read_table(ChartTable *table, const Csv *csv, Error *error) {
 bool chart_csv_read(ChartTable *table, const char *path, Error *error) {
     *table = (ChartTable){.count = 0};
     Csv csv;
-    if (!csv_read(&csv, path, CHART_MAX_SIZE, CHART_MAX_ROWS, error)) return false;
+    if (!csv_read(&csv, path, CHART_MAX_SIZE, 1, CHART_MAX_ROWS, error)) return false;
     bool read = read_table(table, &csv, error);
     csv_free(&csv);
     if (!read) chart_csv_free(table);

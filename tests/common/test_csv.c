@@ -16,7 +16,7 @@ static const char *write_table(const char *text, size_t size) {
 static Csv read_good(const char *text) {
     Error error = {0};
     Csv csv;
-    assert_ok(csv_read(&csv, write_table(text, strlen(text)), 1000, 3, &error), error);
+    assert_ok(csv_read(&csv, write_table(text, strlen(text)), 1000, 1, 3, &error), error);
     return csv;
 }
 
@@ -76,26 +76,26 @@ static void broken_tables_are_refused_with_their_place(void **state) {
         size_t size;
         const char *message;
     } cases[] = {
-        CASE("", "table.csv:1:1: error: an empty table"),
-        CASE("a,b\n", "table.csv:2:1: error: no line behind the header"),
-        CASE("a,b\n1,2,3\n", "table.csv:2:1: error: 3 fields where the header has 2"),
-        CASE("a,b\n1,2\n1\n", "table.csv:3:1: error: 1 fields where the header has 2"),
-        CASE("a,b\n\n1,2\n", "table.csv:2:1: error: an empty line"),
-        CASE("\r\na\r\n", "table.csv:1:1: error: an empty line"),
-        CASE("a\n1\n2\n3\n4\n", "table.csv:5:1: error: more than 3 lines behind the header"),
+        CASE("", "table.csv:1:1: error: the file is empty"),
+        CASE("a,b\n", "table.csv:2:1: error: the table has no rows"),
+        CASE("a,b\n1,2,3\n", "table.csv:2:1: error: 3 fields, but the header has 2"),
+        CASE("a,b\n1,2\n1\n", "table.csv:3:1: error: 1 field, but the header has 2"),
+        CASE("a,b\n\n1,2\n", "table.csv:2:1: error: the line is empty"),
+        CASE("\r\na\r\n", "table.csv:1:1: error: the line is empty"),
+        CASE("a\n1\n2\n3\n4\n", "table.csv:5:1: error: the table has more than 3 rows"),
         CASE("a,b\n1,2\0\n", "table.csv:2:4: error: control character 0x00"),
         CASE("a,b\n1,\t2\n", "table.csv:2:3: error: control character 0x09"),
         CASE("a,b\n1,2\r", "table.csv:2:4: error: control character 0x0d"),
         CASE("a,b\n1,2\r3\n", "table.csv:2:4: error: control character 0x0d"),
-        CASE("a,b\n1,x\"y\"\n", "table.csv:2:4: error: a quote within a field"),
+        CASE("a,b\n1,x\"y\"\n", "table.csv:2:4: error: a quote inside a field"),
         CASE("a,b\n1,\"x\n\"\n", "table.csv:2:3: error: this quote is not closed"),
         CASE("a,b\n1,\"x", "table.csv:2:3: error: this quote is not closed"),
-        CASE("a,b\n\"1\"2,x\n", "table.csv:2:4: error: a comma is missing behind the quote"),
+        CASE("a,b\n\"1\"2,x\n", "table.csv:2:4: error: expected a comma after the closing quote"),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
         Csv csv;
-        assert_false(csv_read(&csv, write_table(cases[i].text, cases[i].size), 1000, 3, &error));
+        assert_false(csv_read(&csv, write_table(cases[i].text, cases[i].size), 1000, 1, 3, &error));
         assert_error(error, ERROR_INPUT, cases[i].message);
     }
 }
@@ -104,10 +104,10 @@ static void large_and_missing_files_are_refused(void **state) {
     (void)state;
     Error error = {0};
     Csv csv;
-    assert_false(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 3, &error));
+    assert_false(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 1, 3, &error));
     assert_error(error, ERROR_INPUT, "larger than 5 bytes");
     error = (Error){0};
-    assert_false(csv_read(&csv, temporary_path("none.csv"), 5, 3, &error));
+    assert_false(csv_read(&csv, temporary_path("none.csv"), 5, 1, 3, &error));
     assert_error(error, ERROR_INPUT, "cannot open");
 }
 

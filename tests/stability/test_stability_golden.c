@@ -77,7 +77,7 @@ static void borders_are_where_they_were(void **state) {
     (void)state;
     Error error = {0};
     Golden golden = {0};
-    assert_ok(csv_read(&golden.csv, SOURCE_DIR "/golden/stability.csv", 1 << 20, 1000, &error), error);
+    assert_ok(csv_read(&golden.csv, SOURCE_DIR "/golden/stability.csv", 1 << 20, 1, 1000, &error), error);
     assert_true(golden.csv.rows > 40);
     assert_true(stability_study_count <= 64);
     const ParallelWork work = {check_row, &golden};

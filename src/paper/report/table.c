@@ -55,7 +55,7 @@ static bool read_rows(Table *table, const TableColumn *columns, int count, size_
 
 bool table_read(Table *table, const char *path, const TableColumn *columns, int count, size_t row_size, Error *error) {
     *table = (Table){.count = 0};
-    if (!csv_read(&table->csv, path, TABLE_MAX_SIZE, TABLE_MAX_ROWS, error)) return false;
+    if (!csv_read(&table->csv, path, TABLE_MAX_SIZE, 1, TABLE_MAX_ROWS, error)) return false;
     if (read_rows(table, columns, count, row_size, error)) return true;
     table_free(table);
     return false;

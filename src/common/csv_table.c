@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/csv_table.h"
+
+#include "common/parse.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Far more than any row of numbers and names takes. */
+enum { ROW_MAX_SIZE = 1200 };
+
+/* A file that is being read. */
+typedef struct Reading {
+    CsvTable *table;
+    const CsvLayout *layout;
+    Error *error;
+} Reading;
+
+/* A field that is being read. */
+typedef struct Cell {
+    const Csv *csv;
+    int row, field;
+    const CsvColumn *column;
+    const char *text;
+    Error *error;
+} Cell;
+
+bool csv_is_plain(char letter) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
+    return letter != '\0' && strchr(plain, letter) != NULL;
+}
+
+/* "NAME: 'FIELD' what". */
+static bool refuse(const Cell *cell, const char *what) {
+    if (cell->text[0] == '\0')
+        return csv_error(cell->csv, cell->row, cell->field, cell->error, "%s: the field is empty", cell->column->name);
+    return csv_error(cell->csv, cell->row, cell->field, cell->error, "%s: '%s' %s", cell->column->name,
+                     csv_show(cell->text).text, what);
+}
+
+static bool read_text(const Cell *cell, const char **member) {
+    const bool name = cell->column->kind == CSV_NAME;
+    const size_t most = name ? CSV_NAME_SIZE - 1 : (size_t)cell->column->maximum;
+    char what[64];
+    snprintf(what, sizeof what, "is longer than %zu bytes", most);
+    if (strlen(cell->text) > most) return refuse(cell, what);
+    for (const char *c = cell->text; name && *c != '\0'; c++)
+        if (!csv_is_plain(*c)) return refuse(cell, "may only have letters, digits, spaces and -_.,:=+/()*[]");
+    *member = cell->text;
+    return true;
+}
+
+static bool read_word(const Cell *cell, int *member) {
+    char what[256] = "is not one of ";
+    for (int i = 0; cell->column->words[i] != NULL; i++) {
+        const char *word = cell->column->words[i];
+        *member = i;
+        if (strcmp(cell->text, word) == 0) return true;
+        size_t used = strlen(what);
+        snprintf(what + used, sizeof what - used, "%s%s", i > 0 ? ", " : "", word);
+    }
+    return refuse(cell, what);
+}
+
+static bool is_in_range(const Cell *cell, double value) {
+    const CsvColumn *column = cell->column;
+    char what[64];
+    if (value >= column->minimum && value <= column->maximum) return true;
+    const bool less = value < column->minimum;
+    snprintf(what, sizeof what, "is %s than %g", less ? "less" : "greater", less ? column->minimum : column->maximum);
+    return refuse(cell, what);
+}
+
+static bool read_integer(const Cell *cell, int *member) {
+    int64_t value;
+    if (!parse_int(cell->text, INT64_MIN, INT64_MAX, &value)) return refuse(cell, "is not a whole number");
+    *member = (int)value;
+    return is_in_range(cell, (double)value);
+}
+
+static bool read_float(const Cell *cell, float *member) {
+    if (!parse_float(cell->text, member)) return refuse(cell, "is not a number");
+    return is_in_range(cell, (double)*member);
+}
+
+static bool read_number(const Cell *cell, double *member) {
+    *member = NAN;
+    if (cell->text[0] == '\0' && cell->column->kind == CSV_OPTIONAL) return true;
+    if (!parse_double(cell->text, member)) return refuse(cell, "is not a number");
+    return is_in_range(cell, *member);
+}
+
+static bool read_cell(const Cell *cell, char *row) {
+    void *member = row + cell->column->offset;
+    switch (cell->column->kind) {
+    case CSV_TEXT:
+    case CSV_NAME: return read_text(cell, member);
+    case CSV_WORD: return read_word(cell, member);
+    case CSV_INTEGER: return read_integer(cell, member);
+    case CSV_FLOAT: return read_float(cell, member);
+    default: return read_number(cell, member);
+    }
+}
+
+static bool read_rows(const Reading *reading) {
+    const CsvLayout *layout = reading->layout;
+    CsvTable *table = reading->table;
+    table->count = table->csv.rows - 1;
+    table->rows = calloc((size_t)table->csv.rows, layout->row_size);
+    if (table->rows == NULL) return error_memory(reading->error, table->csv.path);
+    for (int row = 1; row <= table->count; row++)
+        for (int i = 0; i < layout->column_count; i++) {
+            const int field = table->fields[i];
+            if (field < 0) continue;
+            const char *text = csv_text(&table->csv, row, field);
+            const Cell cell = {&table->csv, row, field, &layout->columns[i], text, reading->error};
+            if (!read_cell(&cell, (char *)table->rows + (size_t)(row - 1) * layout->row_size)) return false;
+        }
+    return true;
+}
+
+static int find_column(const CsvLayout *layout, const char *name) {
+    int i = 0;
+    while (i < layout->column_count && strcmp(layout->columns[i].name, name) != 0) i++;
+    return i;
+}
+
+static bool refuse_column(const Reading *reading, int field) {
+    const CsvLayout *layout = reading->layout;
+    char names[512] = "";
+    for (int i = 0; i < layout->column_count; i++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", layout->columns[i].name);
+    }
+    return csv_error(&reading->table->csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
+                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names);
+}
+
+static bool place_column(const Reading *reading, int field) {
+    const CsvLayout *layout = reading->layout;
+    const Csv *csv = &reading->table->csv;
+    const char *name = csv_text(csv, 0, field);
+    const int column = find_column(layout, name);
+    if (layout->header == CSV_EXACT && column != field && field < layout->column_count)
+        return csv_error(csv, 0, field, reading->error, "column %d must be '%s' (got '%s')", field + 1,
+                         layout->columns[field].name, csv_show(name).text);
+    if (column == layout->column_count) return layout->header == CSV_ALL || refuse_column(reading, field);
+    if (reading->table->fields[column] >= 0)
+        return csv_error(csv, 0, field, reading->error, "the column '%s' appears twice", name);
+    reading->table->fields[column] = field;
+    return true;
+}
+
+static bool read_header(const Reading *reading) {
+    const CsvLayout *layout = reading->layout;
+    const Csv *csv = &reading->table->csv;
+    for (int i = 0; i < CSV_MAX_COLUMNS; i++) reading->table->fields[i] = -1;
+    for (int field = 0; field < csv->width; field++)
+        if (!place_column(reading, field)) return false;
+    for (int i = 0; layout->header != CSV_SUBSET && i < layout->column_count; i++)
+        if (reading->table->fields[i] < 0)
+            return csv_error(csv, 0, 0, reading->error, "the column '%s' is missing", layout->columns[i].name);
+    return true;
+}
+
+/* A row, as qsort() needs it. */
+typedef struct KeyedRow {
+    const Reading *reading;
+    int row;
+} KeyedRow;
+
+static int compare_keys(const void *left, const void *right) {
+    const KeyedRow *a = left, *b = right;
+    const CsvTable *table = a->reading->table;
+    const CsvLayout *layout = a->reading->layout;
+    for (int i = 0; i < layout->column_count; i++) {
+        if (!layout->columns[i].key || table->fields[i] < 0) continue;
+        int order =
+            strcmp(csv_text(&table->csv, a->row, table->fields[i]), csv_text(&table->csv, b->row, table->fields[i]));
+        if (order != 0) return order;
+    }
+    return 0;
+}
+
+static bool has_keys(const Reading *reading) {
+    for (int i = 0; i < reading->layout->column_count; i++)
+        if (reading->layout->columns[i].key && reading->table->fields[i] >= 0) return true;
+    return false;
+}
+
+/* Rows with equal keys are neighbours once sorted. */
+static bool check_keys(const Reading *reading) {
+    const CsvTable *table = reading->table;
+    if (!has_keys(reading) || table->count == 0) return true;
+    KeyedRow *sorted = malloc((size_t)table->count * sizeof *sorted);
+    if (sorted == NULL) return error_memory(reading->error, table->csv.path);
+    for (int i = 0; i < table->count; i++) sorted[i] = (KeyedRow){reading, i + 1};
+    qsort(sorted, (size_t)table->count, sizeof *sorted, compare_keys);
+    bool single = true;
+    for (int i = 1; single && i < table->count; i++) {
+        if (compare_keys(&sorted[i - 1], &sorted[i]) != 0) continue;
+        const int a = sorted[i - 1].row, b = sorted[i].row;
+        single = csv_error(&table->csv, a > b ? a : b, 0, reading->error, "the row repeats that of line %d",
+                           (a > b ? b : a) + 1);
+    }
+    free(sorted);
+    return single;
+}
+
+bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, Error *error) {
+    const Reading reading = {table, layout, error};
+    assert(layout->column_count <= CSV_MAX_COLUMNS);
+    *table = (CsvTable){.count = 0};
+    const size_t max_size = ((size_t)layout->max_rows + 1) * ROW_MAX_SIZE;
+    if (!csv_read(&table->csv, path, max_size, layout->min_rows, layout->max_rows, error)) return false;
+    if (read_header(&reading) && read_rows(&reading) && check_keys(&reading)) return true;
+    csv_table_free(table);
+    return false;
+}
+
+bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *layout, Error *error) {
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/%s.csv", folder, layout->name) >= (int)sizeof path)
+        return error_input(error, folder, "the path is too long");
+    return csv_table_read(table, path, layout, error);
+}
+
+void csv_table_free(CsvTable *table) {
+    free(table->rows);
+    csv_free(&table->csv);
+    *table = (CsvTable){.count = 0};
+}
+
+bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    const int field = table->fields[column];
+    return csv_error(&table->csv, row + 1, field < 0 ? 0 : field, error, "%s", what);
+}
