@@ -2,15 +2,14 @@
 #include "paper/report/template.h"
 
 #include "common/csv.h"
-#include "common/file.h"
-#include "common/utf8.h"
+#include "common/parse.h"
 #include "paper/report/template_value.h"
 
 #include <limits.h>
-#include <stdlib.h>
+#include <math.h>
 #include <string.h>
 
-enum { MAX_ROWS = 5000, MAX_SIZE = MAX_ROWS * 512, MAX_CAPTION_SIZE = 2048, MAX_WORDS = 6, MAX_TAG_SIZE = 200 };
+enum { MAX_ROWS = 5000, MAX_SIZE = MAX_ROWS * 512, MAX_WORDS = 8, MAX_TAG_SIZE = 200 };
 
 typedef struct Filling {
     const char *folder;
@@ -27,50 +26,30 @@ typedef struct Scope {
 
 typedef struct Tag {
     char text[MAX_TAG_SIZE];
-    char *words[MAX_WORDS]; /* ended by NULL */
-    const char *end;        /* in the template, behind the tag */
+    char *words[MAX_WORDS + 1]; /* ended by NULL */
+    const char *end;            /* in the template: what follows the tag */
 } Tag;
 
-static const char end_tag[] = "{{end}}\n";
-
-static bool fail(const Filling *filling, const char *what, const char *tag) {
-    return error_input(filling->error, "template of the report", "%s: '%s'", what, tag);
+static bool fail(const Filling *filling, const char *what, const char *text) {
+    return error_input(filling->error, "report template", "%s: '%s'", what, text);
 }
+
+static const char *skip_line_end(const char *text) { return text + (*text == '\n'); }
 
 static bool read_tag(const Filling *filling, const char *from, Tag *tag) {
     const char *end = strstr(from, "}}");
-    size_t length = end != NULL ? (size_t)(end - from) - 2 : MAX_TAG_SIZE;
-    if (length >= MAX_TAG_SIZE) return fail(filling, "a tag without }}", "{{");
+    const size_t length = end != NULL ? (size_t)(end - from) - 2 : MAX_TAG_SIZE;
+    if (length >= MAX_TAG_SIZE) return fail(filling, "a tag without }} or too long", "{{");
     memcpy(tag->text, from + 2, length);
     tag->text[length] = '\0';
     tag->end = end + 2;
     int count = 0;
     char *rest;
-    for (char *word = strtok_r(tag->text, " ", &rest); word != NULL && count < MAX_WORDS - 1;
+    for (char *word = strtok_r(tag->text, " ", &rest); word != NULL && count < MAX_WORDS;
          word = strtok_r(NULL, " ", &rest))
         tag->words[count++] = word;
     tag->words[count] = NULL;
     return count > 0 || fail(filling, "an empty tag", "{{}}");
-}
-
-static const char *find_in(const Csv *csv, int row, const char *name) {
-    for (int i = 0; row > 0 && i < csv->width; i++)
-        if (strcmp(csv_text(csv, 0, i), name) == 0) return csv_text(csv, row, i);
-    for (int i = 1; row == 0 && i < csv->rows; i++)
-        if (strcmp(csv_text(csv, i, 0), name) == 0) return csv_text(csv, i, 1);
-    return NULL;
-}
-
-static const char *find_value(const Scope *scope, const char *name) {
-    const char *value = NULL;
-    for (; scope != NULL && value == NULL; scope = scope->outer) value = find_in(scope->csv, scope->row, name);
-    return value;
-}
-
-static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scope) {
-    const char *value = find_value(scope, tag->words[0]);
-    if (value == NULL) return fail(filling, "no value", tag->words[0]);
-    return template_write_value(filling->out, value, tag->words[1]) || fail(filling, "unknown format", tag->words[1]);
 }
 
 static bool make_path(const Filling *filling, const char *name, char path[PATH_MAX]) {
@@ -78,76 +57,109 @@ static bool make_path(const Filling *filling, const char *name, char path[PATH_M
            error_input(filling->error, filling->folder, "the name is too long");
 }
 
-/* Length of the UTF-8 character at the start of text; 0 for damaged ones and control characters. */
-static size_t character_length(const char *text, size_t size) {
-    uint32_t character;
-    size_t length = utf8_decode(text, size, &character);
-    return length > 0 && character >= 0x20 && character != 0x7f ? length : 0;
+static const char *find_in_row(const Csv *csv, int row, const char *name) {
+    for (int i = 0; i < csv->width; i++)
+        if (strcmp(csv_text(csv, 0, i), name) == 0) return csv_text(csv, row, i);
+    return NULL;
 }
 
-static bool check_caption(char *caption, size_t size, const char *path, Error *error) {
-    if (size > 0 && caption[size - 1] == '\n') caption[--size] = '\0';
-    if (size == 0) return error_input(error, path, "an empty caption");
-    for (size_t at = 0, length; at < size; at += length) {
-        length = character_length(caption + at, size - at);
-        if (length == 0) return error_input(error, path, "byte %zu is no text: a caption is one line of UTF-8", at + 1);
+static const char *find_key(const Csv *csv, const char *name) {
+    for (int i = 1; i < csv->rows; i++)
+        if (strcmp(csv_text(csv, i, 0), name) == 0) return csv_text(csv, i, 1);
+    return NULL;
+}
+
+static const char *find_value(const Scope *scope, const char *name) {
+    const char *value = NULL;
+    for (; scope != NULL && value == NULL; scope = scope->outer)
+        value = scope->row > 0 ? find_in_row(scope->csv, scope->row, name) : find_key(scope->csv, name);
+    return value;
+}
+
+/* name: of a value, or a number itself. NAN for a value that is not a number. */
+static bool find_number(const Filling *filling, const Scope *scope, const char *name, double *number) {
+    const char *value = find_value(scope, name);
+    if (!parse_double(value != NULL ? value : name, number)) *number = NAN;
+    return value != NULL || !isnan(*number) || fail(filling, "no value has this name", name);
+}
+
+static bool fill_number(const Filling *filling, char *name, const char *format, const Scope *scope) {
+    double value, divisor = 1;
+    char *slash = strchr(name, '/');
+    if (slash != NULL) {
+        *slash = '\0';
+        if (!find_number(filling, scope, slash + 1, &divisor)) return false;
     }
+    if (!find_number(filling, scope, name, &value)) return false;
+    return template_write_number(filling->out, divisor > 0 ? value / divisor : NAN, format) ||
+           fail(filling, "unknown format", format);
+}
+
+static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scope) {
+    char path[PATH_MAX];
+    if (strcmp(tag->words[0], "caption") == 0 && tag->words[1] != NULL)
+        return make_path(filling, tag->words[1], path) && template_write_caption(filling->out, path, filling->error);
+    if (tag->words[1] != NULL) return fill_number(filling, tag->words[0], tag->words[1], scope);
+    const char *value = find_value(scope, tag->words[0]);
+    if (value == NULL) return fail(filling, "no value has this name", tag->words[0]);
+    template_write_text(filling->out, value);
     return true;
 }
 
-static bool fill_caption(const Filling *filling, const char *name) {
-    char path[PATH_MAX];
-    size_t size;
-    if (!make_path(filling, name, path)) return false;
-    char *caption = file_read(path, MAX_CAPTION_SIZE, &size, filling->error);
-    bool whole = caption != NULL && check_caption(caption, size, path, filling->error);
-    if (whole) markdown_escape(filling->out, caption);
-    free(caption);
-    return whole;
+/* words: "single|stack". */
+static bool is_among(const char *text, const char *words) {
+    const size_t length = strlen(text);
+    for (const char *word = words; word != NULL; word = strchr(word, '|')) {
+        word += word != words;
+        if (strncmp(word, text, length) == 0 && (word[length] == '|' || word[length] == '\0')) return true;
+    }
+    return false;
 }
 
-/* *matches: whether the row passes all filters. */
-static bool filter_row(const Filling *filling, const Scope *row, char *const *filters, bool *matches) {
-    *matches = true;
+/* *passes: whether the row passes all filters. */
+static bool filter_row(const Filling *filling, const Scope *row, char *const *filters, bool *passes) {
+    *passes = true;
     for (; *filters != NULL; filters++) {
         char name[MAX_TAG_SIZE];
-        size_t length = strcspn(*filters, "=");
-        memcpy(name, *filters, length);
-        name[length] = '\0';
-        const char *own = find_in(row->csv, row->row, name);
+        const size_t length = strcspn(*filters, "=");
+        snprintf(name, sizeof name, "%.*s", (int)length, *filters);
+        const char *own = find_in_row(row->csv, row->row, name);
         const char *wanted = (*filters)[length] == '=' ? *filters + length + 1 : find_value(row->outer, name);
         if (own == NULL || wanted == NULL) return fail(filling, "no value to filter by", name);
-        *matches &= strcmp(own, wanted) == 0;
+        *passes &= is_among(own, wanted);
     }
     return true;
 }
 
 static bool fill(const Filling *filling, const char *from, const char *end, const Scope *scope);
 
-static bool fill_region(const Filling *filling, const Tag *tag, const char *end, const Scope *outer) {
+/* end: where the text to repeat ends. */
+static bool fill_rows(const Filling *filling, const Tag *tag, const char *end, const Scope *outer) {
     char path[PATH_MAX];
     Csv csv;
-    if (!make_path(filling, tag->words[1], path)) return false;
-    if (csv_is_bare(path)) return true;
-    if (!csv_read(&csv, path, MAX_SIZE, MAX_ROWS, filling->error)) return false;
-    bool filled = true, matches;
+    if (!make_path(filling, tag->words[1], path) || !csv_read(&csv, path, MAX_SIZE, 0, MAX_ROWS, filling->error))
+        return false;
+    bool filled = true, passes;
     for (Scope row = {outer, &csv, 1}; filled && row.row < csv.rows; row.row++)
-        filled = filter_row(filling, &row, tag->words + 2, &matches) &&
-                 (!matches || fill(filling, tag->end + 1, end, &row));
+        filled = filter_row(filling, &row, tag->words + 2, &passes) &&
+                 (!passes || fill(filling, skip_line_end(tag->end), end, &row));
     csv_free(&csv);
     return filled;
 }
 
-/* The {{end}} of the region that begins here; NULL if there is none. */
+static const char each_tag[] = "{{each ", end_tag[] = "{{end}}";
+
+/* The {{end}} of the {{each}} before `from`; NULL if there is none. */
 static const char *find_end(const char *from) {
-    for (int depth = 1;; from += 2) {
-        from = strstr(from, "{{");
-        if (from == NULL) return NULL;
-        if (strncmp(from, "{{each ", 7) == 0) depth++;
+    int depth = 1;
+    for (from = strstr(from, "{{"); from != NULL; from = strstr(from + 2, "{{")) {
+        if (strncmp(from, each_tag, strlen(each_tag)) == 0) depth++;
         if (strncmp(from, end_tag, strlen(end_tag)) == 0 && --depth == 0) return from;
     }
+    return NULL;
 }
 
+/* Fills the template up to `end`. */
 static bool fill(const Filling *filling, const char *from, const char *end, const Scope *scope) {
     for (;;) {
         const char *next = strstr(from, "{{");
@@ -156,16 +168,14 @@ static bool fill(const Filling *filling, const char *from, const char *end, cons
         if (next == end) return true;
         Tag tag;
         if (!read_tag(filling, next, &tag)) return false;
-        from = tag.end;
         if (strcmp(tag.words[0], "each") == 0) {
-            const char *region_end = find_end(from);
-            if (region_end == NULL || tag.words[1] == NULL) return fail(filling, "a region without file or end", "each");
-            if (!fill_region(filling, &tag, region_end, scope)) return false;
-            from = region_end + strlen(end_tag);
-        } else if (strcmp(tag.words[0], "caption") == 0 && tag.words[1] != NULL) {
-            if (!fill_caption(filling, tag.words[1])) return false;
-        } else if (!fill_value(filling, &tag, scope)) {
-            return false;
+            const char *rows_end = find_end(tag.end);
+            if (rows_end == NULL || tag.words[1] == NULL) return fail(filling, "a tag without FILE or {{end}}", "each");
+            if (!fill_rows(filling, &tag, rows_end, scope)) return false;
+            from = skip_line_end(rows_end + strlen(end_tag));
+        } else {
+            if (!fill_value(filling, &tag, scope)) return false;
+            from = tag.end;
         }
     }
 }
@@ -174,9 +184,9 @@ bool template_fill(const char *template, const char *folder, const char *values,
     const Filling filling = {folder, out, error};
     char path[PATH_MAX];
     Csv csv;
-    if (!make_path(&filling, values, path) || !csv_read(&csv, path, MAX_SIZE, MAX_ROWS, error)) return false;
+    if (!make_path(&filling, values, path) || !csv_read(&csv, path, MAX_SIZE, 1, MAX_ROWS, error)) return false;
     const Scope scope = {NULL, &csv, 0};
-    bool filled = fill(&filling, template, template + strlen(template), &scope);
+    const bool filled = fill(&filling, template, template + strlen(template), &scope);
     csv_free(&csv);
     return filled;
 }

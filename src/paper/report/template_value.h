@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values as Markdown. */
+/* Values as Markdown. No character of them has a meaning to Markdown, nor in a table's cell. */
 #pragma once
-#include <stdbool.h>
+#include "common/error.h"
+
 #include <stdio.h>
 
-/* Writes text so that no character of it has a meaning to Markdown, nor in a table's cell. */
-void markdown_escape(FILE *out, const char *text);
+/* A field of a CSV file: cut to a name's length, a dash if it is empty. */
+void template_write_text(FILE *out, const char *text);
 
-/* Writes a field of a CSV file. format: NULL (text), "number", "percent", "score" (template.h); false for any other. */
-bool template_write_value(FILE *out, const char *field, const char *format);
+/* format: "number", "percent", "score" (template.h); false for any other. A dash for NAN. */
+bool template_write_number(FILE *out, double value, const char *format);
+
+/* The text of a file. ERROR_INPUT if it is not one line of UTF-8 without control characters. */
+bool template_write_caption(FILE *out, const char *path, Error *error);
