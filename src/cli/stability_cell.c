@@ -62,7 +62,7 @@ static const MapCell *fail(const MapTable *table, const StabilityCell *cell, boo
             add_name(&names, map_known ? text : row->map);
     }
     if (!map_known)
-        error_input(error, "--clip", "there is no map %s in %s; there are %s", cell->map, table->path,
+        error_input(error, "--clip", "there is no map %s in %s; there are %s", cell->map, table->csv.csv.path,
                     names.used > 0 ? names.text : "none");
     else if (!method_known)
         error_input(error, "--clip", "map %s has no method %s; it has %s", cell->map, cell->method, names.text);

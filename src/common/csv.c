@@ -185,8 +185,8 @@ CsvShown csv_show(const char *text) {
     return shown;
 }
 
-void csv_put(FILE *file, const char *text) {
-    if (text[strcspn(text, ",\"\r\n")] == '\0') {
+void csv_put(FILE *file, const char *text, bool quoted) {
+    if (!quoted && text[strcspn(text, ",\"\r\n")] == '\0') {
         fputs(text, file);
         return;
     }

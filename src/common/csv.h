@@ -40,5 +40,5 @@ typedef struct CsvShown {
 } CsvShown;
 CsvShown csv_show(const char *text);
 
-/* Writes a field, in quotes if it needs them. */
-void csv_put(FILE *file, const char *text);
+/* Writes a field, in quotes if it needs them or `quoted` is set. */
+void csv_put(FILE *file, const char *text, bool quoted);

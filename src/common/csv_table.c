@@ -4,7 +4,6 @@
 #include "common/parse.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -34,6 +33,12 @@ bool csv_is_plain(char letter) {
     return letter != '\0' && strchr(plain, letter) != NULL;
 }
 
+int csv_word(const char *const *words, const char *word) {
+    int i = 0;
+    while (words[i] != NULL && strcmp(words[i], word) != 0) i++;
+    return words[i] != NULL ? i : -1;
+}
+
 /* "NAME: 'FIELD' what". */
 static bool refuse(const Cell *cell, const char *what) {
     if (cell->text[0] == '\0')
@@ -55,13 +60,13 @@ static bool read_text(const Cell *cell, const char **member) {
 }
 
 static bool read_word(const Cell *cell, int *member) {
+    const char *const *words = cell->column->words;
     char what[256] = "is not one of ";
-    for (int i = 0; cell->column->words[i] != NULL; i++) {
-        const char *word = cell->column->words[i];
-        *member = i;
-        if (strcmp(cell->text, word) == 0) return true;
+    *member = csv_word(words, cell->text);
+    if (*member >= 0) return true;
+    for (int i = 0; words[i] != NULL; i++) {
         size_t used = strlen(what);
-        snprintf(what + used, sizeof what - used, "%s%s", i > 0 ? ", " : "", word);
+        snprintf(what + used, sizeof what - used, "%s%s", i > 0 ? ", " : "", words[i]);
     }
     return refuse(cell, what);
 }
@@ -222,11 +227,14 @@ bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, 
     return false;
 }
 
+bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayout *layout, Error *error) {
+    return snprintf(path, CSV_PATH_SIZE, "%s/%s.csv", folder, layout->name) < CSV_PATH_SIZE ||
+           error_input(error, folder, "the path is too long");
+}
+
 bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *layout, Error *error) {
-    char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/%s.csv", folder, layout->name) >= (int)sizeof path)
-        return error_input(error, folder, "the path is too long");
-    return csv_table_read(table, path, layout, error);
+    char path[CSV_PATH_SIZE];
+    return csv_table_path(path, folder, layout, error) && csv_table_read(table, path, layout, error);
 }
 
 void csv_table_free(CsvTable *table) {

@@ -13,12 +13,12 @@
          {"phase", CSV_WORD, .offset = offsetof(RateRow, phase), .words = phase_words},
          {"rate", CSV_OPTIONAL, .offset = offsetof(RateRow, rate), .maximum = 1},
      };
-     const CsvLayout rate_layout = {"rates", CSV_COLUMNS(rate_columns), sizeof(RateRow), .min_rows = 1, .max_rows = 5000};
+     const CsvLayout rate_layout = CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000);
 */
 #pragma once
 #include "common/csv.h"
 
-enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 24 };
+enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 24, CSV_PATH_SIZE = 4096 };
 
 /* What a field holds, and the type of the member that takes it. */
 typedef enum CsvKind {
@@ -38,6 +38,7 @@ typedef struct CsvColumn {
     double minimum, maximum;  /* ends included */
     const char *const *words; /* ends in NULL */
     int digits;               /* significant digits of a number as written; 0: 6 */
+    bool quoted;              /* a text is written in quotes even if it does not need them */
     bool key;                 /* no two rows may be equal in all columns with this flag */
 } CsvColumn;
 
@@ -57,7 +58,12 @@ typedef struct CsvLayout {
     CsvHeader header;
 } CsvLayout;
 
-#define CSV_COLUMNS(columns) (columns), sizeof(columns) / sizeof *(columns)
+/* An initialiser: CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000). */
+#define CSV_LAYOUT(file, column_array, Row, ...)                                   \
+    {                                                                              \
+        .name = (file), .columns = (column_array), .row_size = sizeof(Row),        \
+        .column_count = sizeof(column_array) / sizeof *(column_array), __VA_ARGS__ \
+    }
 
 typedef struct CsvTable {
     Csv csv; /* texts of rows point into it */
@@ -76,6 +82,9 @@ bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *l
 
 void csv_table_free(CsvTable *table);
 
+/* The path folder/NAME.csv. ERROR_INPUT if it is too long. */
+bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayout *layout, Error *error);
+
 /* Sets an error "path:line:column: error: text" at a row, from 0, and a column of the layout. Returns false. */
 bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...)
     PRINTF_LIKE(5, 6);
@@ -87,6 +96,9 @@ bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows
 /* A header line; a row's line. The latter fails where csv_table_write() would, and writes nothing then. */
 void csv_header_print(FILE *file, const CsvLayout *layout);
 bool csv_row_print(FILE *file, const CsvLayout *layout, const void *row, Error *error);
+
+/* Index of a word in a list that ends in NULL; -1: not there. */
+int csv_word(const char *const *words, const char *word);
 
 /* True for letters, digits, the space and -_.,:=+/()*[]: what gnuplot draws as it is. */
 bool csv_is_plain(char letter);

@@ -49,8 +49,8 @@ static bool check_row(const char *where, const CsvLayout *layout, const void *ro
 static void print_field(FILE *file, const CsvColumn *column, const void *row) {
     switch (column->kind) {
     case CSV_TEXT:
-    case CSV_NAME: csv_put(file, text_of(column, row)); break;
-    case CSV_WORD: csv_put(file, column->words[integer_of(column, row)]); break;
+    case CSV_NAME: csv_put(file, text_of(column, row), column->quoted); break;
+    case CSV_WORD: csv_put(file, column->words[integer_of(column, row)], false); break;
     case CSV_INTEGER: fprintf(file, "%d", integer_of(column, row)); break;
     default:
         if (!isnan(number_of(column, row)))

@@ -10,12 +10,6 @@ static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
 static const FigureLook bar_look = {"", {.colour = "#A3CBE5"}, 0, false, 1, false};
 static const FigureLook sign_look = {"", {.colour = "black", .dashes = "solid"}, 1.6, false, 0, false};
 
-bool border_same_method(const BorderRow *a, const BorderRow *b) {
-    return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
-}
-
-bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
-
 static bool holds_throughout(const BorderRow *row) {
     return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
 }

@@ -20,6 +20,3 @@ void border_marks_put(const BorderRows *rows);
 /* What the legend explains: holds, holds throughout, never holds. A sample `width` mm wide on a panel in mm. */
 enum { BORDER_SIGNS = 3 };
 void border_sample_put(FigurePage *page, int sign, double x, double y, double width);
-
-bool border_same_method(const BorderRow *a, const BorderRow *b);
-bool border_same_study(const BorderRow *a, const BorderRow *b);

@@ -4,6 +4,7 @@
 #include "common/file.h"
 #include "stability/stability_grid.h"
 #include "stability/stability_scan.h"
+#include "stability/stability_table.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
 
@@ -103,12 +104,11 @@ static bool do_parts(Run *run, Error *error) {
 }
 
 static bool write_tables(const Run *run, Error *error) {
-    const char *folder = run->options->folder;
-    return study_parts_table(&run->parts, folder, "stability", STABILITY_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "maps", MAPS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "refusals", REFUSALS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "rest", REST_HEADER, error);
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout, &refusal_layout, &fallback_layout,
+                                               &rest_layout};
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+        if (!study_parts_table(&run->parts, run->options->folder, layouts[i], error)) return false;
+    return true;
 }
 
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {

@@ -39,11 +39,11 @@ static bool gather(Borders *borders, Error *error) {
     const BorderTable *table = borders->table;
     for (int i = 0; i < table->count; i++) {
         if (!add_first(table, i, border_same_study, borders->studies, &borders->study_count, BORDERS_MAX_STUDIES))
-            return stability_row_error(table->path, i, error, "more than %d studies: too many for a figure",
-                                       BORDERS_MAX_STUDIES);
+            return csv_table_error(&table->csv, i, 0, error, "more than %d studies: too many for a figure",
+                                   BORDERS_MAX_STUDIES);
         if (!add_first(table, i, border_same_method, borders->methods, &borders->method_count, BORDERS_MAX_METHODS))
-            return stability_row_error(table->path, i, error, "more than %d methods: too many for a figure",
-                                       BORDERS_MAX_METHODS);
+            return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
+                                   BORDERS_MAX_METHODS);
         if (!verdict_holds((Verdict)table->rows[i].verdict)) borders->used[table->rows[i].verdict] = true;
     }
     return true;

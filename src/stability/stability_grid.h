@@ -5,8 +5,6 @@
 #include "common/progress.h"
 #include "stability/stability_case.h"
 
-#define MAPS_HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit"
-
 typedef struct StabilityGrid {
     const StabilityMap *map;
     const char *scenes; /* the folder above stability/ */

@@ -2,8 +2,9 @@
 #include "stability/stability_scan.h"
 
 #include "common/array.h"
-#include "common/csv.h"
 #include "common/parallel.h"
+#include "stability/stability_table.h"
+#include "study/study_parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -111,20 +112,18 @@ static bool study_method(void *context, int i, Error *error) {
     return border_search(&result->borders, &study->scan, &probe, error);
 }
 
-static void put_method(const Run *run, const char *table, int i, FILE *lines) {
+static bool put_border(const Run *run, int i, const Border *border, FILE *lines, Error *error) {
     const Contender *contender = &run->scan->methods->items[i];
-    fprintf(lines, "%s:%s,%s,", table, run->scan->study->name, contender->name);
-    csv_put(lines, contender->setting);
-}
-
-static void put_border(const Run *run, int i, const Border *border, FILE *lines) {
     const StabilityStudy *study = run->scan->study;
-    put_method(run, "stability", i, lines);
-    fprintf(lines, ",%s,%s,", study->parameter, stability_unit(run->typical, study->parameter));
-    if (border != NULL && !isnan(border->holds_at)) fprintf(lines, "%.9g", border->holds_at);
-    fprintf(lines, ",");
-    if (border != NULL && !isnan(border->fails_at)) fprintf(lines, "%.9g", border->fails_at);
-    fprintf(lines, ",%s\n", border != NULL ? verdict_name(border->verdict) : STABILITY_NOT_APPLICABLE);
+    const BorderRow row = {.study = study->name,
+                           .method = contender->name,
+                           .setting = contender->setting,
+                           .parameter = study->parameter,
+                           .unit = stability_unit(run->typical, study->parameter),
+                           .holds_at = border != NULL ? border->holds_at : NAN,
+                           .fails_at = border != NULL ? border->fails_at : NAN,
+                           .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
+    return study_parts_print(lines, &border_layout, &row, error);
 }
 
 static int by_value(const void *left, const void *right) {
@@ -132,53 +131,54 @@ static int by_value(const void *left, const void *right) {
     return (a->value > b->value) - (a->value < b->value);
 }
 
-static void put_value(const Run *run, const char *table, int i, double value, FILE *lines) {
+static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
+
+static bool put_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
+    const Contender *contender = &run->scan->methods->items[i];
     const StabilityStudy *study = run->scan->study;
-    put_method(run, table, i, lines);
-    fprintf(lines, ",%s,%s,%.9g", study->parameter, stability_unit(run->typical, study->parameter), value);
-}
-
-static void put_fallbacks(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
-    const NetworkFallbacks *fallbacks = &scan_run->reading.fallbacks;
-    put_value(run, "fallbacks", i, scan_run->value, lines);
-    fprintf(lines, ",%d,%d,%d,%d\n", scan_run->reading.steps, fallbacks->not_finite, fallbacks->outside_cone,
-            fallbacks->beyond_training);
-}
-
-static void put_rest(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
     const VerdictReading *reading = &scan_run->reading;
-    put_value(run, "rest", i, scan_run->value, lines);
-    fprintf(lines, ",%s,%d,", verdict_name(reading->verdict), reading->steps);
-    if (isfinite(reading->drift)) fprintf(lines, "%.4g", reading->drift);
-    fprintf(lines, ",");
-    if (isfinite(reading->gained)) fprintf(lines, "%.4g", reading->gained);
-    fprintf(lines, "\n");
+    const RunRow row = {.study = study->name,
+                        .method = contender->name,
+                        .setting = contender->setting,
+                        .parameter = study->parameter,
+                        .unit = stability_unit(run->typical, study->parameter),
+                        .value = scan_run->value,
+                        .steps = reading->steps,
+                        .verdict = (int)reading->verdict,
+                        .drift = finite_or_nan(reading->drift),
+                        .energy = finite_or_nan(reading->gained),
+                        .not_finite = reading->fallbacks.not_finite,
+                        .outside_cone = reading->fallbacks.outside_cone,
+                        .beyond_training = reading->fallbacks.beyond_training};
+    if (stability_has_setting(&contender->method, "network") &&
+        !study_parts_print(lines, &fallback_layout, &row, error))
+        return false;
+    return !study->rests || study_parts_print(lines, &rest_layout, &row, error);
 }
 
-static void put_runs(const Run *run, int i, FILE *lines) {
-    const bool network = stability_has_setting(&run->scan->methods->items[i].method, "network");
+static bool put_runs(const Run *run, int i, FILE *lines, Error *error) {
     Result *result = &run->results[i];
-    if (result->run_count == 0) return;
+    if (result->run_count == 0) return true;
     qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
-    for (int k = 0; k < result->run_count; k++) {
-        if (network) put_fallbacks(run, i, &result->runs[k], lines);
-        if (run->scan->study->rests) put_rest(run, i, &result->runs[k], lines);
-    }
+    for (int k = 0; k < result->run_count; k++)
+        if (!put_run(run, i, &result->runs[k], lines, error)) return false;
+    return true;
 }
 
-static void put_result(const Run *run, int i, FILE *lines) {
-    Result *result = &run->results[i];
-    if (result->part == PART_LEFT_OUT) return;
+static bool put_refusal(const Run *run, int i, FILE *lines, Error *error) {
+    const Contender *contender = &run->scan->methods->items[i];
+    char *reason = run->results[i].reason.message;
+    reason[strcspn(reason, "\n")] = '\0';
+    const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
+    return put_border(run, i, NULL, lines, error) && study_parts_print(lines, &refusal_layout, &row, error);
+}
+
+static bool put_result(const Run *run, int i, FILE *lines, Error *error) {
+    const Result *result = &run->results[i];
+    if (result->part == PART_LEFT_OUT) return true;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
-        put_border(run, i, &result->borders.items[k], lines);
-    put_runs(run, i, lines);
-    if (result->part != PART_REFUSED) return;
-    put_border(run, i, NULL, lines);
-    put_method(run, "refusals", i, lines);
-    fprintf(lines, ",");
-    result->reason.message[strcspn(result->reason.message, "\n")] = '\0';
-    csv_put(lines, result->reason.message);
-    fprintf(lines, "\n");
+        if (!put_border(run, i, &result->borders.items[k], lines, error)) return false;
+    return put_runs(run, i, lines, error) && (result->part != PART_REFUSED || put_refusal(run, i, lines, error));
 }
 
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error) {
@@ -192,7 +192,7 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     bool ok = run.typical != NULL;
     if (ok && run.results == NULL) ok = error_memory(error, study->name);
     ok = ok && parallel_for(&work, methods, study->name, NULL, error);
-    for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
+    for (int i = 0; ok && i < methods; i++) ok = put_result(&run, i, lines, error);
     for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
     free(run.results);
     converged_runs_free(&run.converged);

@@ -4,14 +4,6 @@
 #include "common/progress.h"
 #include "stability/stability_case.h"
 
-#define STABILITY_HEADER "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
-#define REFUSALS_HEADER "study,method,setting,reason"
-#define FALLBACKS_HEADER "study,method,setting,parameter,unit,value,steps,not_finite,outside_cone,beyond_training"
-#define REST_HEADER "study,method,setting,parameter,unit,value,verdict,steps,drift,energy"
-
-/* In place of a verdict, where the method does not go with the scene. */
-#define STABILITY_NOT_APPLICABLE "not applicable"
-
 typedef struct StabilityScan {
     const StabilityStudy *study;
     const char *scenes; /* the folder above stability/ */

@@ -8,11 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *verdict_name(Verdict verdict) {
-    static const char *const names[VERDICTS] = {"settles", "sways",   "creeps",   "falls",
-                                                "sinks",   "tunnels", "explodes", "non-finite"};
-    return names[verdict];
-}
+const char *const verdict_words[VERDICTS + 2] = {"settles", "sways",    "creeps",     "falls",         "sinks",
+                                                 "tunnels", "explodes", "non-finite", "not applicable"};
+
+const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
 bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 

@@ -49,7 +49,8 @@ enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_ENERGY_TIME 1.0
 #define VERDICT_LEAST_TO_LOSE 1.0
 
-/* "settles", ... "non-finite". */
+/* "settles", ... "non-finite"; then "not applicable", for cells and borders without a verdict; then NULL. */
+extern const char *const verdict_words[VERDICTS + 2];
 const char *verdict_name(Verdict verdict);
 
 /* Settles, sways or creeps. */

@@ -17,9 +17,6 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [LOOK_MISSING] = {"not run", NULL, "#909090", -1, 1},
 };
 
-const char *const verdict_words[LOOK_MISSING + 1] = {"settles", "sways",    "creeps",     "falls",          "sinks",
-                                                     "tunnels", "explodes", "non-finite", "not applicable", NULL};
-
 /* mm */
 static const double most_symbol = 2.0, seam = 0.07, legend_tile = 2.9, name_gap = 1.3;
 

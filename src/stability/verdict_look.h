@@ -18,9 +18,6 @@ typedef struct VerdictLook {
 
 extern const VerdictLook verdict_looks[VERDICT_LOOKS];
 
-/* The names of all but the last, for a column of words: those of verdict_name(), then "not applicable". */
-extern const char *const verdict_words[LOOK_MISSING + 1];
-
 /* How large tiles are, on a panel with linear axes. */
 typedef struct TileScale {
     double unit_x, unit_y; /* mm of the page that one unit of the axis takes */

@@ -35,7 +35,7 @@ static bool read_text(const Csv *csv, int row, int field, const Column *column, 
     return true;
 }
 
-static void write_text(FILE *file, const void *member) { csv_put(file, member); }
+static void write_text(FILE *file, const void *member) { csv_put(file, member, false); }
 
 /* Protocol and phase are enums, numbered as their words. */
 static bool read_word(const Csv *csv, int row, int field, const Column *column, void *member, Error *error) {

@@ -80,27 +80,33 @@ bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     return ok;
 }
 
-bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
-                       Error *error) {
-    char path[STUDY_PARTS_PATH_SIZE], *text = NULL;
-    const size_t name = strlen(table);
-    size_t size = 0;
-    if (snprintf(path, sizeof path, "%s/%s.csv", folder, table) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
-    FILE *csv = open_memstream(&text, &size);
-    if (csv == NULL) return error_memory(error, "study");
-    fprintf(csv, "%s\n", header);
-    for (const char *line = parts->text; line != NULL && *line != '\0';) {
+bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Error *error) {
+    fprintf(lines, "%s:", layout->name);
+    return csv_row_print(lines, layout, row, error);
+}
+
+typedef struct PartsTable {
+    const StudyParts *parts;
+    const CsvLayout *layout;
+} PartsTable;
+
+static void print_table(FILE *csv, const void *context) {
+    const PartsTable *table = context;
+    const char *name = table->layout->name;
+    const size_t size = strlen(name);
+    csv_header_print(csv, table->layout);
+    for (const char *line = table->parts->text; line != NULL && *line != '\0';) {
         size_t length = strcspn(line, "\n");
-        if (strncmp(line, table, name) == 0 && line[name] == ':')
-            fprintf(csv, "%.*s\n", (int)(length - name - 1), line + name + 1);
+        if (strncmp(line, name, size) == 0 && line[size] == ':')
+            fprintf(csv, "%.*s\n", (int)(length - size - 1), line + size + 1);
         line += length + (line[length] == '\n');
     }
-    bool ok = !ferror(csv);
-    ok = fclose(csv) == 0 && ok;
-    ok = ok ? file_write(path, text, size, error) : error_memory(error, "study");
-    free(text);
-    return ok;
+}
+
+bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error) {
+    char path[CSV_PATH_SIZE];
+    const PartsTable table = {parts, layout};
+    return csv_table_path(path, folder, layout, error) && file_write_text(path, print_table, &table, error);
 }
 
 void study_parts_remove(const StudyParts *parts) {

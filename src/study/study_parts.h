@@ -3,11 +3,10 @@
    goes on with the part that was in hand. A part's text has lines "TABLE:row", by which the tables are put together at
    the end. */
 #pragma once
-#include "common/error.h"
+#include "common/csv_table.h"
 #include "common/progress.h"
 
 #include <stdint.h>
-#include <stdio.h>
 
 enum { STUDY_PARTS_PATH_SIZE = 4096 };
 
@@ -35,9 +34,11 @@ void study_parts_close(StudyParts *parts);
 /* Does the part, unless its file is there. ERROR_INPUT where progress asks to stop: the part is not kept then. */
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error);
 
-/* Writes folder/TABLE.csv: the header, and all lines of that table in the order of the parts. */
-bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
-                       Error *error);
+/* Writes a row as such a line; the table's name is the layout's. Errors as csv_row_print(). */
+bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Error *error);
+
+/* Writes folder/TABLE.csv: the header, and all rows of that table in the order of the parts. */
+bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error);
 
 /* The study is done: removes what was kept. */
 void study_parts_remove(const StudyParts *parts);

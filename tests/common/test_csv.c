@@ -121,7 +121,7 @@ static void what_is_put_is_read_again(void **state) {
     assert_non_null(file);
     for (int row = 0; row < 2; row++)
         for (int i = 0; i < COUNT; i++) {
-            csv_put(file, texts[i]);
+            csv_put(file, texts[i], false);
             fputc(i + 1 < COUNT ? ',' : '\n', file);
         }
     fclose(file);

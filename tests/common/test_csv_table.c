@@ -33,9 +33,9 @@ enum { TEXT, NAME, WORD, INTEGER, SINGLE, NUMBER, OPTIONAL };
 #define HEADER "text,name,word,integer,single,number,optional\n"
 
 /* The same file, by each rule for its header. */
-static const CsvLayout all = {"rows", CSV_COLUMNS(columns), sizeof(Row), .max_rows = 3};
-static const CsvLayout exact = {"rows", CSV_COLUMNS(columns), sizeof(Row), 1, 3, CSV_EXACT};
-static const CsvLayout subset = {"rows", CSV_COLUMNS(columns), sizeof(Row), 1, 3, CSV_SUBSET};
+static const CsvLayout all = CSV_LAYOUT("rows", columns, Row, .max_rows = 3);
+static const CsvLayout exact = CSV_LAYOUT("rows", columns, Row, .min_rows = 1, .max_rows = 3, .header = CSV_EXACT);
+static const CsvLayout subset = CSV_LAYOUT("rows", columns, Row, .min_rows = 1, .max_rows = 3, .header = CSV_SUBSET);
 
 static const char *write_file(const char *text) {
     Error error = {0};

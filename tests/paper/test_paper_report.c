@@ -264,7 +264,7 @@ static void damaged_tables_are_refused_with_their_place(void **state) {
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,-1,2,3\n",
                  "transfer.csv:2:11: error: launches cannot be -1");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\n",
-                 "transfer.csv:2:1: error: no line behind the header");
+                 "transfer.csv:2:1: error: the table has no rows");
     refuse_table(
         "rates.csv",
         "network,scene,definition,phase,rate,constant,engine1,engine4,engine10\na,stack,range,all,1.5,1,1,1,1\n",
@@ -282,7 +282,7 @@ static void a_million_rows_are_refused(void **state) {
     fputs("k,v\n", file);
     for (int i = 0; i < 500000; i++) fputs("a,\n", file);
     fclose(file);
-    expect_refused("study.csv:5002:1: error: more than 5000 lines behind the header");
+    expect_refused("study.csv:5002:1: error: the table has more than 5000 rows");
 }
 
 static void figures_that_miss_or_are_damaged_are_refused(void **state) {

@@ -144,33 +144,52 @@ static void expect_refused(const char *table, const char *text, const char *mess
 }
 
 #define TABLE1 "network,target,optimizer,iteration,test,train,constant\n"
-#define NETWORKS "factor,value,target,parameters,ratio\n"
+#define NETWORKS                                                                                                 \
+    "network,factor,value,target,parameters,ratio,inputs,data,labels,layers,hidden,output,scale,optimizer,loss," \
+    "iterations,test,train,constant,accuracy\n"
+#define NETWORK_END ",,,,,,,,,,,,,,\n"
 #define RATES "network,scene,definition,phase,rate,constant,engine1,engine4,engine10\n"
-#define CLOSED "network,scene,frames_until_apart,us_step,us_step_engine\n"
+#define CLOSED "network,scene,frames_until_apart,us_step,us_step_engine,penetration_max,momentum_error,energy_ratio\n"
+#define CLOSED_END ",,,\n"
 #define LAWS "laws,weight,seed,test,constant,momentum,energy,approach,cone\n"
 #define TRANSFER "start,seed,launches,error,constant\n"
 
 static void tables_out_of_order_are_refused_with_their_place(void **state) {
     (void)state;
-    expect_refused("table1", "network,target\nbaseline,pair\n", "table1.csv:1:1: error: there is no column optimizer");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1\n", "table1.csv:2:20: error: iteration must be");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,,1,1,1\n", "table1.csv:2:20: error: iteration must be");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,inf,1,1\n", "table1.csv:2:22: error: test must be a number");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1e999,1,1\n", "table1.csv:2:22: error: test must be");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1,1,-1\n", "table1.csv:2:26: error: constant cannot be -1");
-    expect_refused("table1", TABLE1 "baseline,velocity,adam,0,1,1,1\n", "table1.csv:2:10: error: unknown target");
-    expect_refused("networks", NETWORKS "inputs,'; system(1),pair,1,1\n", "networks.csv:2:8: error: value cannot be");
-    expect_refused("networks", NETWORKS "a,\"`b`\",pair,1,1\n", "networks.csv:2:3: error: value cannot be drawn");
-    expect_refused("rates", RATES "baseline,single,range,impact,1.5,,,,\n", "rates.csv:2:30: error: rate cannot be");
-    expect_refused("rates", RATES "baseline,tower,range,impact,1,,,,\n", "rates.csv:2:10: error: unknown scene");
-    expect_refused("closed_loop", CLOSED "baseline,stack,601,1,1\n", "closed_loop.csv:2:16: error: frames_until_apart");
-    expect_refused("closed_loop", CLOSED "baseline,stack,6,1,0\n",
-                   "closed_loop.csv:2:20: error: us_step_engine cannot");
-    expect_refused("laws", LAWS "none,0,1,1,1,1,1,1\n", "laws.csv:2:1: error: 8 fields where the header has 9");
-    expect_refused("laws", LAWS "gravity,0,1,1,1,1,1,1,1\n", "laws.csv:2:1: error: unknown laws (got gravity)");
-    expect_refused("transfer", TRANSFER "scratch,1,0,1,1\n", "transfer.csv:2:11: error: launches cannot be 0");
-    expect_refused("transfer", TRANSFER, "transfer.csv:2:1: error: no line behind the header");
-    expect_refused("transfer", "start,seed,start\n1,1,1\n", "transfer.csv:1:12: error: a second column start");
+    expect_refused("table1", "network,target\nbaseline,pair\n",
+                   "table1.csv:1:1: error: the column 'optimizer' is missing");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1\n",
+                   "table1.csv:2:20: error: iteration: 'ten' is not");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,,1,1,1\n",
+                   "table1.csv:2:20: error: iteration: the field is empty");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,inf,1,1\n",
+                   "table1.csv:2:22: error: test: 'inf' is not a number");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1e999,1,1\n", "table1.csv:2:22: error: test: '1e999' is not");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1,1,-1\n",
+                   "table1.csv:2:26: error: constant: '-1' is less than 0");
+    expect_refused("table1", TABLE1 "baseline,velocity,adam,0,1,1,1\n",
+                   "table1.csv:2:10: error: target: 'velocity' is not");
+    expect_refused("table1", TABLE1 "baseline,pair,sgd,0,1,1,1\n",
+                   "table1.csv:2:15: error: optimizer: 'sgd' is not one of adam");
+    expect_refused("networks", NETWORKS "a,inputs,'; system(1),pair,1,1" NETWORK_END,
+                   "networks.csv:2:10: error: value: ''; system(1)' may");
+    expect_refused("networks", NETWORKS "a,b,\"`b`\",pair,1,1" NETWORK_END,
+                   "networks.csv:2:5: error: value: '`b`' may only");
+    expect_refused("rates", RATES "baseline,single,range,impact,1.5,,,,\n",
+                   "rates.csv:2:30: error: rate: '1.5' is greater than 1");
+    expect_refused("rates", RATES "baseline,tower,range,impact,1,,,,\n",
+                   "rates.csv:2:10: error: scene: 'tower' is not one of");
+    expect_refused("closed_loop", CLOSED "baseline,stack,601,1,1" CLOSED_END,
+                   "closed_loop.csv:2:16: error: frames_until_apart: '601'");
+    expect_refused("closed_loop", CLOSED "baseline,stack,6,1,0" CLOSED_END,
+                   "closed_loop.csv:2:20: error: us_step_engine: '0' is less than 1e-06");
+    expect_refused("laws", LAWS "none,0,1,1,1,1,1,1\n", "laws.csv:2:1: error: 8 fields, but the header has 9");
+    expect_refused("laws", LAWS "gravity,0,1,1,1,1,1,1,1\n",
+                   "laws.csv:2:1: error: laws: 'gravity' is not one of momentum");
+    expect_refused("transfer", TRANSFER "scratch,1,0,1,1\n", "transfer.csv:2:11: error: launches: '0' is less than 1");
+    expect_refused("transfer", TRANSFER, "transfer.csv:2:1: error: the table has no rows");
+    expect_refused("transfer", "start,seed,start\n1,1,1\n",
+                   "transfer.csv:1:12: error: the column 'start' appears twice");
 }
 
 static void write_many(const char *table, const char *header, const char *line, int count) {
@@ -191,9 +210,12 @@ static void too_many_lines_are_refused(void **state) {
         const char *table, *header, *line, *message;
         int most;
     } cases[] = {
-        {"transfer", TRANSFER, "scratch,1,1,1,1\n", "transfer.csv:5002:1: error: more than 5000 lines", 5000},
-        {"networks", NETWORKS, "a,b,pair,1,1\n", "networks.csv:202:1: error: more than 200 lines", 200},
-        {"closed_loop", CLOSED, "a,stack,1,1,1\n", "closed_loop.csv:242:1: error: more than 240 lines", 240},
+        {"transfer", TRANSFER, "scratch,1,1,1,1\n", "transfer.csv:5002:1: error: the table has more than 5000 rows",
+         5000},
+        {"networks", NETWORKS, "a,a,b,pair,1,1" NETWORK_END,
+         "networks.csv:202:1: error: the table has more than 200 rows", 200},
+        {"closed_loop", CLOSED, "a,stack,1,1,1" CLOSED_END,
+         "closed_loop.csv:242:1: error: the table has more than 240 rows", 240},
     };
     for (int i = 0; i < 3; i++) {
         Error error = {0};
@@ -247,15 +269,15 @@ static void odd_numbers_are_drawn(void **state) {
                  {"1e6", "1", "1e6", "1e6", "1e6"}};
     for (int i = 0; i < 4; i++) {
         const char *n = cases[i].number, *rate = cases[i].rate, *divisor = cases[i].divisor;
-        char text[512];
+        char text[1024];
         start_afresh();
         snprintf(text, sizeof text, TABLE1 "baseline,pair,adam,%s,%s,,%s\n", cases[i].needed, n, n);
         write_table("table1", text, strlen(text));
-        snprintf(text, sizeof text, NETWORKS "best,,pair,%s,%s\n", n, n);
+        snprintf(text, sizeof text, NETWORKS "best,best,,pair,%s,%s" NETWORK_END, n, n);
         write_table("networks", text, strlen(text));
         snprintf(text, sizeof text, RATES "baseline,single,range,rest,%s,%s,%s,%s,%s\n", rate, rate, rate, rate, rate);
         write_table("rates", text, strlen(text));
-        snprintf(text, sizeof text, CLOSED "a,single,0,%s,%s\n", n, divisor);
+        snprintf(text, sizeof text, CLOSED "a,single,0,%s,%s" CLOSED_END, n, divisor);
         write_table("closed_loop", text, strlen(text));
         snprintf(text, sizeof text, LAWS "all,%s,%s,%s,%s,%s,%s,%s,%s\n", n, n, n, divisor, n, n, n, n);
         write_table("laws", text, strlen(text));

@@ -162,15 +162,16 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
     char *borders = read_table(folder, "stability"), *maps = read_table(folder, "maps");
     char *refusals = read_table(folder, "refusals");
     double holds_at, fails_at;
-    assert_non_null(strstr(borders, STABILITY_HEADER "\nbomb_speed,engine,,speed,m/s,"));
+    assert_non_null(strstr(
+        borders, "study,method,setting,parameter,unit,holds_at,fails_at,verdict\nbomb_speed,engine,,speed,m/s,"));
     assert_int_equal(sscanf(strstr(borders, "m/s,") + 4, "%lf,%lf,", &holds_at, &fails_at), 2);
     const double through = 60 * (0.51 + 0.25 / 2) - 10 / 60.0;
     assert_true(holds_at < through && through < fails_at && fails_at <= 1.05 * holds_at);
     assert_non_null(strstr(borders, "\nbomb_speed,engine,\"k=3,warm=off\",speed,m/s,"));
     assert_non_null(strstr(borders, ",tunnels\nbomb_speed,scene-net,,speed,m/s,,,not applicable\n"));
-    assert_string_equal(refusals,
-                        REFUSALS_HEADER "\nbomb_speed,scene-net,,scene-net: error: the scene names no network "
-                                        "for it: use scene-net:network=FILE\n");
+    assert_string_equal(refusals, "study,method,setting,reason\n"
+                                  "bomb_speed,scene-net,,scene-net: error: the scene names no network for it: use "
+                                  "scene-net:network=FILE\n");
     int lines = 0;
     for (const char *c = maps; *c != '\0'; c++) lines += *c == '\n';
     assert_int_equal(lines, 1 + 2 * 5 * 4); /* two methods, without the reference */

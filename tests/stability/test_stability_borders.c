@@ -78,13 +78,14 @@ static void borders_out_of_order_are_refused_with_their_place(void **state) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at must be a number"},
-        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: unknown verdict"},
-        {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
-        {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
-        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' does not fit the values"},
-        {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have a value"},
-        {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n", "stability.csv:3:1: error: another parameter than study s"},
+        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at: 'one' is not a number"},
+        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: verdict: the field is empty"},
+        {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
+        {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
+        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' contradicts the values"},
+        {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have values"},
+        {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n",
+         "stability.csv:3:1: error: the study 's' had another parameter before"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char borders[1024];

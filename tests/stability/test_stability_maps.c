@@ -82,7 +82,7 @@ static void settings_may_be_paths(void **state) {
              SVG_FUNCTIONS);
     run_python(program, temporary_folder);
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
-    expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting has more than 127 bytes");
+    expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting: '");
 }
 
 /* Whatever the order of the rows and the distance of the values: rising, and each a tic. */
@@ -144,28 +144,30 @@ static void maps_out_of_order_are_refused_with_their_place(void **state) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {START "1,dances,,,,\n", "maps.csv:2:25: error: unknown verdict (got dances)"},
-        {START "one,falls,,,,\n", "maps.csv:2:23: error: y must be a number"},
-        {START ",falls,,,,\n", "maps.csv:2:23: error: y must be"},
-        {START "inf,falls,,,,\n", "maps.csv:2:23: error: y must be"},
-        {START "1,falls,1e9,,,\n", "maps.csv:2:31: error: frame cannot be 1e9"},
-        {START "1,falls,,,\n", "maps.csv:2:1: error: 13 fields where the header has 14"},
-        {"stack,\"engine';system('x')\",,a,,1,b,,1,falls,,,,\n", "maps.csv:2:7: error: method cannot be drawn"},
-        {"../stack,engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: '../stack' cannot be the name of a map"},
-        {",engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: '' cannot be the name of a map"},
-        {START "1,falls,,,,\n" START "1,falls,,,,\n", "maps.csv:3:1: error: this cell was there before (a 1, b 1)"},
-        {START "1,falls,,,,\nstack,engine,,c,,1,b,,2,falls,,,,\n", "maps.csv:3:1: error: other parameters"},
+        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, sways"},
+        {START "one,falls,,,,\n", "maps.csv:2:23: error: y: 'one' is not a number"},
+        {START ",falls,,,,\n", "maps.csv:2:23: error: y: the field is empty"},
+        {START "inf,falls,,,,\n", "maps.csv:2:23: error: y: 'inf' is not a number"},
+        {START "1,falls,1e9,,,\n", "maps.csv:2:31: error: frame: '1e9' is greater than 1e+06"},
+        {START "1,falls,,,\n", "maps.csv:2:1: error: 13 fields, but the header has 14"},
+        {"stack,\"engine';system('x')\",,a,,1,b,,1,falls,,,,\n",
+         "maps.csv:2:7: error: method: 'engine';system('x')' may only have"},
+        {"../stack,engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: map: '../stack' is not a file name"},
+        {",engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: map: '' is not a file name"},
+        {START "1,falls,,,,\n" START "1,falls,,,,\n", "maps.csv:3:1: error: the cell appears twice (a 1, b 1)"},
+        {START "1,falls,,,,\nstack,engine,,c,,1,b,,2,falls,,,,\n", "maps.csv:3:1: error: the parameters differ"},
         {START "1,falls,,,,\nstack,nncg,,a,,1,b,,1,falls,,,,\n" START "2,falls,,,,\n",
-         "maps.csv:4:1: error: this method of map stack was there before"},
+         "maps.csv:4:1: error: the rows of this method of map 'stack' are not together"},
         {START "1,falls,,,,\nother,nncg,,a,,1,b,,1,falls,,,,\n" START "2,falls,,,,\n",
-         "maps.csv:4:1: error: map stack was there before"},
+         "maps.csv:4:1: error: the rows of map 'stack' are not together"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char maps[1024];
         snprintf(maps, sizeof maps, MAPS "%s", cases[i].rows);
         expect_refused(maps, BORDERS ONE_BORDER, cases[i].message);
     }
-    expect_refused("map,method\nstack,engine\n", BORDERS ONE_BORDER, "maps.csv:1:1: error: there is no column setting");
+    expect_refused("map,method\nstack,engine\n", BORDERS ONE_BORDER,
+                   "maps.csv:1:1: error: the column 'setting' is missing");
 }
 
 static void maps_too_large_are_refused(void **state) {

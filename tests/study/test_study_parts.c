@@ -33,10 +33,12 @@ static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
     StudyParts parts;
     open_parts(&parts, folder);
     Counted first = {"a:1,2\nab:3\n", 0, false, false}, second = {"ab:4\na:5,6\n", 0, false, false};
+    static const CsvColumn columns[] = {{"x", CSV_INTEGER, .offset = 0}, {"y", CSV_INTEGER, .offset = sizeof(int)}};
+    static const CsvLayout layout = CSV_LAYOUT("a", columns, int[2], .max_rows = 9);
     assert_ok(study_parts_do(&parts, &(StudyPart){"first", 1, write_counted, &first}, &error), error);
     assert_ok(study_parts_do(&parts, &(StudyPart){"second", 3, write_counted, &second}, &error), error);
     assert_near(parts.done, 4, 0);
-    assert_ok(study_parts_table(&parts, folder, "a", "x,y", &error), error);
+    assert_ok(study_parts_table(&parts, folder, &layout, &error), error);
     char path[400];
     size_t size;
     snprintf(path, sizeof path, "%s/a.csv", folder);
@@ -47,6 +49,22 @@ static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
     study_parts_remove(&parts);
     assert_int_equal(access(parts.folder, F_OK), -1);
     study_parts_close(&parts);
+}
+
+static void a_row_is_a_line_with_the_tables_name(void **state) {
+    (void)state;
+    static const CsvColumn columns[] = {{"x", CSV_TEXT, .offset = 0}};
+    static const CsvLayout layout = CSV_LAYOUT("names", columns, const char *, .max_rows = 9);
+    Error error = {0};
+    char *text = NULL;
+    size_t size;
+    FILE *lines = open_memstream(&text, &size);
+    assert_ok(study_parts_print(lines, &layout, &(const char *){"a,b"}, &error), error);
+    assert_false(study_parts_print(lines, &layout, &(const char *){"a\nb"}, &error));
+    assert_error(error, ERROR_INPUT, "names: error: x: a control character in 'a?b'");
+    fclose(lines);
+    assert_string_equal(text, "names:\"a,b\"\nnames:");
+    free(text);
 }
 
 static void what_is_done_is_not_done_again(void **state) {
@@ -105,6 +123,7 @@ static void a_part_cut_off_is_not_kept(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_put_together_in_the_order_of_the_parts),
+                                       cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
                                        cmocka_unit_test(what_is_done_is_not_done_again),
                                        cmocka_unit_test(a_part_cut_off_is_not_kept)};
     return cmocka_run_group_tests(tests, NULL, NULL);

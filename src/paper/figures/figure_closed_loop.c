@@ -1,28 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One line a network, one symbol a scene: how long it lasts, and what a step costs. */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
+#include "study/closed_loop.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { MAX_ROWS = 240, LAST_FRAME = 600, LABEL_MAX = 28 };
-
-typedef struct Row {
-    char network[CSV_NAME_SIZE];
-    int scene;
-    double frames, us_step, us_step_engine;
-    int line; /* from the top, from 0 */
-} Row;
-
-static const CsvColumn columns[] = {
-    {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
-    {"scene", CSV_WORD, offsetof(Row, scene), figure_scene_names, 0, 0},
-    {"frames_until_apart", CSV_NUMBER, offsetof(Row, frames), NULL, 0, LAST_FRAME},
-    {"us_step", CSV_MAYBE, offsetof(Row, us_step), NULL, 0, 1e12},
-    {"us_step_engine", CSV_MAYBE, offsetof(Row, us_step_engine), NULL, 1e-6, 1e12},
-};
+enum { LABEL_MAX = 28 };
 
 /* mm */
 static const double row_height = 6, left = 36, frames_width = 76, gap = 6, right = 3, bottom = 15, top = 6,
@@ -30,27 +15,30 @@ static const double row_height = 6, left = 36, frames_width = 76, gap = 6, right
 
 typedef struct Loop {
     FigurePage *page;
-    Row *rows;
+    const ClosedLoopRow *rows;
     int count, lines;
+    int line[PAPER_MAX_LOOPS]; /* of each row, from the top, from 0 */
     FigureAxis frames, cost;
 } Loop;
 
-static double ratio(const Row *row) { return row->us_step / row->us_step_engine; }
+static double ratio(const ClosedLoopRow *row) { return row->us_step / row->us_step_engine; }
 
 /* Networks in the order in which the table first names them. */
 static void number_lines(Loop *loop) {
     for (int i = 0; i < loop->count; i++) {
         int first = 0;
         while (strcmp(loop->rows[first].network, loop->rows[i].network) != 0) first++;
-        loop->rows[i].line = first < i ? loop->rows[first].line : loop->lines++;
+        loop->line[i] = first < i ? loop->line[first] : loop->lines++;
     }
 }
 
 /* Scenes a little above each other: equal values must not hide each other. */
-static double place(const Row *row) { return row->line + 0.23 * (row->scene - (FIGURE_SCENES - 1) / 2.0); }
+static double place(const Loop *loop, int i) {
+    return loop->line[i] + 0.23 * (loop->rows[i].scene - (PAPER_SCENES - 1) / 2.0);
+}
 
 static FigureLook scene_look(int scene) {
-    static const char *const names[FIGURE_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
+    static const char *const names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
     return figure_marks(figure_look(scene, names[scene]));
 }
 
@@ -74,21 +62,22 @@ static void put_panel(Loop *loop, bool costs) {
                  costs ? "Cost" : "In place of the solver");
     figure_log(page, 'x', axis, costs ? "Step time / the engine's" : "Frames until apart by 0.1 m (600: never)");
     figure_linear(page, 'y', loop->lines - 0.5, -0.5, "", NULL);
-    put_guides(loop, axis, costs ? 1 : LAST_FRAME);
-    for (int scene = 0; scene < FIGURE_SCENES; scene++) {
+    put_guides(loop, axis, costs ? 1 : CLOSED_LOOP_FRAMES);
+    for (int scene = 0; scene < PAPER_SCENES; scene++) {
         FigureLook look = scene_look(scene);
         figure_series(page);
         for (int i = 0; i < loop->count; i++)
             if (loop->rows[i].scene == scene)
-                figure_point(page, figure_on(page, axis, costs ? ratio(&loop->rows[i]) : loop->rows[i].frames),
-                             place(&loop->rows[i]));
+                figure_point(page,
+                             figure_on(page, axis, costs ? ratio(&loop->rows[i]) : loop->rows[i].frames_until_apart),
+                             place(loop, i));
         figure_draw(page, &look);
     }
 }
 
 static void put_names(const Loop *loop) {
     for (int i = 0, next = 0; i < loop->count; i++) {
-        if (loop->rows[i].line != next) continue;
+        if (loop->line[i] != next) continue;
         char text[CSV_NAME_SIZE];
         strcpy(text, loop->rows[i].network);
         figure_cut(text, LABEL_MAX);
@@ -97,28 +86,29 @@ static void put_names(const Loop *loop) {
 }
 
 static void put_legend(const Loop *loop) {
-    FigureLook looks[FIGURE_SCENES];
+    FigureLook looks[PAPER_SCENES];
     int count = 0;
-    for (int scene = 0; scene < FIGURE_SCENES; scene++) {
+    for (int scene = 0; scene < PAPER_SCENES; scene++) {
         bool used = false;
         for (int i = 0; i < loop->count; i++) used |= loop->rows[i].scene == scene;
         if (used) looks[count++] = scene_look(scene);
     }
-    figure_legend(loop->page, looks, count, FIGURE_SCENES, left, legend_top);
+    figure_legend(loop->page, looks, count, PAPER_SCENES, left, legend_top);
 }
 
 static void choose_axes(Loop *loop) {
     FigureRange costs = {1, 1};
     for (int i = 0; i < loop->count; i++) figure_widen(&costs, ratio(&loop->rows[i]));
-    loop->frames = figure_axis((FigureRange){1, LAST_FRAME}, 1, LAST_FRAME, false);
+    loop->frames = figure_axis((FigureRange){1, CLOSED_LOOP_FRAMES}, 1, CLOSED_LOOP_FRAMES, false);
     loop->cost = figure_axis(costs, 1e-3, 1e4, false);
 }
 
 bool figure_closed_loop(const char *folder, FigurePage *page, Error *error) {
     Loop loop = {.page = page};
-    loop.rows = csv_columns_read(folder, "closed_loop", columns, sizeof columns / sizeof *columns, sizeof *loop.rows,
-                                 MAX_ROWS, &loop.count, error);
-    if (loop.rows == NULL) return false;
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_closed_loop_layout, error)) return false;
+    loop.rows = table.rows;
+    loop.count = table.count;
     number_lines(&loop);
     choose_axes(&loop);
     figure_begin(page, FIGURE_PAGE_WIDTH, bottom + loop.lines * row_height + top);
@@ -133,6 +123,6 @@ bool figure_closed_loop(const char *folder, FigurePage *page, Error *error) {
             "dashed: never within the run). Right: time of a step over the engine's with its own solver (dashed: "
             "equal).");
     figure_end(page);
-    free(loop.rows);
+    csv_table_free(&table);
     return true;
 }

@@ -1,32 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A dot plot in two columns: one line a network, the networks of a factor together. */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Row {
-    char factor[CSV_NAME_SIZE], value[CSV_NAME_SIZE];
-    int target;
-    double parameters, ratio;
-    int group; /* of rows with the same factor, from 0 */
-} Row;
-
-static const CsvColumn columns[] = {
-    {"factor", CSV_NAME, offsetof(Row, factor), NULL, 0, 0},
-    {"value", CSV_NAME, offsetof(Row, value), NULL, 0, 0},
-    {"target", CSV_WORD, offsetof(Row, target), figure_targets, 0, 0},
-    {"parameters", CSV_MAYBE, offsetof(Row, parameters), NULL, 0, 1e9},
-    {"ratio", CSV_MAYBE, offsetof(Row, ratio), NULL, 0, 1e30},
-};
-
-enum { MAX_ROWS = 200, HALVES = 2, LABEL_MAX = 30 };
+enum { HALVES = 2, LABEL_MAX = 30 };
 
 /* What the best network of a target is to reach; 0: no aim. */
-static const double aims[FIGURE_TARGETS] = {0.4, 0.4, 0.1, 0};
+static const double aims[PAIR_TARGETS] = {0.4, 0.4, 0.1, 0};
 
 /* mm */
 static const double row_height = 3.3, half_width = FIGURE_PAGE_WIDTH / HALVES, plot_left = 36, plot_width = 39,
@@ -37,35 +22,35 @@ static const double group_gap = 0.7, aim_height = 0.86;
 
 static const double least_ratio = 1e-4, most_ratio = 100;
 
-static int compare_rows(const void *first, const void *second) {
-    const Row *a = first, *b = second;
-    return a->group - b->group;
-}
+static bool same_factor(const TrainedRow *a, const TrainedRow *b) { return strcmp(a->factor, b->factor) == 0; }
 
-/* Gives each row its factor's place among the factors, and in it a place of its own: qsort() may turn equals. */
-static void group_rows(Row *rows, int count) {
-    for (int i = 0; i < count; i++) {
+/* The rows of each factor together, factors in the order of their first rows. The caller frees them; NULL when memory is
+   short. */
+static TrainedRow *group_rows(const TrainedRow *rows, int count) {
+    TrainedRow *grouped = malloc((size_t)count * sizeof *grouped);
+    int grouped_count = 0;
+    for (int i = 0; grouped != NULL && i < count; i++) {
         int first = 0;
-        while (strcmp(rows[first].factor, rows[i].factor) != 0) first++;
-        rows[i].group = first * MAX_ROWS + i;
+        while (!same_factor(&rows[first], &rows[i])) first++;
+        for (int k = i; first == i && k < count; k++)
+            if (same_factor(&rows[k], &rows[i])) grouped[grouped_count++] = rows[k];
     }
-    qsort(rows, (size_t)count, sizeof *rows, compare_rows);
-    for (int i = 0; i < count; i++) rows[i].group /= MAX_ROWS;
+    return grouped;
 }
 
 /* Height of rows [begin, end), in rows. */
-static double span_of(const Row *rows, int begin, int end) {
+static double span_of(const TrainedRow *rows, int begin, int end) {
     double span = 0.3 + (end - begin);
-    for (int i = begin + 1; i < end; i++) span += rows[i].group != rows[i - 1].group ? group_gap : 0;
+    for (int i = begin + 1; i < end; i++) span += same_factor(&rows[i], &rows[i - 1]) ? 0 : group_gap;
     return span;
 }
 
 /* The second half begins with a group, where both are about as high. */
-static int split(const Row *rows, int count, double *span) {
+static int split(const TrainedRow *rows, int count, double *span) {
     int best = count;
     *span = span_of(rows, 0, count);
     for (int i = 1; i < count; i++) {
-        if (rows[i].group == rows[i - 1].group) continue;
+        if (same_factor(&rows[i], &rows[i - 1])) continue;
         double higher = fmax(span_of(rows, 0, i), span_of(rows, i, count));
         if (higher >= *span) continue;
         *span = higher;
@@ -76,7 +61,7 @@ static int split(const Row *rows, int count, double *span) {
 
 typedef struct Factors {
     FigurePage *page;
-    const Row *rows;
+    const TrainedRow *rows;
     int begin, end; /* of the half */
     FigureAxis x;
     double span; /* of the higher half, in rows */
@@ -94,7 +79,7 @@ static FigureLook aim_look(void) {
 /* Places of rows, downwards from 0. */
 static double next_place(const Factors *factors, int i, double place) {
     if (i == factors->begin) return 0.65;
-    return place + 1 + (factors->rows[i].group != factors->rows[i - 1].group ? group_gap : 0);
+    return place + 1 + (same_factor(&factors->rows[i], &factors->rows[i - 1]) ? 0 : group_gap);
 }
 
 static void put_guides(const Factors *factors) {
@@ -117,7 +102,7 @@ static void put_dots(const Factors *factors, int target) {
     double place = 0;
     figure_series(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
-        const Row *row = &factors->rows[i];
+        const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
         if (row->target == target)
             figure_point(factors->page, figure_on(factors->page, &factors->x, row->ratio), place);
@@ -131,7 +116,7 @@ static void put_aims(const Factors *factors) {
     double half = pow(factors->x.log.high / factors->x.log.low, aim_width / 2 / plot_width), place = 0;
     figure_series(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
-        const Row *row = &factors->rows[i];
+        const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
         double aim = aims[row->target];
         if (strcmp(row->factor, "best") == 0 && aim > 0)
@@ -143,7 +128,7 @@ static void put_aims(const Factors *factors) {
 static void put_names(const Factors *factors, double left) {
     double place = 0;
     for (int i = factors->begin; i < factors->end; i++) {
-        const Row *row = &factors->rows[i];
+        const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
         double y = bottom + (factors->span - place) * row_height;
         char text[2 * CSV_NAME_SIZE + 4];
@@ -167,15 +152,15 @@ static void put_half(Factors *factors, int half) {
     put_names(factors, left);
     put_guides(factors);
     put_aims(factors);
-    for (int target = 0; target < FIGURE_TARGETS; target++) put_dots(factors, target);
+    for (int target = 0; target < PAIR_TARGETS; target++) put_dots(factors, target);
     figure_panel_end(page);
 }
 
-static void put_legend(FigurePage *page, const Row *rows, int count) {
-    static const char *const names[FIGURE_TARGETS] = {"target pair", "target net", "target impulse", "target points"};
-    FigureLook looks[FIGURE_TARGETS + 2];
+static void put_legend(FigurePage *page, const TrainedRow *rows, int count) {
+    static const char *const names[PAIR_TARGETS] = {"target pair", "target net", "target impulse", "target points"};
+    FigureLook looks[PAIR_TARGETS + 2];
     int entries = 0;
-    for (int target = 0; target < FIGURE_TARGETS; target++) {
+    for (int target = 0; target < PAIR_TARGETS; target++) {
         bool used = false;
         for (int i = 0; i < count; i++) used |= rows[i].target == target;
         if (used) looks[entries++] = figure_marks(figure_look(target, names[target]));
@@ -185,12 +170,7 @@ static void put_legend(FigurePage *page, const Row *rows, int count) {
     figure_legend(page, looks, entries, (entries + 1) / 2, plot_left, legend_top);
 }
 
-bool figure_factors(const char *folder, FigurePage *page, Error *error) {
-    int count;
-    Row *rows = csv_columns_read(folder, "networks", columns, sizeof columns / sizeof *columns, sizeof *rows, MAX_ROWS,
-                                 &count, error);
-    if (rows == NULL) return false;
-    group_rows(rows, count);
+static void draw(FigurePage *page, const TrainedRow *rows, int count) {
     FigureRange range = {aims[2], 1};
     for (int i = 0; i < count; i++) figure_widen(&range, rows[i].ratio);
     Factors factors = {page, rows, 0, 0, figure_axis(range, least_ratio, most_ratio, false), 0};
@@ -208,6 +188,15 @@ bool figure_factors(const char *folder, FigurePage *page, Error *error) {
         "from the baseline; on the right the number of parameters. Upright bars: the aims for the best networks, "
         "0.4 for the targets pair and net and 0.1 for impulse.");
     figure_end(page);
+}
+
+bool figure_factors(const char *folder, FigurePage *page, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_trained_layout, error)) return false;
+    const int count = table.count;
+    TrainedRow *rows = group_rows(table.rows, count);
+    if (rows != NULL) draw(page, rows, count);
     free(rows);
-    return true;
+    csv_table_free(&table);
+    return rows != NULL || error_memory(error, folder);
 }

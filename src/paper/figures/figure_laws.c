@@ -1,33 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What laws in the loss cost and bring: the error on the left, what is violated on the right. */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "chart/figure_seeds.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { LAWS = 4, ALL = LAWS, NONE, ENGINE };
-
-typedef struct Row {
-    int laws;
-    double weight, seed, test, constant, violation[LAWS];
-} Row;
-
-static const char *const words[] = {"momentum", "energy", "approach", "cone", "all", "none", "engine", NULL};
-
-static const CsvColumn columns[] = {
-    {"laws", CSV_WORD, offsetof(Row, laws), words, 0, 0},
-    {"weight", CSV_MAYBE, offsetof(Row, weight), NULL, 0, 1e12},
-    {"seed", CSV_MAYBE, offsetof(Row, seed), NULL, 0, 1e9},
-    {"test", CSV_MAYBE, offsetof(Row, test), NULL, 0, 1e30},
-    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 1e-30, 1e30},
-    {"momentum", CSV_MAYBE, offsetof(Row, violation[0]), NULL, 0, 1e30},
-    {"energy", CSV_MAYBE, offsetof(Row, violation[1]), NULL, 0, 1e30},
-    {"approach", CSV_MAYBE, offsetof(Row, violation[2]), NULL, 0, 1e30},
-    {"cone", CSV_MAYBE, offsetof(Row, violation[3]), NULL, 0, 1e30},
-};
 
 static const char *const titles[LAWS] = {"Momentum (kg m/s)", "Energy (J)", "Approach (m/s)", "Friction cone (N s)"};
 
@@ -38,33 +17,33 @@ static const double height = 97, left = 13.5, error_width = 56, small_left = 84,
 /* Of violations; and what is smaller than this share of the largest is nothing. */
 static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
 
-typedef struct Laws {
+typedef struct LawsFigure {
     FigurePage *page;
-    const Row *rows;
+    const LawRow *rows;
     int count;
     SeedPoint *points; /* [count] room */
     FigureAxis x;
-} Laws;
+} LawsFigure;
 
-/* What a panel shows: the violation of a law, or (ALL) the error over the constant's. */
-static double measure(const Row *row, int panel) {
-    return panel == ALL ? row->test / row->constant : row->violation[panel];
+/* What a panel shows: the violation of a law, or (LAW_SET_ALL) the error over the constant's. */
+static double measure(const LawRow *row, int panel) {
+    return panel == LAW_SET_ALL ? row->test / row->constant : row->violation[panel];
 }
 
 /* The points of a line: without laws, that is weight 0, and with its own. */
-static int gather(const Laws *laws, int line, int panel, const FigureAxis *y) {
+static int gather(const LawsFigure *laws, int line, int panel, const FigureAxis *y) {
     int count = 0;
     for (int i = 0; i < laws->count; i++) {
-        const Row *row = &laws->rows[i];
-        double value = measure(row, panel), weight = row->laws == NONE ? 0 : row->weight;
-        if ((row->laws != line && row->laws != NONE) || isnan(value) || isnan(weight)) continue;
+        const LawRow *row = &laws->rows[i];
+        double value = measure(row, panel), weight = row->laws == LAW_SET_NONE ? 0 : row->weight;
+        if ((row->laws != line && row->laws != LAW_SET_NONE) || isnan(value) || isnan(weight)) continue;
         laws->points[count++] = (SeedPoint){isnan(row->seed) ? 0 : row->seed, figure_on(laws->page, &laws->x, weight),
                                             figure_on(laws->page, y, value)};
     }
     return count;
 }
 
-static bool is_used(const Laws *laws, int line) {
+static bool is_used(const LawsFigure *laws, int line) {
     for (int i = 0; i < laws->count; i++)
         if (laws->rows[i].laws == line) return true;
     return false;
@@ -72,14 +51,14 @@ static bool is_used(const Laws *laws, int line) {
 
 static FigureLook look_of(int line) {
     static const char *const names[] = {"momentum", "energy", "approach", "friction cone", "all four laws"};
-    return figure_look(line == ALL ? 0 : line + 1, names[line]);
+    return figure_look(line == LAW_SET_ALL ? 0 : line + 1, names[line]);
 }
 
 /* Lines that a panel shows: in the error's all, else the law's own and all. */
-static void put_lines(const Laws *laws, int panel, const FigureAxis *y) {
+static void put_lines(const LawsFigure *laws, int panel, const FigureAxis *y) {
     for (int thick = 0; thick <= 1; thick++)
-        for (int line = 0; line <= ALL; line++) {
-            if ((panel != ALL && line != panel && line != ALL) || !is_used(laws, line)) continue;
+        for (int line = 0; line <= LAW_SET_ALL; line++) {
+            if ((panel != LAW_SET_ALL && line != panel && line != LAW_SET_ALL) || !is_used(laws, line)) continue;
             FigureLook look = look_of(line);
             int count = gather(laws, line, panel, y);
             (thick ? figure_seed_median : figure_seed_lines)(laws->page, laws->points, count, &look);
@@ -87,11 +66,11 @@ static void put_lines(const Laws *laws, int panel, const FigureAxis *y) {
 }
 
 /* Dashed: the labels' own violation; in the error's panel the constant, 1. */
-static void put_dashed(const Laws *laws, int panel, const FigureAxis *y) {
+static void put_dashed(const LawsFigure *laws, int panel, const FigureAxis *y) {
     FigureLook look = figure_dashed("");
-    double value = panel == ALL ? 1 : NAN;
+    double value = panel == LAW_SET_ALL ? 1 : NAN;
     for (int i = 0; i < laws->count; i++)
-        if (panel != ALL && laws->rows[i].laws == ENGINE) value = laws->rows[i].violation[panel];
+        if (panel != LAW_SET_ALL && laws->rows[i].laws == LAW_SET_ENGINE) value = laws->rows[i].violation[panel];
     figure_series(laws->page);
     value = figure_on(laws->page, y, value);
     figure_segment(laws->page, laws->x.log.low, value, laws->x.log.high, value);
@@ -103,15 +82,15 @@ static FigureAxis error_axis(FigureRange range) {
     return figure_axis(range, 1e-4, 1e3, false);
 }
 
-static FigureAxis axis_of(const Laws *laws, int panel) {
+static FigureAxis axis_of(const LawsFigure *laws, int panel) {
     FigureRange range = figure_range();
     bool zero = false;
     for (int i = 0; i < laws->count; i++) {
-        if (panel != ALL && laws->rows[i].laws != panel && laws->rows[i].laws < ALL) continue;
+        if (panel != LAW_SET_ALL && laws->rows[i].laws != panel && laws->rows[i].laws < LAW_SET_ALL) continue;
         figure_widen(&range, measure(&laws->rows[i], panel));
         zero |= measure(&laws->rows[i], panel) == 0;
     }
-    if (panel == ALL) return error_axis(range);
+    if (panel == LAW_SET_ALL) return error_axis(range);
     if (!(range.most > 0)) range = (FigureRange){0.1, 1};
     double lowest = fmax(least_violation, fmin(range.most, most_violation) * share_shown);
     FigureAxis axis = figure_axis(range, lowest, most_violation, zero);
@@ -119,60 +98,59 @@ static FigureAxis axis_of(const Laws *laws, int panel) {
     return axis;
 }
 
-static void put_panel(const Laws *laws, int panel) {
+static void put_panel(const LawsFigure *laws, int panel) {
     FigurePage *page = laws->page;
     FigureAxis y = axis_of(laws, panel);
     double small = (height - right_bottom - row_gap - top) / 2;
     FigureBox box = {left, right_bottom, error_width, height - right_bottom - top};
-    if (panel != ALL)
+    if (panel != LAW_SET_ALL)
         box = (FigureBox){small_left + (panel % 2) * (small_width + small_gap),
                           right_bottom + (panel < 2) * (small + row_gap), small_width, small};
-    figure_panel(page, box, panel == ALL ? "Error" : titles[panel]);
-    figure_log(page, 'x', &laws->x, panel == ALL || panel >= 2 ? "Weight in the loss" : NULL);
+    figure_panel(page, box, panel == LAW_SET_ALL ? "Error" : titles[panel]);
+    figure_log(page, 'x', &laws->x, panel == LAW_SET_ALL || panel >= 2 ? "Weight in the loss" : NULL);
     figure_log(page, 'y', &y,
-               panel == ALL     ? "Test error / that of predicting the mean"
-               : panel % 2 == 0 ? "Mean violation"
-                                : "");
+               panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
+               : panel % 2 == 0     ? "Mean violation"
+                                    : "");
     put_dashed(laws, panel, &y);
     put_lines(laws, panel, &y);
     figure_panel_end(page);
 }
 
-static void put_legend(const Laws *laws) {
-    FigureLook looks[ALL + 2];
+static void put_legend(const LawsFigure *laws) {
+    FigureLook looks[LAW_SET_ALL + 2];
     int count = 0;
-    for (int line = 0; line <= ALL; line++)
+    for (int line = 0; line <= LAW_SET_ALL; line++)
         if (is_used(laws, line)) looks[count++] = look_of(line);
     looks[count++] = figure_dashed("predicting the mean / the engine");
     figure_legend(laws->page, looks, count, 3, left, legend_top);
 }
 
-static void draw(Laws *laws) {
+static void draw(LawsFigure *laws) {
     FigureRange weights = figure_range();
     for (int i = 0; i < laws->count; i++)
-        if (laws->rows[i].laws <= ALL) figure_widen(&weights, laws->rows[i].weight);
+        if (laws->rows[i].laws <= LAW_SET_ALL) figure_widen(&weights, laws->rows[i].weight);
     laws->x = figure_axis(weights, 1e-9, 1e9, true);
     figure_begin(laws->page, FIGURE_PAGE_WIDTH, height);
-    put_panel(laws, ALL);
+    put_panel(laws, LAW_SET_ALL);
     for (int law = 0; law < LAWS; law++) put_panel(laws, law);
     put_legend(laws);
     fprintf(laws->page->caption,
-            "Laws of physics in the loss, over their weight (0: without). Left: test error over that of always "
+            "LawsFigure of physics in the loss, over their weight (0: without). Left: test error over that of always "
             "predicting the mean. Right: mean violation of each law on the test rows, with that law alone and with all "
             "four; dashed: of the engine's own solution. Thin: one seed each; thick: their median.");
     figure_end(laws->page);
 }
 
 bool figure_laws(const char *folder, FigurePage *page, Error *error) {
-    int count;
-    Row *rows = csv_columns_read(folder, "laws", columns, sizeof columns / sizeof *columns, sizeof *rows, CSV_MAX_ROWS,
-                                 &count, error);
-    if (rows == NULL) return false;
-    Laws laws = {.page = page, .rows = rows, .count = count, .points = malloc((size_t)count * sizeof *laws.points)};
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_law_layout, error)) return false;
+    LawsFigure laws = {.page = page, .rows = table.rows, .count = table.count};
+    laws.points = malloc((size_t)table.count * sizeof *laws.points);
     bool room = laws.points != NULL, used = false;
-    for (int line = 0; line <= ALL; line++) used |= is_used(&laws, line);
+    for (int line = 0; line <= LAW_SET_ALL; line++) used |= is_used(&laws, line);
     if (room && used) draw(&laws);
     free(laws.points);
-    free(rows);
+    csv_table_free(&table);
     return room || error_memory(error, folder);
 }

@@ -1,36 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three panels, one a target: the paper leaves open which of them its Table 1 is about. */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct Row {
-    char network[CSV_NAME_SIZE];
-    int target, optimizer;
-    double iteration, test, constant;
-} Row;
-
-static const char *const optimizers[] = {"adam", "gd", "bfgs", "lm", NULL};
-
-static const CsvColumn columns[] = {
-    {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
-    {"target", CSV_WORD, offsetof(Row, target), figure_targets, 0, 0},
-    {"optimizer", CSV_WORD, offsetof(Row, optimizer), optimizers, 0, 0},
-    {"iteration", CSV_NUMBER, offsetof(Row, iteration), NULL, 0, 1e9},
-    {"test", CSV_MAYBE, offsetof(Row, test), NULL, 0, 1e30},
-    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e30},
-};
 
 /* Avatavului, Ifrim, Voncila 2023, Table 1, test score. */
 static const struct {
     double iteration, test;
 } paper[] = {{0, 0.105798}, {10, 0.051244}, {50, 0.015246}, {100, 0.007767}, {1000, 0.001212}, {2000, 0.000728}};
 
-enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 12, OPTIMIZERS = 4, LINES = OPTIMIZERS + 2 };
+enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 12, LINES = PAPER_OPTIMIZERS + 2 };
 
 /* The networks that differ from the baseline in nothing but target or optimizer; their looks; the panels' titles. */
 static const char *const networks[NETWORKS] = {"baseline",       "target-net",   "target-impulse", "optimizer-gd",
@@ -46,14 +29,14 @@ static const double height = 72, left = 13.5, right = 2, gap = 4.5, bottom = 17.
 /* Beyond these a training that went astray would press the others together. */
 static const double least_error = 1e-8, most_error = 10;
 
-static bool is_shown(const Row *row) {
+static bool is_shown(const ScoreRow *row) {
     for (int i = 0; i < NETWORKS; i++)
         if (strcmp(row->network, networks[i]) == 0) return row->target < PANELS;
     return false;
 }
 
 static int compare_rows(const void *first, const void *second) {
-    const Row *a = first, *b = second;
+    const ScoreRow *a = first, *b = second;
     int order = strcmp(a->network, b->network);
     if (order == 0) order = a->target - b->target;
     return order != 0 ? order : (a->iteration > b->iteration) - (a->iteration < b->iteration);
@@ -61,10 +44,10 @@ static int compare_rows(const void *first, const void *second) {
 
 typedef struct Loss {
     FigurePage *page;
-    const Row *rows;
+    const ScoreRow *rows;
     int count;
     FigureAxis x, y;
-    bool used[OPTIMIZERS];
+    bool used[PAPER_OPTIMIZERS];
 } Loss;
 
 static void choose_axes(Loss *loss) {
@@ -88,7 +71,7 @@ static void put_constant(Loss *loss, int target) {
     FigureLook look = figure_dashed("");
     figure_series(loss->page);
     for (int i = 0; i < loss->count; i++) {
-        const Row *row = &loss->rows[i];
+        const ScoreRow *row = &loss->rows[i];
         if (row->target != target || isnan(row->constant)) continue;
         double y = figure_on(loss->page, &loss->y, row->constant);
         figure_segment(loss->page, loss->x.log.low, y, loss->x.log.high, y);
@@ -113,7 +96,7 @@ static void put_paper(Loss *loss) {
 /* Rows of one network and one target lie side by side. */
 static void put_networks(Loss *loss, int target) {
     for (int i = 0, end; i < loss->count; i = end) {
-        const Row *row = &loss->rows[i];
+        const ScoreRow *row = &loss->rows[i];
         for (end = i; end < loss->count && strcmp(loss->rows[end].network, row->network) == 0; end++)
             if (loss->rows[end].target != row->target) break;
         if (row->target != target) continue;
@@ -140,7 +123,7 @@ static void put_panel(Loss *loss, int target) {
 static void put_legend(Loss *loss) {
     FigureLook looks[LINES];
     int count = 0;
-    for (int i = 0; i < OPTIMIZERS; i++)
+    for (int i = 0; i < PAPER_OPTIMIZERS; i++)
         if (loss->used[i]) looks[count++] = figure_look(i, optimizer_names[i]);
     looks[count++] = paper_look();
     looks[count++] = figure_dashed("predicting the mean");
@@ -149,11 +132,10 @@ static void put_legend(Loss *loss) {
 
 bool figure_loss(const char *folder, FigurePage *page, Error *error) {
     Loss loss = {.page = page};
-    int count;
-    Row *rows = csv_columns_read(folder, "table1", columns, sizeof columns / sizeof *columns, sizeof *rows,
-                                 CSV_MAX_ROWS, &count, error);
-    if (rows == NULL) return false;
-    for (int i = 0; i < count; i++)
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_score_layout, error)) return false;
+    ScoreRow *rows = table.rows;
+    for (int i = 0; i < table.count; i++)
         if (is_shown(&rows[i])) rows[loss.count++] = rows[i];
     if (loss.count > 0) {
         qsort(rows, (size_t)loss.count, sizeof *rows, compare_rows);
@@ -169,6 +151,6 @@ bool figure_loss(const char *folder, FigurePage *page, Error *error) {
                 "each panel.");
         figure_end(page);
     }
-    free(rows);
+    csv_table_free(&table);
     return true;
 }

@@ -1,36 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three readings of "successful prediction" side by side; impacts above, rest below. */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEFINITIONS = 3, PHASES = 4, NETWORKS = 4, SWEEPS = 3 };
-
-typedef struct Row {
-    char network[CSV_NAME_SIZE];
-    int scene, definition, phase;
-    double rate, constant, engine[SWEEPS];
-} Row;
-
-static const char *const definitions[] = {"range", "absolute", "bodies", NULL};
-static const char *const phases[] = {"impact", "rest", "all", "after", NULL};
-
-static const CsvColumn columns[] = {
-    {"network", CSV_NAME, offsetof(Row, network), NULL, 0, 0},
-    {"scene", CSV_WORD, offsetof(Row, scene), figure_scene_names, 0, 0},
-    {"definition", CSV_WORD, offsetof(Row, definition), definitions, 0, 0},
-    {"phase", CSV_WORD, offsetof(Row, phase), phases, 0, 0},
-    {"rate", CSV_MAYBE, offsetof(Row, rate), NULL, 0, 1},
-    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1},
-    {"engine1", CSV_MAYBE, offsetof(Row, engine[0]), NULL, 0, 1},
-    {"engine4", CSV_MAYBE, offsetof(Row, engine[1]), NULL, 0, 1},
-    {"engine10", CSV_MAYBE, offsetof(Row, engine[2]), NULL, 0, 1},
-};
+enum { DEFINITIONS = RATE_DEFINITIONS, NETWORKS = 4, SWEEPS = 3 };
 
 enum { SHOWN_PHASES = 2 };
+static const int shown_phases[SHOWN_PHASES] = {PHASE_IMPACT, PHASE_REST};
 static const char *const networks[NETWORKS] = {"baseline", "target-net", "target-impulse", "contact-net"};
 static const char *const titles[DEFINITIONS] = {"Within 5% of the output's range", "Within 0.1 m/s",
                                                 "Bodies right, by the reference"};
@@ -48,7 +28,7 @@ static const double stem = 0.017, bar_width = 0.08, bar_height = 0.8;
 
 typedef struct Rates {
     FigurePage *page;
-    const Row *rows;
+    const RateRow *rows;
     int count;
     bool used[NETWORKS];
 } Rates;
@@ -60,10 +40,12 @@ static int find_network(const char *name) {
 }
 
 /* Networks side by side within their scene. */
-static double place(const Row *row) { return row->scene + 0.2 * (find_network(row->network) - (NETWORKS - 1) / 2.0); }
+static double place(const RateRow *row) {
+    return row->scene + 0.2 * (find_network(row->network) - (NETWORKS - 1) / 2.0);
+}
 
-static bool is_in(const Row *row, int definition, int phase) {
-    return row->definition == definition && row->phase == phase;
+static bool is_in(const RateRow *row, int definition, int phase) {
+    return row->definition == definition && row->phase == shown_phases[phase];
 }
 
 static FigureLook stem_look(int network) {
@@ -92,7 +74,7 @@ static FigureLook band_look(void) {
 static void put_band(const Rates *rates) {
     FigureLook look = band_look();
     figure_series(rates->page);
-    figure_bar(rates->page, -0.5, paper_least, FIGURE_SCENES - 0.5, paper_most);
+    figure_bar(rates->page, -0.5, paper_least, PAPER_SCENES - 0.5, paper_most);
     figure_draw(rates->page, &look);
 }
 
@@ -102,12 +84,12 @@ static void put_network(const Rates *rates, int network, int definition, int pha
     for (int heads = 0; heads <= 1; heads++) {
         figure_series(rates->page);
         for (int i = 0; i < rates->count; i++) {
-            const Row *row = &rates->rows[i];
+            const RateRow *row = &rates->rows[i];
             if (!is_in(row, definition, phase) || find_network(row->network) != network) continue;
             if (heads)
-                figure_point(rates->page, place(row), 100 * row->rate);
+                figure_point(rates->page, place(row), 100 * row->share[RATE_NETWORK]);
             else
-                figure_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->rate);
+                figure_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->share[RATE_NETWORK]);
         }
         figure_draw(rates->page, heads ? &marks : &stems);
     }
@@ -117,10 +99,10 @@ static void put_constants(const Rates *rates, int definition, int phase) {
     FigureLook look = constant_look();
     figure_series(rates->page);
     for (int i = 0; i < rates->count; i++) {
-        const Row *row = &rates->rows[i];
+        const RateRow *row = &rates->rows[i];
         if (!is_in(row, definition, phase)) continue;
-        figure_bar(rates->page, place(row) - bar_width, 100 * row->constant - bar_height, place(row) + bar_width,
-                   100 * row->constant + bar_height);
+        figure_bar(rates->page, place(row) - bar_width, 100 * row->share[RATE_CONSTANT] - bar_height,
+                   place(row) + bar_width, 100 * row->share[RATE_CONSTANT] + bar_height);
     }
     figure_draw(rates->page, &look);
 }
@@ -131,7 +113,7 @@ static void put_engines(const Rates *rates, int definition, int phase) {
         figure_series(rates->page);
         for (int i = 0; i < rates->count; i++)
             if (is_in(&rates->rows[i], definition, phase))
-                figure_point(rates->page, place(&rates->rows[i]), 100 * rates->rows[i].engine[k]);
+                figure_point(rates->page, place(&rates->rows[i]), 100 * rates->rows[i].share[RATE_ENGINE1 + k]);
         figure_draw(rates->page, &look);
     }
 }
@@ -142,7 +124,7 @@ static void put_panel(const Rates *rates, int definition, int phase) {
     double up = bottom + (SHOWN_PHASES - 1 - phase) * (panel_height + row_gap);
     figure_panel(page, (FigureBox){left + definition * (width + gap), up, width, panel_height},
                  phase == 0 ? titles[definition] : "");
-    figure_linear(page, 'x', -0.5, FIGURE_SCENES - 0.5,
+    figure_linear(page, 'x', -0.5, PAPER_SCENES - 0.5,
                   phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
                              : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
                   NULL);
@@ -166,11 +148,11 @@ static void put_legend(const Rates *rates) {
     figure_legend(rates->page, looks, count, NETWORKS, left, legend_top + FIGURE_LEGEND_ROW);
 }
 
-static void keep_shown(Rates *rates, Row *rows, int count) {
+static void keep_shown(Rates *rates, RateRow *rows, int count) {
     rates->rows = rows;
     for (int i = 0; i < count; i++) {
         int network = find_network(rows[i].network);
-        if (network == NETWORKS || rows[i].phase >= SHOWN_PHASES) continue;
+        if (network == NETWORKS || (rows[i].phase != PHASE_IMPACT && rows[i].phase != PHASE_REST)) continue;
         rates->used[network] = true;
         rows[rates->count++] = rows[i];
     }
@@ -178,11 +160,9 @@ static void keep_shown(Rates *rates, Row *rows, int count) {
 
 bool figure_rates(const char *folder, FigurePage *page, Error *error) {
     Rates rates = {.page = page};
-    int count;
-    Row *rows = csv_columns_read(folder, "rates", columns, sizeof columns / sizeof *columns, sizeof *rows, CSV_MAX_ROWS,
-                                 &count, error);
-    if (rows == NULL) return false;
-    keep_shown(&rates, rows, count);
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_rate_layout, error)) return false;
+    keep_shown(&rates, table.rows, table.count);
     if (rates.count > 0) {
         figure_begin(page, FIGURE_PAGE_WIDTH, bottom + 2 * panel_height + row_gap + top);
         for (int phase = 0; phase < SHOWN_PHASES; phase++)
@@ -195,6 +175,6 @@ bool figure_rates(const char *folder, FigurePage *page, Error *error) {
             "engine does with 1, 4 and 10 sweeps (crosses). Grey band: the 60 to 91%% of the paper.");
         figure_end(page);
     }
-    free(rows);
+    csv_table_free(&table);
     return true;
 }

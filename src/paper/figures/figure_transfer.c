@@ -1,29 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One column wide: does it help to have learned smaller scenes first? */
-#include "chart/csv_columns.h"
 #include "chart/figure_axis.h"
 #include "chart/figure_seeds.h"
 #include "paper/figures/figures.h"
+#include "paper/study/paper_tables.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum { STARTS = 2, MAX_POWER = 20 };
 
-typedef struct Row {
-    int start;
-    double seed, launches, error, constant;
-} Row;
-
-static const char *const starts[] = {"scratch", "transfer", NULL};
-
-static const CsvColumn columns[] = {
-    {"start", CSV_WORD, offsetof(Row, start), starts, 0, 0},
-    {"seed", CSV_NUMBER, offsetof(Row, seed), NULL, 0, 1e9},
-    {"launches", CSV_NUMBER, offsetof(Row, launches), NULL, 1, 1 << MAX_POWER},
-    {"error", CSV_MAYBE, offsetof(Row, error), NULL, 0, 1e6},
-    {"constant", CSV_MAYBE, offsetof(Row, constant), NULL, 0, 1e6},
-};
+_Static_assert(PAPER_MAX_LAUNCHES == 1 << MAX_POWER, "all launches have a tick");
 
 /* mm */
 static const double height = 64, left = 13, right = 2, bottom = 17.8, top = 3, legend_left = 3, legend_top = 6.2;
@@ -32,7 +19,7 @@ static const double most_labels = 8, least_error = 1e-6;
 
 typedef struct Transfer {
     FigurePage *page;
-    const Row *rows;
+    const TransferRow *rows;
     int count;
     SeedPoint *points; /* [count] room */
 } Transfer;
@@ -46,9 +33,9 @@ static FigureLook look_of(int start) {
 static int gather(const Transfer *transfer, int start) {
     int count = 0;
     for (int i = 0; i < transfer->count; i++) {
-        const Row *row = &transfer->rows[i];
+        const TransferRow *row = &transfer->rows[i];
         double value = start < STARTS ? row->error : row->constant;
-        if ((start < STARTS && row->start != start) || isnan(value)) continue;
+        if ((start < STARTS && row->transfer != start) || isnan(value)) continue;
         transfer->points[count++] = (SeedPoint){row->seed, row->launches, value};
     }
     return count;
@@ -71,7 +58,7 @@ static void put_launches(FigurePage *page, double low, double high) {
 static void put_axes(const Transfer *transfer) {
     double least = 1 << MAX_POWER, most = 1, error = least_error;
     for (int i = 0; i < transfer->count; i++) {
-        const Row *row = &transfer->rows[i];
+        const TransferRow *row = &transfer->rows[i];
         least = fmin(least, row->launches);
         most = fmax(most, row->launches);
         error = fmax(error, fmax(row->error, row->constant)); /* of a number and NAN, the number */
@@ -102,14 +89,12 @@ static void draw(Transfer *transfer) {
 }
 
 bool figure_transfer(const char *folder, FigurePage *page, Error *error) {
-    int count;
-    Row *rows = csv_columns_read(folder, "transfer", columns, sizeof columns / sizeof *columns, sizeof *rows,
-                                 CSV_MAX_ROWS, &count, error);
-    if (rows == NULL) return false;
-    Transfer transfer = {page, rows, count, malloc((size_t)count * sizeof *transfer.points)};
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &paper_transfer_layout, error)) return false;
+    Transfer transfer = {page, table.rows, table.count, malloc((size_t)table.count * sizeof(SeedPoint))};
     bool room = transfer.points != NULL;
     if (room) draw(&transfer);
     free(transfer.points);
-    free(rows);
+    csv_table_free(&table);
     return room || error_memory(error, folder);
 }

@@ -10,8 +10,3 @@ bool figure_rates(const char *folder, FigurePage *page, Error *error);
 bool figure_closed_loop(const char *folder, FigurePage *page, Error *error);
 bool figure_laws(const char *folder, FigurePage *page, Error *error);
 bool figure_transfer(const char *folder, FigurePage *page, Error *error);
-
-/* Words of the tables. */
-enum { FIGURE_TARGETS = 4, FIGURE_SCENES = 4 };
-extern const char *const figure_targets[FIGURE_TARGETS + 1];
-extern const char *const figure_scene_names[FIGURE_SCENES + 1];

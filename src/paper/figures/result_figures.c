@@ -8,9 +8,6 @@
 
 #include <limits.h>
 
-const char *const figure_targets[] = {"pair", "net", "impulse", "points", NULL};
-const char *const figure_scene_names[] = {"single", "stack", "pyramid", "pyramid_settled", NULL};
-
 static const struct {
     const char *name;
     bool (*write)(const char *folder, FigurePage *page, Error *error);

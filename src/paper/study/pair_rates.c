@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const rate_definition_names[RATE_DEFINITIONS] = {"range", "absolute", "bodies"};
+const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range", "absolute", "bodies"};
 
 static const double near_share = 0.05, near_velocity = 0.1; /* of the range; m/s */
 

@@ -25,7 +25,7 @@ typedef enum RateColumn {
 
 enum { RATE_PHASES = PHASES + 1, RATE_ALL = PHASES };
 
-extern const char *const rate_definition_names[RATE_DEFINITIONS];
+extern const char *const rate_definition_names[RATE_DEFINITIONS + 1]; /* ends in NULL */
 
 /* Shares, 0 to 1; NAN where there is nothing to count, or a network that cannot take a step. RATE_ALL weighs the phases
    by how seldom they were sampled. */

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-const char *const paper_scene_names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid_settled"};
+const char *const paper_scene_names[PAPER_SCENES + 1] = {"single", "stack", "pyramid", "pyramid_settled"};
 
 bool paper_datasets_begin(PaperDatasets *datasets, const char *scenes, const PaperDataSize *size, uint64_t seed,
                           Error *error) {

@@ -5,8 +5,8 @@
 
 enum { PAPER_SCENES = 4, PAPER_TRAINING_SCENES = 2, PAPER_PATH_SIZE = 4096, PAPER_DATASETS_MAX = 32 };
 
-/* single, stack, pyramid, pyramid_settled; the first two are trained on. */
-extern const char *const paper_scene_names[PAPER_SCENES];
+/* single, stack, pyramid, pyramid_settled, NULL; the first two are trained on. */
+extern const char *const paper_scene_names[PAPER_SCENES + 1];
 
 /* Launches of each scene. */
 typedef struct PaperDataSize {

@@ -7,9 +7,6 @@
 
 #include <stdio.h>
 
-#define LAWS_HEADER "laws,weight,seed,test,constant,momentum,energy,approach,cone"
-#define TRANSFER_HEADER "start,seed,launches,error,constant"
-
 /* Datasets that the parts share, recorded when the first of them asks. Zero-initialise all but `datasets`. */
 typedef struct PaperOutlook {
     const PaperDatasets *datasets;

@@ -6,12 +6,9 @@
 
 #include <stdio.h>
 
-#define RATES_HEADER "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
-#define CLOSED_LOOP_HEADER \
-    "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,us_step,us_step_engine"
-
 typedef struct PaperScoring {
-    const char *scene;            /* path of its file */
+    int scene;                    /* of paper_scene_names */
+    const char *path;             /* of the scene's file */
     const char *folder;           /* of the trained networks */
     const PaperNetwork *networks; /* [count] */
     int count;

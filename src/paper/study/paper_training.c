@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/study/paper_training.h"
 
+#include "paper/study/paper_tables.h"
+#include "study/study_parts.h"
 #include "training/training.h"
 
 #include <math.h>
@@ -19,19 +21,27 @@ static void read_layers(const char *text, TrainingOptions *options) {
     options->layers = count - 1;
 }
 
-/* What the scores of a training are written to. */
+/* Writes the scores of a training. */
 typedef struct ScoreWriter {
     FILE *lines;
     const PaperNetwork *network;
     TrainingScore last;
+    bool ok;
+    Error *error;
 } ScoreWriter;
 
 static void write_score(void *context, const TrainingScore *score) {
     ScoreWriter *writer = context;
     const PaperNetwork *network = writer->network;
+    const ScoreRow row = {.network = network->name,
+                          .target = (int)network->target,
+                          .optimizer = csv_word(paper_optimizer_words, network->optimizer),
+                          .iteration = score->iteration,
+                          .test = score->test,
+                          .train = score->train,
+                          .constant = score->constant_test};
     writer->last = *score;
-    fprintf(writer->lines, "table1:%s,%s,%s,%d,%.6g,%.6g,%.6g\n", network->name, pair_target_names[network->target],
-            network->optimizer, score->iteration, score->test, score->train, score->constant_test);
+    writer->ok = writer->ok && study_parts_print(writer->lines, &paper_score_layout, &row, writer->error);
 }
 
 /* Output k of a row as a network has it: all changes, or those of b's velocity relative to a's. */
@@ -75,13 +85,29 @@ double paper_accuracy(const Network *network, const Dataset *dataset) {
     return rows > 0 ? (double)right / (double)rows : NAN;
 }
 
-static void write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
-                          double accuracy) {
-    fprintf(lines, "networks:%s,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%d,%d,%.6g,%.6g,%.6g,%.6g,%.6g\n", of->name,
-            of->factor, of->value, pair_views[of->view].name, paper_data_names[of->data],
-            dataset_label_names[of->labels], pair_target_names[of->target], of->layers, of->hidden, of->output,
-            of->scale, of->optimizer, of->loss, score->iteration, network_parameter_count(network), score->test,
-            score->train, score->constant_test, score->test / score->constant_test, accuracy);
+static bool write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
+                          double accuracy, Error *error) {
+    const TrainedRow row = {.network = of->name,
+                            .factor = of->factor,
+                            .value = of->value,
+                            .inputs = pair_views[of->view].name,
+                            .data = paper_data_names[of->data],
+                            .labels = dataset_label_names[of->labels],
+                            .target = (int)of->target,
+                            .layers = of->layers,
+                            .hidden = of->hidden,
+                            .output = of->output,
+                            .scale = of->scale,
+                            .optimizer = of->optimizer,
+                            .loss = of->loss,
+                            .iterations = score->iteration,
+                            .parameters = network_parameter_count(network),
+                            .test = score->test,
+                            .train = score->train,
+                            .constant = score->constant_test,
+                            .ratio = score->test / score->constant_test,
+                            .accuracy = accuracy};
+    return study_parts_print(lines, &paper_trained_layout, &row, error);
 }
 
 static bool store(const PaperTraining *training, Network *network, Error *error) {
@@ -97,7 +123,7 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     const PaperNetwork *of = &training->network;
     const Dataset *dataset = paper_dataset(training->datasets, of, error);
     if (dataset == NULL) return false;
-    ScoreWriter writer = {lines, of, {0}};
+    ScoreWriter writer = {lines, of, {0}, true, error};
     TrainingOptions options = {.optimizer = of->optimizer,
                                .iterations = of->iterations,
                                .seed = training->seed,
@@ -113,10 +139,10 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     /* Not of the last weights, but of those that are kept. */
     TrainingScore score = {.iteration = writer.last.iteration};
     const int iterations = score.iteration;
-    bool ok = training_score(dataset, network, of->loss, &score, error);
+    bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
     score.iteration = iterations;
-    if (ok) write_network(lines, of, network, &score, paper_accuracy(network, dataset));
-    ok = ok && store(training, network, error);
+    ok = ok && write_network(lines, of, network, &score, paper_accuracy(network, dataset), error) &&
+         store(training, network, error);
     network_destroy(network);
     return ok;
 }

@@ -6,11 +6,6 @@
 
 #include <stdio.h>
 
-#define TABLE1_HEADER "network,target,optimizer,iteration,test,train,constant"
-#define NETWORKS_HEADER                                                                                               \
-    "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,iterations,parameters," \
-    "test,train,constant,ratio,accuracy"
-
 typedef struct PaperTraining {
     PaperDatasets *datasets;
     PaperNetwork network;
