@@ -11,7 +11,7 @@
 static double constant_on_paper_scale(const StudyTables *study, PairTarget target) {
     for (int i = 0; i < study->network_count; i++) {
         const TrainedRow *row = &study->networks[i];
-        if (row->target == target && strcmp(row->scale, "minmax") == 0 && !isnan(row->constant)) return row->constant;
+        if (row->target == (int)target && strcmp(row->scale, "minmax") == 0 && !isnan(row->constant)) return row->constant;
     }
     return NAN;
 }

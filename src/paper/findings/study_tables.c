@@ -51,7 +51,7 @@ const TrainedRow *study_best(const StudyTables *study, PairTarget target, const 
     *among = 0;
     for (int i = 0; i < study->network_count; i++) {
         const TrainedRow *row = &study->networks[i];
-        if (row->target != target || isnan(row->ratio) || !(row->parameters <= max_parameters)) continue;
+        if (row->target != (int)target || isnan(row->ratio) || !(row->parameters <= max_parameters)) continue;
         if (factor != NULL && strcmp(row->factor, factor) != 0) continue;
         ++*among;
         if (best == NULL || row->ratio < best->ratio) best = row;

@@ -24,7 +24,7 @@ typedef struct Writing {
 } Writing;
 
 static void write_block(const Writing *writing, cmark_node *block) {
-    char *html = cmark_render_html(block, CMARK_OPT_DEFAULT, writing->extensions);
+    char *html = cmark_render_html(block, CMARK_OPT_TABLE_PREFER_STYLE_ATTRIBUTES, writing->extensions);
     fputs(html, writing->out);
     free(html);
 }
@@ -70,14 +70,14 @@ static cmark_node *image_of(cmark_node *block) {
     return cmark_node_get_type(image) == CMARK_NODE_IMAGE && cmark_node_next(image) == NULL ? image : NULL;
 }
 
-/* Never larger than its pixels: that would only blur it. */
+/* At most two pixels of the picture for each of the page, so that it is sharp on all screens. */
 static bool write_picture(const Writing *writing, cmark_node *node, const char *path) {
     size_t size;
     char *png = file_read(path, MAX_PICTURE_SIZE, &size, writing->error);
     Image *image = png != NULL ? image_read_png(path, writing->error) : NULL;
     if (image != NULL) {
         fprintf(writing->out, "<img width=\"%d\" height=\"%d\" style=\"max-width:%dpx\" alt=\"", image->width,
-                image->height, image->width);
+                image->height, (image->width + 1) / 2);
         html_put(writing->out, cmark_node_get_literal(cmark_node_first_child(node)));
         fputs("\" src=\"data:image/png;base64,", writing->out);
         base64_put(writing->out, png, size);
@@ -95,7 +95,7 @@ static bool write_figure(const Writing *writing, cmark_node *image, cmark_node *
     fputs("<figure>", writing->out);
     if (!write_picture(writing, image, path)) return false;
     fputs("<figcaption>", writing->out);
-    write_block(writing, caption);
+    if (caption != NULL) write_block(writing, caption);
     fputs("</figcaption></figure>\n", writing->out);
     return true;
 }
@@ -114,7 +114,7 @@ static bool write_blocks(const Writing *writing, cmark_node *document) {
             cmark_node *image = image_of(node);
             node = cmark_node_next(node);
             if (!write_figure(writing, image, node)) return false;
-        } else if (cmark_node_get_type(node) == CMARK_NODE_TABLE) {
+        } else if (strcmp(cmark_node_get_type_string(node), "table") == 0) {
             write_table(writing, node, heading);
         } else {
             write_block(writing, node);
