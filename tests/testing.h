@@ -59,3 +59,14 @@ static inline const char *temporary_path(const char *name) {
     snprintf(path, sizeof paths[0], "%s/%s", temporary_folder, name);
     return path;
 }
+
+/* Puts these bytes in a file and returns its path. A new file each time: some file systems write an overwritten one to disk
+   at once, for safety. */
+static inline const char *write_bytes(const char *path, const void *data, size_t size) {
+    remove(path);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}

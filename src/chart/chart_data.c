@@ -2,7 +2,8 @@
 #include "chart/chart_data.h"
 
 #include "common/parse.h"
-#include "study/front.h"
+#include "simulate/method.h"
+#include "study/pareto.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -95,14 +96,19 @@ static void widen(Chart *chart, const ChartMark *mark) {
     chart->error_most = fmax(chart->error_most, mark->error);
 }
 
+static bool is_shipped(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    return method != NULL && method->shipped != NULL && strcmp(method->shipped, row->setting) == 0;
+}
+
 static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
     ChartMark mark = {.us = row->us_solver, .us_q1 = row->us_solver_q1, .us_q3 = row->us_solver_q3};
     char key[CHART_KEY_SIZE];
     name_row(row, key, mark.label);
     mark.line = find_line(chart, key);
-    mark.error = fmax(row->error_mean, FRONT_RESOLUTION);
+    mark.error = fmax(row->error_mean, PARETO_RESOLUTION);
     mark.on_front = on_front;
-    mark.shipped = strcmp(row->method, "engine") == 0 && strcmp(row->setting, "k=10") == 0;
+    mark.shipped = is_shipped(row);
     ChartLine *line = &chart->lines[mark.line];
     chart->launches = row->launches > chart->launches ? row->launches : chart->launches;
     if (!can_be_drawn(row)) {
@@ -110,7 +116,7 @@ static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel
         return;
     }
     line->marks[panel]++;
-    chart->floored += row->error_mean < FRONT_RESOLUTION;
+    chart->floored += row->error_mean < PARETO_RESOLUTION;
     widen(chart, &mark);
     chart->panels[panel].marks[chart->panels[panel].count++] = mark;
 }
@@ -134,7 +140,7 @@ static void add_rows(Chart *chart, const ChartTable *table, const char *scene, C
         else
             rows[count++] = table->rows[i];
     }
-    front_mark(rows, count, on_front);
+    pareto_mark(rows, count, on_front);
     for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
 }
 

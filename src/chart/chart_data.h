@@ -25,7 +25,7 @@ typedef struct ChartMark {
     double us, us_q1, us_q3; /* time in the solver per step: median and quartiles, microseconds */
     double error;            /* mean, m/s */
     bool on_front;
-    bool shipped;                /* the engine as shipped: 10 iterations */
+    bool shipped;                /* with the setting that the method's description calls shipped */
     char label[CHART_TEXT_SIZE]; /* those of the settings that are numbers ("k=20"); or empty */
 } ChartMark;
 
@@ -36,7 +36,7 @@ typedef struct ChartPanel {
 
 typedef struct Chart {
     int line_count, launches;
-    int floored; /* marks drawn at FRONT_RESOLUTION */
+    int floored; /* marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS];                   /* impact frames, frames after; closed loop */
     double us_least, us_most, error_least, error_most; /* of the marks */
@@ -46,7 +46,7 @@ typedef struct Chart {
    are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
    gnuplot. Left out and counted: rows without a time or an error, and those of a method which let the
    boxes drift half a metre before the bomb came: what it was scored on then is another scene. Errors that the
-   reference cannot tell from 0 are drawn at FRONT_RESOLUTION (study/front.h). False with error set where nothing is
+   reference cannot tell from 0 are drawn at PARETO_RESOLUTION (study/pareto.h). False with error set where nothing is
    left, or more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);

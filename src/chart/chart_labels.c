@@ -12,8 +12,6 @@
 /* Inter's mean advance is 0.56 of its size. */
 static const double character_width = LABEL_POINTS * 0.3528 * 0.56, label_height = LABEL_POINTS * 0.3528 * 0.9;
 
-static const char shipped_text[] = "engine as shipped";
-
 typedef struct Labels {
     const Chart *chart;
     const ChartPanel *panel;
@@ -104,11 +102,15 @@ static bool ends_line(const ChartPanel *panel, int i) {
     return i == 0 || i + 1 == panel->count || marks[i - 1].line != marks[i].line || marks[i + 1].line != marks[i].line;
 }
 
-/* The engine as shipped must be found; then the marks on the front have the first choice. */
+/* A setting as shipped must be found; then the marks on the front have the first choice. */
 static void put_labels(Labels *labels) {
     const ChartPanel *panel = labels->panel;
     for (int i = 0; i < panel->count; i++)
-        if (panel->marks[i].shipped) put_label(labels, i, shipped_text, true);
+        if (panel->marks[i].shipped) {
+            char text[CHART_TEXT_SIZE + 16];
+            snprintf(text, sizeof text, "%s as shipped", labels->chart->lines[panel->marks[i].line].name);
+            put_label(labels, i, text, true);
+        }
     for (int front = 1; front >= 0; front--)
         for (int i = 0; i < panel->count; i++) {
             const ChartMark *mark = &panel->marks[i];

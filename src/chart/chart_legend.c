@@ -4,7 +4,7 @@
 #include "chart/chart_labels.h"
 #include "chart/chart_script.h"
 #include "chart/chart_style.h"
-#include "study/front.h"
+#include "study/pareto.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -70,7 +70,7 @@ static void put_foot(const ChartLayout *layout) {
     put_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
     put_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
     if (layout->chart->floored > 0)
-        fprintf(layout->script, "Below %g m/s the reference is no better.", FRONT_RESOLUTION);
+        fprintf(layout->script, "Below %g m/s the reference is no better.", PARETO_RESOLUTION);
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 

@@ -3,6 +3,7 @@
 
 #include "chart/chart_script.h"
 #include "chart/gnuplot.h"
+#include "common/file.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -33,8 +34,7 @@ static bool check_name(const char *csv_path, const char *scene, Error *error) {
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error) {
     char stem[PATH_MAX];
     if (!check_name(csv_path, scene, error)) return false;
-    int length = snprintf(stem, sizeof stem, "%s/chart-%s", folder, scene);
-    if (length < 0 || length >= (int)sizeof stem) return error_input(error, folder, "this path is too long");
+    if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene)) return false;
     ChartTable table;
     if (!chart_csv_read(&table, csv_path, error)) return false;
     Chart chart;

@@ -5,14 +5,11 @@
 #include "chart/chart_style.h"
 #include "common/error.h"
 #include "sketch/log_axis.h"
+#include "sketch/page_width.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
-
-/* mm: a page of a paper, and one of its two columns. */
-#define FIGURE_PAGE_WIDTH 174.0
-#define FIGURE_COLUMN_WIDTH 85.0
 
 #define FIGURE_GREY "#606060"
 

@@ -33,8 +33,7 @@ bool figure_sheet_draw(const FigureSheet *sheet, const char *folder, const char 
                        Error *error) {
     char stem[PATH_MAX], caption[PATH_MAX + 4];
     if (sheet->page.width <= 0) return true;
-    int length = snprintf(stem, sizeof stem, "%s/%s%s", folder, prefix, name);
-    if (length < 0 || length >= (int)sizeof stem) return error_input(error, folder, "this path is too long");
+    if (!file_path(stem, sizeof stem, error, "%s/%s%s", folder, prefix, name)) return false;
     snprintf(caption, sizeof caption, "%s.txt", stem);
     const GnuplotDrawing drawing = {sheet->page.width,   sheet->page.height,
                                     sheet->script,       sheet->script_size,

@@ -127,9 +127,8 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, const cha
     }
     if (done && drawing->over != NULL && !put_over(&data[1], &size[1], drawing->over)) done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {
-        int length = snprintf(path, sizeof path, "%s.%s", stem, endings[i]);
-        done = length < (int)sizeof path ? file_write(path, data[i], size[i], error)
-                                         : error_input(error, stem, "this path is too long");
+        done =
+            file_path(path, sizeof path, error, "%s.%s", stem, endings[i]) && file_write(path, data[i], size[i], error);
     }
     for (int i = 0; i < formats; i++) free(data[i]);
     return done;

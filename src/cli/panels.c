@@ -46,8 +46,7 @@ static bool is_stored(const char *input) {
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error) {
     int scenes = 0;
     for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
-    if (set->count > 0 && scenes != 1)
-        return error_input(error, "--set", "is for one scene (here there are %d)", scenes);
+    if (set->count > 0 && scenes != 1) return error_input(error, "--set", "needs exactly one scene (got %d)", scenes);
     for (int i = 0; i < input_count; i++) {
         bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
                                        : add_scene(panels, inputs[i], set, error);
@@ -80,8 +79,7 @@ bool panels_store(const Panels *panels, const char *directory, Error *error) {
         }
         char number[16] = "";
         if (same > 1) snprintf(number, sizeof number, "-%d", same);
-        if (snprintf(path, sizeof path, "%s/%s%s.npz", directory, stem, number) >= (int)sizeof path)
-            return error_input(error, directory, "the name is too long");
+        if (!file_path(path, sizeof path, error, "%s/%s%s.npz", directory, stem, number)) return false;
         if (!trajectory_write(panels->runs[i], path, error)) return false;
     }
     return true;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/stability_cell.h"
 
+#include "common/names.h"
 #include "common/parse.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Of a number, in how far one that is typed may differ: a figure's have three digits. */
+/* Relative tolerance of a typed number: figures show three digits. */
 static const double share = 0.01;
 
 static bool parse_values(const char *text, double *x, double *y) {
@@ -27,27 +28,10 @@ bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
 
 static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
 
-/* A list of names, each once, with ", " between; what has no room is left out. */
-typedef struct Names {
-    char text[1024];
-    size_t used;
-} Names;
-
-static void add_name(Names *names, const char *name) {
-    size_t length = strlen(name);
-    for (const char *at = names->text; (at = strstr(at, name)) != NULL; at++) {
-        bool begins = at == names->text || at[-1] == ' ', ends = at[length] == '\0' || at[length] == ',';
-        if (begins && ends) return;
-    }
-    if (names->used + length + 3 > sizeof names->text) return;
-    names->used += (size_t)snprintf(names->text + names->used, sizeof names->text - names->used, "%s%s",
-                                    names->used > 0 ? ", " : "", name);
-}
-
-/* Of the part that is not there: what could have been said. */
+/* Names the known values of the part that was not found. */
 static const MapCell *fail(const MapTable *table, const StabilityCell *cell, bool map_known, bool method_known,
                            Error *error) {
-    Names names = {.used = 0}, ups = {.used = 0};
+    NameList names = {0}, ups = {0};
     char text[MAP_METHOD_SIZE];
     for (int i = 0; i < table->count; i++) {
         const MapCell *row = &table->cells[i];
@@ -55,19 +39,19 @@ static const MapCell *fail(const MapTable *table, const StabilityCell *cell, boo
         if (map_known && strcmp(row->map, cell->map) != 0) continue;
         if (map_known && method_known && strcmp(text, cell->method) == 0) {
             snprintf(text, sizeof text, "%.9g", row->y);
-            add_name(&ups, text);
+            name_list_add(&ups, text);
             snprintf(text, sizeof text, "%.9g", row->x);
-            add_name(&names, text);
+            name_list_add(&names, text);
         } else if (!map_known || !method_known)
-            add_name(&names, map_known ? text : row->map);
+            name_list_add(&names, map_known ? text : row->map);
     }
     if (!map_known)
-        error_input(error, "--clip", "there is no map %s in %s; there are %s", cell->map, table->csv.csv.path,
+        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.csv.path,
                     names.used > 0 ? names.text : "none");
     else if (!method_known)
-        error_input(error, "--clip", "map %s has no method %s; it has %s", cell->map, cell->method, names.text);
+        error_input(error, "--clip", "map %s has no method %s; its methods: %s", cell->map, cell->method, names.text);
     else
-        error_input(error, "--clip", "map %s has no cell %g,%g by %s; its X are %s; its Y are %s", cell->map, cell->x,
+        error_input(error, "--clip", "map %s has no cell %g,%g of method %s; its X: %s; its Y: %s", cell->map, cell->x,
                     cell->y, cell->method, names.text, ups.text);
     return NULL;
 }

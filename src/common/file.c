@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,6 +198,15 @@ bool file_make_directory(const char *path, Error *error) {
         return error_system(error, part, "cannot make the directory: %s", strerror(errno));
     }
     return true;
+}
+
+bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(path, size, format, arguments);
+    va_end(arguments);
+    return (length >= 0 && (size_t)length < size) ||
+           error_input(error, "path", "%.200s... is longer than %zu bytes", path, size - 1);
 }
 
 size_t file_folder_length(const char *path) {

@@ -32,6 +32,9 @@ bool file_sync(const char *path, Error *error);
 /* Makes the directory and those above it where missing. */
 bool file_make_directory(const char *path, Error *error);
 
+/* Prints a path into path[size], as snprintf does. False with error set where it is longer. */
+bool file_path(char *path, size_t size, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
+
 /* Length of the folder part of a path with its slash: 7 for "scenes/single.yaml", 0 for "single.yaml". */
 size_t file_folder_length(const char *path);
 

@@ -3,6 +3,7 @@
 #include "common/npz.h"
 
 #include "common/npy.h"
+#include "common/utf8.h"
 #include "common/zip_directory.h"
 
 #include <ctype.h>
@@ -241,14 +242,14 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
     return read_data(file, array, error);
 }
 
-/* Appends one character; false where it is none or there is no room for it and the NUL. */
-static bool encode_utf8(uint32_t character, char *text, size_t *used, size_t size) {
-    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
+/* Appends one character; false if it is not one (NUL, surrogate, too large), or has no room with a NUL behind it. */
+static bool append(uint32_t character, char *text, size_t *used, size_t size) {
+    char bytes[4];
     if (character == 0 || character > 0x10ffff || (character >= 0xd800 && character < 0xe000)) return false;
-    int following = character < 0x80 ? 0 : character < 0x800 ? 1 : character < 0x10000 ? 2 : 3;
-    if (*used + (size_t)following + 1 >= size) return false;
-    text[(*used)++] = (char)(leads[following] | character >> (6 * following));
-    while (following-- > 0) text[(*used)++] = (char)(0x80 | (character >> (6 * following) & 0x3f));
+    size_t length = utf8_encode(bytes, character);
+    if (*used + length >= size) return false;
+    memcpy(text + *used, bytes, length);
+    *used += length;
     return true;
 }
 
@@ -264,7 +265,7 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
     while (count > 0 && characters[count - 1] == 0) count--;
     size_t used = 0;
     bool done = true;
-    for (int64_t i = 0; done && i < count; i++) done = encode_utf8(characters[i], text, &used, size);
+    for (int64_t i = 0; done && i < count; i++) done = append(characters[i], text, &used, size);
     text[used] = '\0';
     free(characters);
     return done || error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);

@@ -2,6 +2,7 @@
 /* Writing .npz: the archive is built in memory, then put in place whole. */
 #include "common/file.h"
 #include "common/npy.h"
+#include "common/utf8.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -29,31 +30,16 @@ typedef struct Member {
     zip_buffer_fragment_t fragments[2];
 } Member;
 
-/* Reads one character; NULL where the bytes are no UTF-8. Bytes to follow, and what they carry at least: a
-   character may not be written longer than it needs. */
-static const unsigned char *decode_utf8(const unsigned char *bytes, uint32_t *character) {
-    static const uint32_t least[] = {0, 0x80, 0x800, 0x10000};
-    unsigned lead = *bytes++;
-    int following = lead < 0x80 ? 0 : lead >= 0xc0 && lead < 0xe0 ? 1 : lead >= 0xe0 && lead < 0xf0 ? 2 : 3;
-    if ((lead >= 0x80 && lead < 0xc0) || lead >= 0xf8) return NULL;
-    *character = following == 0 ? lead : lead & (0x3fU >> following);
-    for (int i = 0; i < following; i++, bytes++) {
-        if ((*bytes & 0xc0) != 0x80) return NULL;
-        *character = *character << 6 | (*bytes & 0x3fU);
-    }
-    bool surrogate = *character >= 0xd800 && *character < 0xe000;
-    return *character < least[following] || *character > 0x10ffff || surrogate ? NULL : bytes;
-}
-
 /* NumPy has no text of length 0, so an empty one is one zero. */
 static bool decode_text(Member *member, NpyHead *head, const NpzArray *array, const char *path, Error *error) {
-    const unsigned char *bytes = array->data;
-    member->characters = calloc(strlen(array->data) + 1, sizeof *member->characters);
+    const char *text = array->data;
+    size_t length, left = strlen(text);
+    member->characters = calloc(left + 1, sizeof *member->characters);
     if (member->characters == NULL) return error_memory(error, path);
     int64_t count = 0;
-    while (*bytes != '\0') {
-        bytes = decode_utf8(bytes, &member->characters[count++]);
-        if (bytes == NULL) return error_input(error, path, "cannot store '%s': its text is no UTF-8", array->name);
+    for (; left > 0; text += length, left -= length) {
+        length = utf8_decode(text, left, &member->characters[count++]);
+        if (length == 0) return error_input(error, path, "cannot store '%s': its text is not UTF-8", array->name);
     }
     head->characters = count > 0 ? count : 1;
     return true;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/utf8.h"
 
+#include <string.h>
+
 size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
     if (size == 0) return 0;
@@ -15,6 +17,13 @@ size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
     if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
     *character = c;
     return length;
+}
+
+uint32_t utf8_next(const char **text) {
+    uint32_t character;
+    size_t length = utf8_decode(*text, strnlen(*text, 4), &character);
+    *text += length > 0 ? length : 1;
+    return length > 0 ? character : 0xfffd;
 }
 
 size_t utf8_encode(char *out, uint32_t character) {

@@ -7,5 +7,9 @@
    not well-formed. */
 size_t utf8_decode(const char *text, size_t size, uint32_t *character);
 
+/* The next character of NUL-terminated text that is not empty; moves *text behind it. U+FFFD, and one byte, where the
+   text is not well-formed. */
+uint32_t utf8_next(const char **text);
+
 /* Puts a character (no surrogate, at most 0x10ffff) to `out`, room for 4 bytes; returns its length. */
 size_t utf8_encode(char *out, uint32_t character);

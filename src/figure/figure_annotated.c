@@ -27,7 +27,7 @@ typedef struct Annotated {
 
 /* The frame that the bomb's first touch of a box came from; without one that of the largest impulse; -1: no contacts. */
 static int find_moment(const Trajectory *run) {
-    int touch = run_first_touch(run), frame = -1;
+    int touch = trajectory_impact(run), frame = -1;
     if (touch > 0) return touch - 1;
     double largest = -1;
     for (int step = 1; step < run->frames; step++)

@@ -174,7 +174,7 @@ static void put_legend(const Divergence *d, Sketch *sketch, double left, double 
 
 static void put_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
     const Trajectory *run = d->spec->runs[0];
-    const int touch = run_first_touch(run);
+    const int touch = trajectory_impact(run);
     if (touch < 0) return;
     const double x = plot_place(plot, touch * (double)run->dt, plot->axis.low).x;
     const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/run_kinds.h"
 
+#include "common/names.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -10,12 +12,11 @@ static const FigureKind *const kinds[] = {
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
 const FigureKind *figure_kind(const char *name, Error *error) {
-    char names[256] = "";
+    NameList known = {0};
     for (int i = 0; kinds[i] != NULL; i++) {
         if (strcmp(kinds[i]->name, name) == 0) return kinds[i];
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", kinds[i]->name);
+        name_list_add(&known, kinds[i]->name);
     }
-    error_input(error, "figure", "'%s' is no kind of figure; there are %s", name, names);
+    error_unknown(error, "figure", name, "a kind of figure", &known);
     return NULL;
 }

@@ -3,13 +3,12 @@
 #pragma once
 #include "common/progress.h"
 #include "render/render.h"
+#include "sketch/page_width.h"
 #include "sketch/sketch_files.h"
 #include "trajectory/trajectory.h"
 
 enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60 };
 
-#define FIGURE_COLUMN 85.0 /* mm: the width of a paper's column, */
-#define FIGURE_PAGE 174.0  /* and of its page */
 #define FIGURE_LEAST_WIDTH 40.0
 #define FIGURE_LARGEST_WIDTH 400.0
 #define FIGURE_TALLEST 240.0 /* mm; what would be higher is made smaller or refused */

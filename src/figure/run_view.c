@@ -2,6 +2,7 @@
 #include "figure/run_view.h"
 
 #include "gl/font.h"
+#include "picture/extent.h"
 #include "picture/style.h"
 #include "sketch/type.h"
 #include "trajectory/trajectory_states.h"
@@ -43,53 +44,21 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
-int run_first_touch(const Trajectory *run) {
-    for (int step = 1; run->bomb >= 0 && step < run->frames; step++)
-        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            const TrajectoryContact *contact = &run->contacts[i];
-            if ((contact->a == run->bomb || contact->b == run->bomb) && !run->fixed[contact->a] &&
-                !run->fixed[contact->b])
-                return step;
-        }
-    return -1;
-}
-
-/* Of a box, from its place. */
-static void reach(const Trajectory *run, int frame, int body, double *x, double *y) {
-    double angle = (double)run->angle[(size_t)frame * (size_t)run->bodies + (size_t)body];
-    double c = fabs(cos(angle)), s = fabs(sin(angle));
-    double half_x = (double)run->size[body].x / 2, half_y = (double)run->size[body].y / 2;
-    *x = c * half_x + s * half_y;
-    *y = s * half_x + c * half_y;
-}
-
-/* Beyond, nothing could be made out. */
-static const double farthest = 1e5; /* m */
-
-static void widen(double ends[4], const Trajectory *run, int frame, int body) {
-    Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
-    double x, y;
-    reach(run, frame, body, &x, &y);
-    if (!(fabs((double)at.x) + x < farthest && fabs((double)at.y) + y < farthest)) return; /* nor for NaN */
-    ends[0] = fmin(ends[0], (double)at.x - x), ends[1] = fmin(ends[1], (double)at.y - y);
-    ends[2] = fmax(ends[2], (double)at.x + x), ends[3] = fmax(ends[3], (double)at.y + y);
-}
-
 WorldWindow run_window(const Trajectory *run, const int *frames, int count) {
     const double margin_share = 0.04, least_margin = 0.4; /* m */
     Vec2 size = run->camera_size, center = run->camera_center;
-    if (size.x > 0 && size.y > 0 && (double)size.x < farthest && (double)size.y < farthest)
+    if (camera_is_set(run))
         return (WorldWindow){(double)(center.x - size.x / 2), (double)(center.y - size.y / 2), (double)size.x,
                              (double)size.y};
-    double ends[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int fixed = 0; fixed < 2 && ends[0] > ends[2]; fixed++)
+    Extent all = extent_empty;
+    for (int fixed = 0; fixed < 2 && extent_is_empty(&all); fixed++)
         for (int i = 0; i < count; i++)
             for (int body = 0; body < run->bodies; body++)
-                if ((run->fixed[body] != 0) == fixed) widen(ends, run, frames[i], body);
-    if (ends[0] > ends[2]) return (WorldWindow){-1, -1, 2, 2};
-    double margin = fmax(margin_share * fmax(ends[2] - ends[0], ends[3] - ends[1]), least_margin);
-    return (WorldWindow){ends[0] - margin, ends[1] - margin, ends[2] - ends[0] + 2 * margin,
-                         ends[3] - ends[1] + 2 * margin};
+                if ((run->fixed[body] != 0) == fixed) extent_include(&all, run, frames[i], body);
+    if (extent_is_empty(&all)) return (WorldWindow){-1, -1, 2, 2};
+    double margin = fmax(margin_share * fmax(all.right - all.left, all.top - all.bottom), least_margin);
+    return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,
+                         all.top - all.bottom + 2 * margin};
 }
 
 void run_window_widen(WorldWindow *window, double shape) {

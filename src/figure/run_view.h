@@ -11,9 +11,6 @@ bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int
 /* Refuses runs of different worlds or steps. */
 bool run_check_worlds(const FigureSpec *spec, Error *error);
 
-/* The step in which the bomb first touches a body that can move; -1: never. */
-int run_first_touch(const Trajectory *run);
-
 /* A part of the world, m. */
 typedef struct WorldWindow {
     double left, bottom, width, height;

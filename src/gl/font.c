@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gl/font.h"
 
+#include "common/utf8.h"
+
 #include <string.h>
 
-enum { PEN_UNIT = 64 }; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
+enum { PEN_UNIT = 64 }; /* pen positions are in 1/64 pixel, so that rounding errors of glyphs do not accumulate */
 #define ELLIPSIS "\xE2\x80\xA6"
 
 Font font_pick(FontFace face, double pixels) {
@@ -11,20 +13,6 @@ Font font_pick(FontFace face, double pixels) {
     for (int i = 0; i < FONT_SIZES; i++)
         if (font_sizes[i] <= pixels) font = (Font){font_glyphs[face][i], font_sizes[i]};
     return font;
-}
-
-unsigned font_next_character(const char **text) {
-    const unsigned char *s = (const unsigned char *)*text;
-    int more = s[0] < 0x80 ? 0 : s[0] < 0xC2 ? -1 : s[0] < 0xE0 ? 1 : s[0] < 0xF0 ? 2 : s[0] < 0xF5 ? 3 : -1;
-    unsigned code = more <= 0 ? s[0] : s[0] & (0x3Fu >> more);
-    for (int i = 1; i <= more; i++) {
-        if ((s[i] & 0xC0) != 0x80)
-            more = -1;
-        else
-            code = code << 6 | (s[i] & 0x3F);
-    }
-    *text += more < 0 ? 1 : more + 1;
-    return more < 0 ? 0xFFFD : code;
 }
 
 static const FontGlyph *find(const Font *font, unsigned code) {
@@ -42,7 +30,7 @@ static const FontGlyph *find(const Font *font, unsigned code) {
 
 static int advance(const Font *font, const char *text) {
     int pen = 0;
-    while (font->glyphs != NULL && *text != '\0') pen += find(font, font_next_character(&text))->advance;
+    while (font->glyphs != NULL && *text != '\0') pen += find(font, utf8_next(&text))->advance;
     return pen;
 }
 
@@ -55,7 +43,7 @@ static int add(Drawing *drawing, const Font *font, const char *text, const char 
                uint32_t color) {
     int pen = 0;
     while (text < end) {
-        const FontGlyph *glyph = find(font, font_next_character(&text));
+        const FontGlyph *glyph = find(font, utf8_next(&text));
         int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph->left;
         GlyphInstance instance = {{left, baseline - glyph->top, glyph->width, glyph->height}, glyph->offset, color};
         if (glyph->width > 0) drawing_add_glyph(drawing, &instance);
@@ -75,7 +63,7 @@ int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x
     int room = (max_width - font_width(font, ELLIPSIS)) * PEN_UNIT, pen = 0;
     if (room < 0) return x;
     const char *end = text, *next = text;
-    while (*next != '\0' && (pen += find(font, font_next_character(&next))->advance) <= room) end = next;
+    while (*next != '\0' && (pen += find(font, utf8_next(&next))->advance) <= room) end = next;
     while (end > text && end[-1] == ' ') end--;
     int behind = add(drawing, font, text, end, x, baseline, color);
     return font_add(drawing, font, ELLIPSIS, behind, baseline, color);

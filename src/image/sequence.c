@@ -3,6 +3,7 @@
 
 #include "common/array.h"
 #include "common/file.h"
+#include "common/utf8.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -12,23 +13,13 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* Bytes of a UTF-8 character that begins here, 0 where none does. Overlong forms and surrogates are none. */
-static int character(const unsigned char *text) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    int size = text[0] < 0x80 ? 1 : text[0] >> 5 == 6 ? 2 : text[0] >> 4 == 14 ? 3 : text[0] >> 3 == 30 ? 4 : 0;
-    if (size == 1) return text[0] >= 0x20 && text[0] != 0x7F;
-    uint32_t code = size > 0 ? text[0] & (0xFFu >> (size + 1)) : 0;
-    for (int i = 1; i < size; i++) {
-        if (text[i] >> 6 != 2) return 0;
-        code = code << 6 | (text[i] & 0x3F);
-    }
-    bool control = code < 0xA0, surrogate = code >= 0xD800 && code < 0xE000;
-    return size > 0 && code >= least[size] && !control && !surrogate && code < 0x110000 ? size : 0;
-}
-
 bool name_is_text(const char *name) {
-    for (int size; *name != '\0'; name += size)
-        if ((size = character((const unsigned char *)name)) == 0) return false;
+    size_t length, left = strlen(name);
+    for (; left > 0; name += length, left -= length) {
+        uint32_t character;
+        length = utf8_decode(name, left, &character);
+        if (length == 0 || character < 0x20 || (character >= 0x7F && character < 0xA0)) return false;
+    }
     return true;
 }
 

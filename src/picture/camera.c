@@ -1,68 +1,39 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture/camera.h"
 
-#include <math.h>
-#include <stdbool.h>
+#include "picture/extent.h"
 
-/* Metres; a body that reaches farther off is not followed, or nothing else could be made out. */
-static const double FARTHEST = 1e5;
+#include <math.h>
+
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
-static const double LEAST_SIDE = 2.0;    /* m */
-static const double LEAST_ASKED = 1e-3;  /* m; what a scene may ask to see */
+static const double MIN_SIDE = 2.0;    /* m */
+static const double MIN_VIEW = 1e-3;    /* m; the smallest view that a scene may set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 
-typedef struct Bounds {
-    double left, right, bottom, top;
-} Bounds;
-
-static const Bounds NOTHING = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-
-static bool is_empty(const Bounds *b) { return !(b->left <= b->right && b->bottom <= b->top); }
-
-static void include(Bounds *all, const Bounds *b) {
-    all->left = fmin(all->left, b->left), all->right = fmax(all->right, b->right);
-    all->bottom = fmin(all->bottom, b->bottom), all->top = fmax(all->top, b->top);
-}
-
-static Bounds body_bounds(const Trajectory *trajectory, int frame, int body) {
-    size_t i = (size_t)frame * (size_t)trajectory->bodies + (size_t)body;
-    double x = trajectory->position[i].x, y = trajectory->position[i].y, angle = trajectory->angle[i];
-    double c = fabs(cos(angle)), s = fabs(sin(angle));
-    double half_x = trajectory->size[body].x / 2.0, half_y = trajectory->size[body].y / 2.0;
-    double reach_x = c * half_x + s * half_y, reach_y = s * half_x + c * half_y;
-    if (!(fabs(x) + reach_x < FARTHEST && fabs(y) + reach_y < FARTHEST)) return NOTHING; /* nor for NaN */
-    return (Bounds){x - reach_x, x + reach_x, y - reach_y, y + reach_y};
-}
-
-/* What the dynamic bodies pass over the run. */
-static Bounds dynamic_bounds(const Trajectory *trajectory) {
-    Bounds all = NOTHING;
+/* The dynamic bodies in all frames. */
+static Extent dynamic_extent(const Trajectory *trajectory) {
+    Extent all = extent_empty;
     for (int frame = 0; frame < trajectory->frames; frame++)
-        for (int body = 0; body < trajectory->bodies; body++) {
-            if (trajectory->fixed[body]) continue;
-            Bounds b = body_bounds(trajectory, frame, body);
-            if (!is_empty(&b)) include(&all, &b);
-        }
+        for (int body = 0; body < trajectory->bodies; body++)
+            if (!trajectory->fixed[body]) extent_include(&all, trajectory, frame, body);
     return all;
 }
 
-static Bounds fixed_bounds(const Trajectory *trajectory) {
-    Bounds all = NOTHING;
-    for (int body = 0; body < trajectory->bodies; body++) {
-        Bounds b = body_bounds(trajectory, 0, body);
-        if (trajectory->fixed[body] && !is_empty(&b)) include(&all, &b);
-    }
+static Extent fixed_extent(const Trajectory *trajectory) {
+    Extent all = extent_empty;
+    for (int body = 0; body < trajectory->bodies; body++)
+        if (trajectory->fixed[body]) extent_include(&all, trajectory, 0, body);
     return all;
 }
 
 /* The dynamic bodies and a margin; a narrow one below, where a strip of their ground is enough. */
-static Bounds fitted_bounds(const Trajectory *trajectory) {
-    Bounds all = dynamic_bounds(trajectory);
-    if (is_empty(&all)) all = fixed_bounds(trajectory);
-    if (is_empty(&all)) all = (Bounds){0, 0, 0, 0};
-    double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), LEAST_SIDE);
-    return (Bounds){all.left - margin, all.right + margin, all.bottom - margin / 3, all.top + margin};
+static Extent fitted_extent(const Trajectory *trajectory) {
+    Extent all = dynamic_extent(trajectory);
+    if (extent_is_empty(&all)) all = fixed_extent(trajectory);
+    if (extent_is_empty(&all)) all = (Extent){0, 0, 0, 0};
+    double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), MIN_SIDE);
+    return (Extent){all.left - margin, all.right + margin, all.bottom - margin / 3, all.top + margin};
 }
 
 static double nice_scale(double scale) {
@@ -74,21 +45,21 @@ static Camera look_at(double x, double y, double scale, int width, int height) {
     return (Camera){scale, rint(width / 2.0 - scale * x), rint(height / 2.0 + scale * y)};
 }
 
-static bool asks_to_see(const Trajectory *trajectory) {
+bool camera_is_set(const Trajectory *trajectory) {
     Vec2 size = trajectory->camera_size, center = trajectory->camera_center;
-    return size.x >= LEAST_ASKED && size.y >= LEAST_ASKED && size.x < FARTHEST && size.y < FARTHEST &&
-           fabs(center.x) < FARTHEST && fabs(center.y) < FARTHEST;
+    return size.x >= MIN_VIEW && size.y >= MIN_VIEW && size.x < EXTENT_FARTHEST && size.y < EXTENT_FARTHEST &&
+           fabs(center.x) < EXTENT_FARTHEST && fabs(center.y) < EXTENT_FARTHEST;
 }
 
 Camera camera_fit(const Trajectory *trajectory, int width, int height) {
-    if (asks_to_see(trajectory)) {
-        Vec2 asked = trajectory->camera_size;
-        double scale = nice_scale(fmin(width / (double)asked.x, height / (double)asked.y));
+    if (camera_is_set(trajectory)) {
+        Vec2 set = trajectory->camera_size;
+        double scale = nice_scale(fmin(width / (double)set.x, height / (double)set.y));
         return look_at(trajectory->camera_center.x, trajectory->camera_center.y, scale, width, height);
     }
-    Bounds b = fitted_bounds(trajectory);
+    Extent b = fitted_extent(trajectory);
     double scale = nice_scale(fmin(width / (b.right - b.left), height / (b.top - b.bottom)));
-    /* Spare height goes above: sky is calmer than a slab of ground. */
+    /* Spare height goes above: sky distracts less than ground. */
     double spare = height / scale - (b.top - b.bottom);
     double below = fmin(spare / 2, GROUND_SHARE * height / scale);
     return look_at((b.left + b.right) / 2, b.bottom - below + height / scale / 2, scale, width, height);

@@ -18,11 +18,6 @@ static const size_t MAX_FILE_SIZE = (size_t)2 << 30;
 
 typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE } Action;
 
-static bool join(char path[PATH_MAX], const char *folder, const char *name, Error *error) {
-    return snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX ||
-           error_input(error, folder, "the name is too long");
-}
-
 /* A regular file of this hash, or, with an empty name, none. */
 typedef struct Found {
     bool there, link, other; /* other: neither a file nor a link */
@@ -58,7 +53,9 @@ static const char *target_name(const ApprovalItem *item) {
 static bool decide(const ApprovalList *list, const ApprovalItem *item, Action *action, Error *error) {
     char target[PATH_MAX], source[PATH_MAX];
     Found expected, actual = {.there = false};
-    if (!join(target, list->expected, target_name(item), error) || !look(target, &expected, error)) return false;
+    if (!file_path(target, sizeof target, error, "%s/%s", list->expected, target_name(item)) ||
+        !look(target, &expected, error))
+        return false;
     if (expected.link || expected.other)
         return error_input(error, target, "is %s, and no file", expected.link ? "a link" : "something else");
     *action = ACTION_NONE;
@@ -68,7 +65,8 @@ static bool decide(const ApprovalList *list, const ApprovalItem *item, Action *a
         return error_input(error, target, "is no longer what the report has shown; compare again");
     *action = stays_away ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
     const char *name = stays_away ? item->expected.name : item->actual.name;
-    if (!join(source, list->actual, name, error) || !look(source, &actual, error)) return false;
+    if (!file_path(source, sizeof source, error, "%s/%s", list->actual, name) || !look(source, &actual, error))
+        return false;
     if (actual.link) return error_input(error, source, "is a link, and no file");
     return as_reported(&actual, &item->actual) ||
            error_input(error, source, "is no longer what the report has shown; compare again");
@@ -90,8 +88,8 @@ static bool carry_out(const ApprovalList *list, const ApprovalItem *item, Action
     static const char *const words[] = {"", "replaced", "added", "removed"};
     int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
     char target[PATH_MAX], source[PATH_MAX];
-    if (!join(target, list->expected, target_name(item), error) ||
-        !join(source, list->actual, item->actual.name, error))
+    if (!file_path(target, sizeof target, error, "%s/%s", list->expected, target_name(item)) ||
+        !file_path(source, sizeof source, error, "%s/%s", list->actual, item->actual.name))
         return false;
     if (action == ACTION_REMOVE && unlink(target) != 0)
         return error_system(error, target, "cannot be removed: %s", strerror(errno));
@@ -131,7 +129,8 @@ bool approve(const char *report, const char *only, void (*told)(const char *what
     char path[PATH_MAX];
     ApprovalList list;
     *approval = (Approval){0};
-    if (!join(path, report, "results.json", error) || !approval_read(&list, path, error)) return false;
+    if (!file_path(path, sizeof path, error, "%s/results.json", report) || !approval_read(&list, path, error))
+        return false;
     bool ok = approve_list(&list, only, told, approval, error);
     approval_free(&list);
     return ok;

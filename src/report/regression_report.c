@@ -22,8 +22,8 @@ bool regression_report_write(Regression *regression, const char *folder, size_t 
     const Report report = {regression, &pictures, folder};
     bool ok = true;
     for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, parts[i].name);
-        ok = file_write_text(path, parts[i].put, &report, error);
+        ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
+             file_write_text(path, parts[i].put, &report, error);
     }
     report_pictures_free(&pictures);
     return ok;

@@ -15,8 +15,9 @@
 /* As large as a trajectory's file may be. */
 static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
-static void run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX]) {
-    snprintf(path, PATH_MAX, "%s/%s", regression->sequences[side]->folder, name);
+static bool run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX],
+                     Error *error) {
+    return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
 }
 
 static bool is_file(const char *path) {
@@ -25,11 +26,13 @@ static bool is_file(const char *path) {
 }
 
 static bool is_run(const Regression *regression, const char *name) {
-    char path[SIDES][PATH_MAX];
     size_t length = strlen(name);
     if (name[0] == '.' || length < 5 || strcmp(name + length - 4, ".npz") != 0 || !name_is_text(name)) return false;
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) run_path(regression, side, name, path[side]);
-    return is_file(path[EXPECTED]) && is_file(path[ACTUAL]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        char path[PATH_MAX];
+        if (!run_path(regression, side, name, path, &(Error){0}) || !is_file(path)) return false;
+    }
+    return true;
 }
 
 static int by_name(const void *a, const void *b) {
@@ -92,7 +95,7 @@ static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *f
 static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
     char paths[SIDES][PATH_MAX];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        run_path(regression, side, run->name, paths[side]);
+        if (!run_path(regression, side, run->name, paths[side], error)) return false;
         RegressionFile *file = &run->files[side];
         char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
         if (data == NULL) return false;

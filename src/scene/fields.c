@@ -2,6 +2,7 @@
 /* Tables of keys, and the values that are alike in all of them. */
 #include "scene/fields.h"
 
+#include "common/names.h"
 #include "scene/scene.h"
 
 #include "common/parse.h"
@@ -37,13 +38,10 @@ static bool unknown_key(const YamlTree *tree, int node, const char *what, const 
     YamlShown shown = yaml_show(tree, node);
     const char *nearest = nearest_key(fields, yaml_text(tree, node));
     if (nearest != NULL)
-        return yaml_error(tree, node, error, "unknown key '%s'; did you mean '%s'?", shown.text, nearest);
-    char known[256] = "";
-    for (const Field *field = fields; field->key != NULL; field++) {
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "", field->key);
-    }
-    return yaml_error(tree, node, error, "unknown key '%s'; %s has: %s", shown.text, what, known);
+        return yaml_error(tree, node, error, "'%s' is not a key of %s; did you mean '%s'?", shown.text, what, nearest);
+    NameList known = {0};
+    for (const Field *field = fields; field->key != NULL; field++) name_list_add(&known, field->key);
+    return yaml_error(tree, node, error, "'%s' is not a key of %s; known: %s", shown.text, what, known.text);
 }
 
 static const Field *find_field(const Field *fields, const char *key) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/parameters.h"
 
+#include "common/names.h"
 #include "scene/chain.h"
 #include "scene/fields.h"
 #include "scene/nearest.h"
@@ -110,7 +111,7 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
 static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
     SceneParameter *parameter = find(parameters, setting->name);
     if (parameter == NULL)
-        return error_input(error, path, "there is no parameter '%s' to set; %s", setting->name,
+        return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
                            parameters_hint(parameters, setting->name).text);
     if (!(setting->value >= parameter->from && setting->value <= parameter->to))
         return error_input(error, path, "%s must be from %.9g to %.9g%s%s (set to %.9g)", parameter->name,
@@ -141,7 +142,8 @@ bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Err
 }
 
 ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
-    ParametersHint hint = {"there are none"};
+    ParametersHint hint;
+    NameList known = {0};
     const char *names[SCENE_MAX_PARAMETERS];
     for (int i = 0; i < parameters->count; i++) names[i] = parameters->items[i].name;
     const char *nearest = nearest_word(name, names, parameters->count);
@@ -149,9 +151,8 @@ ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
         snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
         return hint;
     }
-    for (int i = 0; i < parameters->count; i++) {
-        size_t used = i == 0 ? 0 : strlen(hint.text);
-        snprintf(hint.text + used, sizeof hint.text - used, "%s%s", i == 0 ? "there are: " : ", ", names[i]);
-    }
+    for (int i = 0; i < parameters->count; i++) name_list_add(&known, names[i]);
+    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
+             known.used > 0 ? known.text : "none");
     return hint;
 }

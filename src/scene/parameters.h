@@ -23,7 +23,7 @@ bool parameters_set(Parameters *parameters, const char *path, const SceneSetting
 /* Refuses one that no number is made of: it would promise what it does not do. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);
 
-/* What there is instead of an unknown name: "did you mean 'height'?", "there are: height, rate" or "there are none". */
+/* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */
 typedef struct ParametersHint {
     char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 16];
 } ParametersHint;

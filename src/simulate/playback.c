@@ -159,4 +159,13 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 }
 
 const SteppingKind stepping_playback = {
-    "playback", "no physics: the velocities of the nearest launch recorded", settings, create, step, destroy};
+    .description = {.name = "playback",
+                    .summary = "no physics: the velocities of the nearest launch recorded",
+                    .settings = settings,
+                    .role = METHOD_BASELINE,
+                    .chart = METHOD_RUNS("launches=25", "launches=100"),
+                    .chart_quick = METHOD_RUNS("launches=25"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Ways of stepping other than a contact solver in the standard step. */
 #pragma once
-#include "dynamics/contact_solver.h"
 #include "scene/scene.h"
+#include "solvers/solvers.h"
 
 #include <stdint.h>
 
@@ -28,8 +28,7 @@ static inline void step_solving_ends(const Step *step) {
 }
 
 typedef struct SteppingKind {
-    const char *name, *summary;
-    const SettingSpec *settings; /* the keys that create() reads, ended by a NULL key */
+    MethodDescription description;
     /* Returns the state for a scene (its launch does not matter), NULL with error set where it is refused. */
     void *(*create)(const Settings *settings, const Scene *scene, Error *error);
     /* Advances the world by one step of the scene: begins, solves, ends it (dynamics/world.h). Allocates nothing once
@@ -38,5 +37,7 @@ typedef struct SteppingKind {
     void (*destroy)(void *state);
 } SteppingKind;
 
-extern const SteppingKind stepping_substepping;
-extern const SteppingKind stepping_playback;
+/* Listed in solvers/solvers.h. */
+#define STEPPING_DECLARED(name) extern const SteppingKind stepping_##name;
+METHODS(METHOD_OMITTED, STEPPING_DECLARED)
+#undef STEPPING_DECLARED

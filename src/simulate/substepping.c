@@ -172,4 +172,12 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 }
 
 const SteppingKind stepping_substepping = {
-    "substepping", "one collision pass, then small steps of sequential impulses", settings, create, step, destroy};
+    .description = {.name = "substepping",
+                    .summary = "one collision pass, then small steps of sequential impulses",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=10", "substeps=20", "substeps=50"),
+                    .chart_quick = METHOD_RUNS("substeps=10"),
+                    .stability_place = 4},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The objects that a PDF file consists of, and those of its font. */
+/* The objects that a PDF file consists of, and those of its font. Why our own: sketch_formats.h. */
 #pragma once
 #include "sketch/sketch.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Areas as pixels: which share of each pixel lies inside, by whole scan lines. Pixels, y down. */
+/* Areas as pixels: which share of each pixel lies inside, by whole scan lines. Pixels, y down.
+   Why our own: sketch_formats.h. */
 #pragma once
 #include "image/image.h"
 

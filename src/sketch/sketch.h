@@ -5,6 +5,7 @@
 #pragma once
 #include "collision/manifold.h"
 #include "common/error.h"
+#include "common/point.h"
 #include "image/image.h"
 
 #include <stdbool.h>
@@ -22,10 +23,6 @@
 #define NO_COLOUR UINT32_MAX
 
 #define LINE_UNIT 0.17 /* mm */
-
-typedef struct Point {
-    double x, y;
-} Point;
 
 /* How a shape is drawn. */
 typedef struct Pen {

@@ -46,8 +46,7 @@ bool sketch_draw(const Sketch *sketch, const char *stem, Error *error) {
     const SketchOutput output = {SKETCH_DPI, false};
     for (int i = SKETCH_PNG; i <= SKETCH_SVG; i++) {
         char path[PATH_MAX];
-        if (snprintf(path, sizeof path, "%s%s", stem, formats[i].ending) >= (int)sizeof path)
-            return error_input(error, stem, "this path is too long");
+        if (!file_path(path, sizeof path, error, "%s%s", stem, formats[i].ending)) return false;
         if (!sketch_write(sketch, path, &output, error)) return false;
     }
     return true;

@@ -2,7 +2,7 @@
 /* A sketch as SVG 1.1, in mm. Words are the font's outlines, so that they look alike where the font is missing; what they
    say stands in aria-label. */
 #include "common/base64.h"
-#include "gl/font.h"
+#include "common/utf8.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
 
@@ -43,13 +43,13 @@ static bool put_outlines(FILE *file, const Sketch *sketch) {
 static void put_escaped(FILE *file, const char *text) {
     while (*text != '\0') {
         const char *from = text;
-        unsigned code = font_next_character(&text);
+        unsigned code = utf8_next(&text);
         switch (code) {
         case '&': fputs("&amp;", file); break;
         case '<': fputs("&lt;", file); break;
         case '"': fputs("&quot;", file); break;
         default:
-            if (code < ' ' || (code >= 0xD800 && code < 0xE000) || code == 0xFFFD || code >= 0xFFFE)
+            if (code < ' ' || code == 0xFFFD || code >= 0xFFFE)
                 fputc('?', file);
             else
                 fwrite(from, 1, (size_t)(text - from), file);

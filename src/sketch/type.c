@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sketch/type.h"
 
-#include "gl/font.h"
+#include "common/utf8.h"
 
 static const Glyph *find(unsigned code) {
     int low = 0, high = type_glyph_count;
@@ -15,7 +15,7 @@ static const Glyph *find(unsigned code) {
     return low < type_glyph_count && type_glyphs[low].code == code ? &type_glyphs[low] : find('?');
 }
 
-const Glyph *type_next(const char **text) { return find(font_next_character(text)); }
+const Glyph *type_next(const char **text) { return find(utf8_next(text)); }
 
 int type_advance(const char *text) {
     int advance = 0;

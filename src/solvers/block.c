@@ -44,4 +44,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_block = {
-    "block", "sequential impulses that solve two points of a pair at once", settings, create, solve, destroy};
+    .description = {.name = "block",
+                    .summary = "sequential impulses that solve two points of a pair at once",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -18,6 +18,12 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 const ContactSolverKind solver_constant = {
-    "constant",        "what pair-net or contact-net was trained on, on average: the same for every pair",
-    settings,          create,
-    pair_solver_solve, pair_solver_destroy};
+    .description = {.name = "constant",
+                    .summary = "what pair-net or contact-net was trained on, on average: the same for every pair",
+                    .settings = settings,
+                    .role = METHOD_BASELINE,
+                    .needs_network = true,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

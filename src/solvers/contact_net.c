@@ -27,6 +27,10 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 const ContactSolverKind solver_contact_net = {
-    "contact-net",     "beyond the paper: a network's impulses at the contact points, inside the friction cone",
-    settings,          create,
-    pair_solver_solve, pair_solver_destroy};
+    .description = {.name = "contact-net",
+                    .summary = "beyond the paper: a network's impulses at the contact points, inside the friction cone",
+                    .settings = settings,
+                    .needs_network = true},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

@@ -55,4 +55,17 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_engine = {
-    "engine", "sequential impulses with warm starting: the physics engine", settings, create, solve, destroy};
+    .description = {.name = "engine",
+                    .summary = "sequential impulses with warm starting: the physics engine",
+                    .settings = settings,
+                    .title = "Physics engine",
+                    .caption = "sequential impulses",
+                    .shipped = "k=10",
+                    .chart = METHOD_RUNS("k=1", "k=2", "k=4", "k=7", "k=10", "k=20", "k=50", "k=100", "k=10,warm=off",
+                                         "k=20,warm=off", "k=50,warm=off", "k=100,warm=off"),
+                    .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50", "k=10,warm=off"),
+                    .stability = METHOD_RUNS("k=4", "", "k=50"),
+                    .stability_place = 1},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -68,4 +68,13 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_learned_momentum = {
-    "learned-momentum", "momentum with learned factors, one a sweep", settings, create, solve, destroy};
+    .description = {.name = "learned-momentum",
+                    .summary = "momentum with learned factors, one a sweep",
+                    .settings = settings,
+                    .needs_network = true,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50"),
+                    .chart_quick = METHOD_RUNS("k=10", "k=20"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

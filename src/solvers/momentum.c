@@ -128,4 +128,13 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_momentum = {
-    "momentum", "sequential impulses that go on between sweeps as they went", settings, create, solve, destroy};
+    .description = {.name = "momentum",
+                    .summary = "sequential impulses that go on between sweeps as they went",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10", "k=20"),
+                    .stability = METHOD_RUNS("", "k=20"),
+                    .stability_place = 3},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -158,4 +158,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_nncg = {
-    "nncg", "sweeps made conjugate: nonsmooth nonlinear conjugate gradients", settings, create, solve, destroy};
+    .description = {.name = "nncg",
+                    .summary = "sweeps made conjugate: nonsmooth nonlinear conjugate gradients",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=20"),
+                    .stability_place = 5},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

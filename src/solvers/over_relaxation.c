@@ -54,4 +54,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_over_relaxation = {
-    "over-relaxation", "sequential impulses with every step lengthened", settings, create, solve, destroy};
+    .description = {.name = "over-relaxation",
+                    .summary = "sequential impulses with every step lengthened",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

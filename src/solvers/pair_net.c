@@ -48,6 +48,11 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 const ContactSolverKind solver_pair_net = {
-    "pair-net",        "the paper's network: the change of a pair's velocities, pair by pair",
-    settings,          create,
-    pair_solver_solve, pair_solver_destroy};
+    .description = {.name = "pair-net",
+                    .summary = "the paper's network: the change of a pair's velocities, pair by pair",
+                    .settings = settings,
+                    .title = "Neural network",
+                    .needs_network = true},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

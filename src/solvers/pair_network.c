@@ -2,6 +2,7 @@
 #include "solvers/pair_network.h"
 
 #include "common/array.h"
+#include "common/names.h"
 #include "sweeps/sequential_impulses.h"
 
 #include <stdio.h>
@@ -17,24 +18,20 @@ void pair_network_free(PairNetwork *pair) {
 }
 
 static bool refuse_inputs(const Network *network, const char *path, Error *error) {
-    char known[128] = "";
+    NameList known = {0};
     for (int v = 0; v < PAIR_VIEWS; v++) {
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s (%d)", v > 0 ? ", " : "", pair_views[v].name,
-                 pair_views[v].count);
+        char view[64];
+        snprintf(view, sizeof view, "%s (%d)", pair_views[v].name, pair_views[v].count);
+        name_list_add(&known, view);
     }
     return error_input(error, path, "a network with %d inputs (%.80s); a pair is seen by those of %s",
-                       network->widths[0], network->inputs, known);
+                       network->widths[0], network->inputs, known.text);
 }
 
 static bool refuse_target(const Network *network, const char *path, Error *error) {
-    char known[128] = "";
-    for (int t = 0; t < PAIR_TARGETS; t++) {
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", t > 0 ? ", " : "", pair_target_names[t]);
-    }
-    return error_input(error, path, "a network of the target '%.80s'; a pair is asked for one of %s", network->target,
-                       known);
+    NameList known = {0};
+    for (int t = 0; t < PAIR_TARGETS; t++) name_list_add(&known, pair_target_names[t]);
+    return error_unknown(error, path, network->target, "a target of pair networks", &known);
 }
 
 static bool find_target(const char *name, PairTarget *target) {

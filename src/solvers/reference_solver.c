@@ -6,8 +6,6 @@
 
 #include <stdlib.h>
 
-static const SettingSpec settings[] = {{NULL, NULL}};
-
 static void *create(const Settings *chosen, Error *error) {
     (void)chosen;
     Reference *reference = calloc(1, sizeof *reference);
@@ -36,4 +34,11 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_reference = {
-    "reference", "converged in double by NNCG: the measure of the others, slow", settings, create, solve, destroy};
+    .description = {.name = "reference",
+                    .summary = "converged in double by NNCG: the measure of the others, slow",
+                    .title = "Converged solution",
+                    .role = METHOD_REFERENCE,
+                    .stability_place = 6},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -68,6 +68,12 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_relu_net = {
-    "relu-net", "the engine written as a network of rectifiers, its weights read off the contacts",
-    settings,   create,
-    solve,      free};
+    .description = {.name = "relu-net",
+                    .summary = "the engine written as a network of rectifiers, its weights read off the contacts",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = free};

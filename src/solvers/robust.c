@@ -144,5 +144,12 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_robust = {
-    "robust", "stacks solved as a whole from the ground up and back, else the engine", settings, create, solve,
-    destroy};
+    .description = {.name = "robust",
+                    .summary = "stacks solved as a whole from the ground up and back, else the engine",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability_place = 2},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -231,7 +231,15 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_scene_net = {
-    "scene-net", "a network of the whole scene where the bomb strikes, then sweeps", settings, create, solve, destroy};
+    .description = {.name = "scene-net",
+                    .summary = "a network of the whole scene where the bomb strikes, then sweeps",
+                    .settings = settings,
+                    .title = "Network of the scene",
+                    .needs_network = true,
+                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1")},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;

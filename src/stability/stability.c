@@ -2,6 +2,7 @@
 #include "stability/stability.h"
 
 #include "common/file.h"
+#include "common/names.h"
 #include "stability/stability_grid.h"
 #include "stability/stability_scan.h"
 #include "stability/stability_table.h"
@@ -10,9 +11,6 @@
 
 #include <stdio.h>
 #include <string.h>
-
-static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
-                                      "reference,pair-net,contact-net,scene-net";
 
 /* The study in progress. */
 typedef struct Run {
@@ -42,14 +40,10 @@ static bool is_known(const char *name) {
 }
 
 static bool refuse_name(const char *name, Error *error) {
-    char names[2048] = "";
-    size_t used = 0;
-    for (int i = 0; i < stability_study_count + stability_map_count && used < sizeof names; i++) {
-        const char *known =
-            i < stability_study_count ? stability_studies[i].name : stability_maps[i - stability_study_count].name;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", known);
-    }
-    return error_input(error, name, "no such study or map; there are %s", names);
+    NameList known = {0};
+    for (int i = 0; i < stability_study_count; i++) name_list_add(&known, stability_studies[i].name);
+    for (int i = 0; i < stability_map_count; i++) name_list_add(&known, stability_maps[i].name);
+    return error_unknown(error, "stability", name, "a study or map", &known);
 }
 
 static bool know_names(const StabilityOptions *options, Error *error) {
@@ -114,8 +108,7 @@ static bool write_tables(const Run *run, Error *error) {
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {
     Run run = {.options = options, .parts = {.progress = progress}};
     uint64_t key;
-    if (!know_names(options, error) ||
-        !contenders_read(&run.methods, options->methods != NULL ? options->methods : default_methods, error))
+    if (!know_names(options, error) || !contenders_parse(&run.methods, options->methods, STUDY_STABILITY, error))
         return false;
     for (int i = 0; i < stability_study_count; i++)
         if (does_study(&run, i)) run.parts.total += stability_studies[i].weight;

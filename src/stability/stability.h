@@ -13,7 +13,7 @@ enum { STABILITY_MAX_NAMES = 64 };
 typedef struct StabilityOptions {
     const char *folder;  /* where the tables go; made where it is missing */
     const char *scenes;  /* the folder above stability/ */
-    const char *methods; /* contenders_read; NULL: those of the study */
+    const char *methods; /* contenders_parse; NULL: those of the study */
     bool quick;          /* few studies, small maps */
     int name_count;      /* of studies and maps to do; 0: all */
     const char *names[STABILITY_MAX_NAMES];

@@ -2,6 +2,7 @@
 #include "stability/stability_case.h"
 
 #include "common/array.h"
+#include "common/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +11,7 @@
 static const float shift = 1e-6f; /* m */
 
 bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error) {
-    return snprintf(path, STABILITY_PATH_SIZE, "%s/stability/%s.yaml", place->scenes, place->scene) <
-               STABILITY_PATH_SIZE ||
-           error_input(error, place->scenes, "the name is too long");
+    return file_path(path, STABILITY_PATH_SIZE, error, "%s/stability/%s.yaml", place->scenes, place->scene);
 }
 
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error) {
@@ -43,19 +42,9 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error) {
     return applies;
 }
 
-bool stability_has_setting(const Method *method, const char *key) {
-    if (method->solver == NULL) return false;
-    for (const SettingSpec *spec = method->solver->settings; spec->key != NULL; spec++)
-        if (strcmp(spec->key, key) == 0) return true;
-    return false;
-}
-
-bool stability_is_reference(const Method *method) {
-    return method->solver != NULL && strcmp(method->solver->name, "reference") == 0;
-}
-
 bool stability_takes_iterations(const Method *method) {
-    return stability_has_setting(method, "k") && settings_get(&method->settings, "k") == NULL;
+    return method->kind->solver != NULL && settings_known(method->kind->description->settings, "k") &&
+           settings_get(&method->settings, "k") == NULL;
 }
 
 bool run_counter_add(RunCounter *counter, const char *what, Error *error) {

@@ -30,13 +30,7 @@ void stability_shift(Scene *scene, int seed);
    step. */
 bool stability_applies(const Method *method, const Scene *scene, Error *error);
 
-/* True for a contact solver that has a setting of this name. */
-bool stability_has_setting(const Method *method, const char *key);
-
-/* True for the method by which the others are judged. */
-bool stability_is_reference(const Method *method);
-
-/* True for a method that makes as many iterations as the scene says. */
+/* True for a method that makes as many sweeps as the scene sets. */
 bool stability_takes_iterations(const Method *method);
 
 /* A converged run, by the value of the number that is scanned. */

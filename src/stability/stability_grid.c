@@ -83,7 +83,7 @@ static bool applies(const Run *run, const Method *method) {
 }
 
 static bool is_drawn(const Run *run, const Method *method) {
-    if (stability_is_reference(method)) return false;
+    if (method->kind->description->role == METHOD_REFERENCE) return false;
     return (!run->grid->map->iterations || stability_takes_iterations(method)) && applies(run, method);
 }
 

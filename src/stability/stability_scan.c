@@ -52,7 +52,7 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     Scene *scene = scene_at(scan, value, error);
     const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
     if (scene != NULL) stability_shift(scene, seed);
-    if (scene != NULL && stability_is_reference(method)) scene->warm_starting = true;
+    if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
     bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
     scene_destroy(scene);
     return ok;
@@ -150,7 +150,7 @@ static bool put_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines,
                         .not_finite = reading->fallbacks.not_finite,
                         .outside_cone = reading->fallbacks.outside_cone,
                         .beyond_training = reading->fallbacks.beyond_training};
-    if (stability_has_setting(&contender->method, "network") &&
+    if (contender->method.kind->description->needs_network &&
         !study_parts_print(lines, &fallback_layout, &row, error))
         return false;
     return !study->rests || study_parts_print(lines, &rest_layout, &row, error);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/part_file.h"
 
+#include "common/file.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,9 +11,7 @@
 
 bool part_file_open(PartFile *part, const char *folder, uint64_t key, Error *error) {
     *part = (PartFile){0};
-    if (snprintf(part->path, sizeof part->path, "%s/chart-%016" PRIx64 ".part.csv", folder, key) >=
-        (int)sizeof part->path)
-        return error_input(error, folder, "the name is too long");
+    if (!file_path(part->path, sizeof part->path, error, "%s/chart-%016" PRIx64 ".part.csv", folder, key)) return false;
     return access(part->path, F_OK) != 0 || chart_csv_read(&part->done, part->path, error);
 }
 

@@ -116,11 +116,13 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     if (!ok) error_memory(error, "study");
     ok = ok && measure_scene(run, error);
     if (ok) {
-        *summary = (SpeedAccuracyScene){.contenders = count,
-                                        .launches = run->study.launch_count,
-                                        .frozen_residual = run->study.frozen_residual,
-                                        .solves = run->study.solves,
-                                        .unconverged = run->study.unconverged};
+        *summary =
+            (SpeedAccuracyScene){.contenders = count,
+                                 .launches = run->study.launch_count,
+                                 .without_network = contenders_without_network(&run->contenders, run->study.scene),
+                                 .frozen_residual = run->study.frozen_residual,
+                                 .solves = run->study.solves,
+                                 .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
         run->row_count = (int)rows;
     }
@@ -152,8 +154,7 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
 
 static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
     char path[STUDY_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/chart.csv", run->options->folder) >= (int)sizeof path)
-        return error_input(error, run->options->folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/chart.csv", run->options->folder)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
     if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;
@@ -165,7 +166,8 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
                         Error *error) {
     Run run = {.options = options, .progress = progress};
     uint64_t key;
-    if (!contenders_parse(&run.contenders, options->methods, options->quick, error)) return false;
+    if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
     bool ok = study_key(options, &key, error) && file_make_directory(options->folder, error) &&
               part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
     part_file_close(&run.part);

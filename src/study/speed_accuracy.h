@@ -6,7 +6,7 @@
    the contact problem at its start. */
 #pragma once
 #include "common/progress.h"
-#include "study/chart_csv.h"
+#include "study/contenders.h"
 
 enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
 
@@ -28,7 +28,8 @@ typedef struct SpeedAccuracyOptions {
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    double frozen_residual;  /* m/s: the largest of the reference solves of frozen steps */
+    ContenderNames without_network; /* methods left out, since neither their settings nor the scene name a network */
+    double frozen_residual;         /* m/s: the largest of the reference solves of frozen steps */
     int solves, unconverged; /* in closed loop, by this run of the program: reference solves, those that left more than
                                 SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;

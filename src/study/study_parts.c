@@ -13,8 +13,7 @@
 enum { PART_MAX_SIZE = 1 << 24 };
 
 bool study_parts_open(StudyParts *parts, const char *folder, uint64_t key, Error *error) {
-    if (snprintf(parts->folder, sizeof parts->folder, "%s/parts-%016" PRIx64, folder, key) >= (int)sizeof parts->folder)
-        return error_input(error, folder, "the name is too long");
+    if (!file_path(parts->folder, sizeof parts->folder, error, "%s/parts-%016" PRIx64, folder, key)) return false;
     return file_make_directory(parts->folder, error);
 }
 
@@ -65,8 +64,7 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
 
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     char path[STUDY_PARTS_PATH_SIZE + 128];
-    if (snprintf(path, sizeof path, "%s/%s", parts->folder, part->name) >= (int)sizeof path)
-        return error_input(error, parts->folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/%s", parts->folder, part->name)) return false;
     bool ok;
     if (access(path, F_OK) == 0) {
         size_t size;

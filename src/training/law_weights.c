@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "training/law_weights.h"
 
+#include "common/names.h"
 #include "common/parse.h"
 #include "common/settings.h"
 
@@ -29,11 +30,14 @@ bool law_weights_parse(const char *text, LawNumbers *weights, Error *error) {
 bool law_weights_named(const char *laws, double weight, LawNumbers *weights, Error *error) {
     bool found = strcmp(laws, "none") == 0;
     *weights = (LawNumbers){{0}};
+    NameList known = {0};
+    name_list_add(&known, "none");
     for (int law = 0; law < LAWS; law++) {
+        name_list_add(&known, laws_known[law].name);
         if (strcmp(laws, "all") != 0 && strcmp(laws, laws_known[law].name) != 0) continue;
         weights->of[law] = weight;
         found = true;
     }
-    return found || error_input(error, "laws",
-                                "there is no '%.64s'; known are none, momentum, energy, approach, cone, all", laws);
+    name_list_add(&known, "all");
+    return found || error_unknown(error, "laws", laws, "a law", &known);
 }

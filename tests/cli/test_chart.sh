@@ -7,6 +7,9 @@ without_times() { "$sources/golden/without_times" "$1"; }
 
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o quick --quick
 says "stack: "
+equal "left out of single" "$(grep -A1 '^single: ' out | tail -n 1)" "    left out, as no network is named for them: scene-net"
+equal "left out of stack" "$(grep -A1 '^stack: ' out | grep -c 'left out')" 0
+equal "left out of both" "$(tail -n 1 out)" "left out unless named in --methods: relu-net"
 says "reference: residual at most"
 for file in chart-single.png chart-stack.png chart-stack.svg chart-stack.pdf; do
     [ -s "quick/$file" ] || fail "no $file"
@@ -59,6 +62,7 @@ equal "what was done is gone" "$(ls part | grep -c '\.part\.csv$')" 0
 printf 'x,spin\n1.02,5\n-2.02,-5\n0.3,0\n' >launches.csv
 run 0 chart "$scenes/single.yaml" -o own --quick --methods engine:k=10,reference --launches launches.csv
 says "single: 2 methods and settings, 3 launches -> own/chart-single.png"
+equal "left out of a list" "$(grep -c 'left out' out)" 0
 equal "rows" "$(wc -l <own/chart.csv)" 13
 
 # The worst launch is the one that is worst on its own; frozen steps are no launch's.
@@ -89,7 +93,7 @@ complains "bad.csv:1:3: error: "
 run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
 complains "single.yaml: error: there is a scene of that name already"
 run 2 chart "$scenes/single.yaml" -o none --methods magic
-complains "magic: error: no such method"
+complains "'magic' is not a method; known: "
 run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10
 complains "is given twice"
 run 2 chart nowhere.yaml -o none --quick

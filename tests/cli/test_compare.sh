@@ -127,9 +127,9 @@ complains "theirs/shot-2.png: error: the picture has 20 x 10 pixels; at most 199
 run 1 compare theirs ours --max-pixels 200
 
 run 2 compare a.npz one
-complains "is no trajectory"
+complains "is not a trajectory"
 run 2 compare a.npz b.npz --report r
-complains "are for pictures"
+complains "apply to pictures only"
 run 2 compare one nowhere
 complains "nowhere"
 run 2 compare one one/frame_000001.png

@@ -58,7 +58,7 @@ run 2 simulate stack.yaml --method scene-net:network=net.npz,near=-1
 complains "near"
 
 run 2 train --kind scene-net stack.yaml -o x.npz $small --width 20
-complains "--width: error: 20 is no multiple of 16"
+complains "--width: error: 20 is not a multiple of 16"
 run 2 train --kind scene-net stack.yaml -o x.npz $small --momentum maybe
 complains "--momentum: error: 'maybe' is neither on nor off"
 run 2 train --kind scene-net stack.yaml -o x.npz $small --launches 1

@@ -53,7 +53,7 @@ complains "--frame"
 run 2 problem "$scenes/stack.yaml" --frame 3 --bomb-x here -o none.npz
 complains "--bomb-x"
 run 2 problem "$scenes/stack.yaml" --frame 3 --method none -o none.npz
-complains "no such method"
+complains "is not a method; known: engine"
 run 2 problem nowhere.yaml --frame 3 -o none.npz
 complains "nowhere.yaml"
 run 3 problem "$scenes/stack.yaml" --frame 3 -o no/where.npz
@@ -63,7 +63,7 @@ complains "no/where.npz"
 run 2 solve impact.npz
 complains "--method NAME is needed"
 run 2 solve impact.npz -m none
-complains "no such method"
+complains "is not a method; known: engine"
 run 2 solve impact.npz -m pair-net
 complains "network"
 run 2 solve run.npz -m engine

@@ -4,6 +4,7 @@
 
 #include "common/array.h"
 #include "common/hash.h"
+#include "common/names.h"
 
 /* The step of FNV-1a, written out; the start value is the one that the reference trajectories define. */
 static void fnv_is_xor_then_multiply(void **state) {
@@ -59,6 +60,25 @@ static void long_errors_are_cut(void **state) {
     assert_int_equal(strlen(other.message), sizeof other.message - 1);
 }
 
+static void known_names_are_listed_once_and_whole(void **state) {
+    (void)state;
+    NameList known = {0};
+    Error error = {0}, none = {0};
+    assert_false(error_unknown(&none, "--kind", "x", "a kind", &known));
+    assert_string_equal(none.message, "--kind: error: 'x' is not a kind; known: none");
+    static const char *const names[] = {"pair-net", "net", "pair-net", "scene", "net"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) name_list_add(&known, names[i]);
+    assert_false(error_unknown(&error, "--kind", "nett", "a kind", &known));
+    assert_string_equal(error.message, "--kind: error: 'nett' is not a kind; known: pair-net, net, scene");
+    for (int i = 0; i < 1000; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "number-%03d", i);
+        name_list_add(&known, name);
+    }
+    assert_true(known.used == strlen(known.text) && known.used < sizeof known.text);
+    assert_int_equal(strlen(strrchr(known.text, ' ') + 1), strlen("number-000"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fnv_is_xor_then_multiply),
@@ -66,6 +86,7 @@ int main(void) {
         cmocka_unit_test(arrays_grow_by_doubling_and_keep_their_items),
         cmocka_unit_test(the_first_error_stays),
         cmocka_unit_test(long_errors_are_cut),
+        cmocka_unit_test(known_names_are_listed_once_and_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

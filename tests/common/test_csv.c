@@ -5,12 +5,7 @@
 #include "common/file.h"
 
 static const char *write_table(const char *text, size_t size) {
-    const char *path = temporary_path("table.csv");
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return path;
+    return write_bytes(temporary_path("table.csv"), text, size);
 }
 
 static Csv read_good(const char *text) {

@@ -270,6 +270,16 @@ static void many_files_wait_for_the_disk_once(void **state) {
     assert_error(error, ERROR_SYSTEM, "no/such/folder");
 }
 
+static void paths_are_printed_whole_or_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    char path[8];
+    assert_ok(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cd"), error);
+    assert_string_equal(path, "ab/cd.x");
+    assert_false(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cde"));
+    assert_error(error, ERROR_INPUT, "path: error: ab/cde.... is longer than 7 bytes");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(written_is_read),
@@ -285,6 +295,7 @@ int main(void) {
         cmocka_unit_test(directories_are_made_with_those_above),
         cmocka_unit_test(folders_end_with_their_slash),
         cmocka_unit_test(many_files_wait_for_the_disk_once),
+        cmocka_unit_test(paths_are_printed_whole_or_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

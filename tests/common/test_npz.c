@@ -135,15 +135,6 @@ static void bad_texts_are_not_written(void **state) {
     }
 }
 
-/* A new file each time: some file systems write an overwritten one to disk at once, for safety. */
-static void put(const char *path, const char *data, size_t size) {
-    remove(path);
-    FILE *out = fopen(path, "wb");
-    assert_non_null(out);
-    assert_int_equal(fwrite(data, 1, size, out), size);
-    assert_int_equal(fclose(out), 0);
-}
-
 static void truncated_files_are_refused(void **state) {
     (void)state;
     const char *path = temporary_path("truncated.npz");
@@ -151,7 +142,7 @@ static void truncated_files_are_refused(void **state) {
     size_t size;
     char *data = file_bytes(path, &size);
     for (size_t length = 0; length < size; length++) {
-        put(path, data, length);
+        write_bytes(path, data, length);
         if (read_and_compare(path) != 0) fail_msg("cut off at %zu, and read", length);
     }
     free(data);
@@ -172,7 +163,7 @@ static void flipped_bytes_are_refused_or_harmless(void **state) {
         memcpy(damaged, data, size);
         for (int flips = 1 + round % 3; flips > 0; flips--)
             damaged[(random_next(&seed) >> 4) % size] ^= (char)(1 + (random_next(&seed) >> 8) % 255);
-        put(path, damaged, size);
+        write_bytes(path, damaged, size);
         refused += read_and_compare(path) == 0;
     }
     assert_true(refused > 1000);

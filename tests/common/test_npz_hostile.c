@@ -21,15 +21,6 @@ static char *file_bytes(const char *path, size_t *size) {
     return data;
 }
 
-/* A new file each time: some file systems write an overwritten one to disk at once, for safety. */
-static void put(const char *path, const char *data, size_t size) {
-    remove(path);
-    FILE *out = fopen(path, "wb");
-    assert_non_null(out);
-    assert_int_equal(fwrite(data, 1, size, out), size);
-    assert_int_equal(fclose(out), 0);
-}
-
 /* A zip of one member with these bytes. */
 static void write_member(const char *path, const char *name, const char *data, size_t size, zip_int32_t method) {
     remove(path);
@@ -105,9 +96,9 @@ static void other_files_are_refused(void **state) {
     const char *path = temporary_path("other.npz");
     expect_refused(temporary_path("missing.npz"), "cannot open: ");
     expect_refused("/dev/zero", "not a regular file");
-    put(path, "no zip at all", 13);
+    write_bytes(path, "no zip at all", 13);
     expect_refused(path, "no .npz");
-    put(path, "PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 22);
+    write_bytes(path, "PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 22);
     expect_refused(path, "");
     write_member(path, "a.txt", "text", 4, ZIP_CM_STORE);
     expect_refused(path, "something else than named .npy arrays");
@@ -161,7 +152,7 @@ static void a_name_twice_is_refused(void **state) {
     char *data = file_bytes(path, &size);
     find_header(data, size, "PK\1\2")[46 + 4] = '1';
     find_header(data, size, "PK\3\4")[30 + 4] = '1';
-    put(path, data, size);
+    write_bytes(path, data, size);
     free(data);
     expect_refused(path, "holds array 'twin1' twice");
 }
@@ -197,7 +188,7 @@ static void small_files_cannot_hold_much(void **state) {
     size_t size;
     char *data = file_bytes(path, &size);
     set_little_endian(find_header(data, size, "PK\1\2") + 24, 1U << 30);
-    put(path, data, size);
+    write_bytes(path, data, size);
     free(data);
     expect_refused(path, "it cannot hold 1073741824 bytes");
 }
@@ -230,15 +221,15 @@ static void large_directories_are_refused(void **state) {
     memset(end, 0, 22);
     memcpy(end, "PK\5\6", 4);
     set_little_endian(end + 12, SIZE - 100);
-    put(path, data, SIZE);
+    write_bytes(path, data, SIZE);
     expect_refused(path, "its directory is too large");
     set_little_endian(end + 12, 46);
     for (char *other = end - 22; other > end - 2200; other -= 22) memcpy(other, end, 22);
-    put(path, data, SIZE);
+    write_bytes(path, data, SIZE);
     expect_refused(path, "its directory is too large");
     memset(end - 2200, 0, 2200);
     memcpy(end - 20, "PK\6\7", 4);
-    put(path, data, SIZE);
+    write_bytes(path, data, SIZE);
     expect_refused(path, "its directory is too large");
     free(data);
 }
@@ -247,7 +238,7 @@ static void large_directories_are_refused(void **state) {
 static void large_files_are_refused(void **state) {
     (void)state;
     const char *path = temporary_path("large.npz");
-    put(path, "", 0);
+    write_bytes(path, "", 0);
     assert_int_equal(truncate(path, ((off_t)1 << 31) + 1), 0);
     expect_refused(path, "larger than 2 GiB");
     remove(path);

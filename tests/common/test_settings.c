@@ -82,8 +82,8 @@ static void bad_settings_are_refused(void **state) {
     refuse("warm=on,", known, "no key=value");
     refuse(",warm=on", known, "no key=value");
     refuse("warm=on,warm=off", known, "'warm' is given twice");
-    refuse("colour=red", known, "unknown setting 'colour'; known are: iterations network warm");
-    refuse("colour=red", none, "unknown setting 'colour'; it takes none");
+    refuse("colour=red", known, "'colour' is not a setting; known: iterations, network, warm");
+    refuse("colour=red", none, "'colour' is not a setting; known: none");
     char text[SETTING_VALUE_SIZE + 16];
     memset(text, 'x', sizeof text);
     text[sizeof text - 1] = '\0';

@@ -6,7 +6,7 @@
 
 static inline FigureSpec spec_of(Trajectory *const *runs, int count) {
     static const char *const paths[] = {"a.npz", "b.npz", "c.npz"};
-    FigureSpec spec = {.width = FIGURE_PAGE, .points = FIGURE_POINTS, .dpi = 100, .run_count = count};
+    FigureSpec spec = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = 100, .run_count = count};
     for (int i = 0; i < count; i++) spec.runs[i] = runs[i], spec.paths[i] = paths[i];
     return spec;
 }

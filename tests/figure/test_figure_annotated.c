@@ -95,7 +95,7 @@ static void numbers_without_room_are_left_out(void **state) {
     add(run, 1, GROUND_BODY, SECOND_BOX, vec2(2, 0), 3, 0);
     trajectory_end_contacts(run);
     FigureSpec spec = spec_of(&run, 1);
-    spec.width = FIGURE_COLUMN;
+    spec.width = FIGURE_COLUMN_WIDTH;
     Sketch sketch;
     draw_kind(&sketch, "annotated", &spec);
     int written = count_words(&sketch, "0.10") + count_words(&sketch, "3.00");

@@ -11,7 +11,7 @@
 #define NETWORKS SOURCE_DIR "/scenes/networks/"
 
 static FigureSpec spec_for(const char *path) {
-    return (FigureSpec){.width = FIGURE_PAGE, .points = FIGURE_POINTS, .dpi = 100, .network = path};
+    return (FigureSpec){.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = 100, .network = path};
 }
 
 /* 3-2-1: weights 1 to 6 of alternating signs, then 4 and -8. */
@@ -145,7 +145,7 @@ static void the_networks_that_ship_are_shown(void **state) {
         for (int column = 0; column < 2; column++) {
             FigureSpec spec = spec_for(networks[i].path);
             Sketch sketch;
-            if (column) spec.width = FIGURE_COLUMN;
+            if (column) spec.width = FIGURE_COLUMN_WIDTH;
             draw_kind(&sketch, "network", &spec);
             assert_int_equal(count_marks(&sketch, MARK_IMAGE), networks[i].pictures);
             if (!column) assert_int_equal(count_words(&sketch, networks[i].title), 1);

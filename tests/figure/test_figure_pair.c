@@ -34,7 +34,7 @@ static void the_pairs_own_numbers_are_written(void **state) {
     Trajectory *run = run_touching();
     FigureSpec spec = spec_of(&run, 1);
     for (int column = 0; column < 2; column++) {
-        if (column) spec.width = FIGURE_COLUMN;
+        if (column) spec.width = FIGURE_COLUMN_WIDTH;
         Sketch sketch;
         draw_kind(&sketch, "narrow-phase", &spec);
         assert_int_equal(count_words(&sketch, "engine, 0.050 s, bodies 1 and 2"), 1);

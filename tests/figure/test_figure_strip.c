@@ -29,7 +29,7 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
         assert_near(mark->at.y, first->at.y - i / 3 * (height + 1.2), 1e-9);
         assert_true(mark->at.x > 0 && mark->at.x + mark->width < sketch.width);
     }
-    assert_near(sketch.width, FIGURE_PAGE, 0);
+    assert_near(sketch.width, FIGURE_PAGE_WIDTH, 0);
     sketch_free(&sketch);
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
@@ -113,7 +113,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     runs[1]->size[2] = vec2(3, 3);
     expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
     assert_null(figure_kind("stripe", &error));
-    assert_error(error, ERROR_INPUT, "'stripe' is no kind of figure; there are strip");
+    assert_error(error, ERROR_INPUT, "'stripe' is not a kind of figure; known: strip");
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
 }

@@ -191,9 +191,9 @@ static void long_lines_are_drawn_whole(void **state) {
 static void dashes_go_on_from_piece_to_piece(void **state) {
     (void)state;
     for (int pieces = 1; pieces < 20; pieces += 3) {
-        Pen pen = {2, 0, WHITE, {4, 6, 0, 0}};
+        DashedLine line = {2, 0, WHITE, {4, 6, 0, 0}};
         for (int i = 0; i < pieces; i++)
-            stroke_dashed(&drawing, (Point){8 + 80.0 * i / pieces, 40}, (Point){8 + 80.0 * (i + 1) / pieces, 40}, &pen,
+            stroke_dashed(&drawing, (Point){8 + 80.0 * i / pieces, 40}, (Point){8 + 80.0 * (i + 1) / pieces, 40}, &line,
                           &everything);
         const Image *image = painted();
         for (int x = 8; x < 88; x++) {
@@ -219,7 +219,7 @@ static void arrows_point_where_they_end(void **state) {
     stroke_arrow(&drawing, (Point){48, 48}, (Point){48, 48}, false, &style, &everything);
     stroke_arrow(&drawing, (Point){48, 48}, (Point){NAN, 48}, true, &style, &everything);
     stroke_line(&drawing, (Point){INFINITY, 48}, (Point){0, 48}, 2, WHITE, &everything);
-    stroke_dashed(&drawing, (Point){0, 0}, (Point){INFINITY, 0}, &(Pen){2, 0, WHITE, {4, 6, 0, 0}}, &everything);
+    stroke_dashed(&drawing, (Point){0, 0}, (Point){INFINITY, 0}, &(DashedLine){2, 0, WHITE, {4, 6, 0, 0}}, &everything);
     assert_int_equal(drawing.shape_count, 0);
 }
 

@@ -129,15 +129,6 @@ static void every_kind_is_read(void **state) {
     }
 }
 
-/* A new file each time: some file systems flush one that is cut off and written again. */
-static void write_bytes(const char *path, const char *data, size_t size) {
-    remove(path);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    fwrite(data, 1, size, file);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* A small file with a text before the pixels. */
 static char *small_file(size_t *size) {
     Error error = {0};

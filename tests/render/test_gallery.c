@@ -6,6 +6,7 @@
 
 #include "image/png_encoder.h"
 #include "mesa.h"
+#include "simulate/method.h"
 #include "render/renderer.h"
 
 #include <limits.h>
@@ -83,7 +84,8 @@ static Runs read_runs(const char *const *names) {
 static Image *draw(int i, bool dark, ContextChoice context) {
     Error error = {0};
     Runs runs = read_runs(entries[i].runs);
-    RenderOptions options = {.width = WIDTH, .height = HEIGHT, .context = context, .look = entries[i].look};
+    RenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .context = context, .look = entries[i].look, .describe = method_describe};
     if (dark) options.look.theme = LOOK_DARK;
     Renderer *renderer = renderer_create(runs.panels, runs.count, &options, &error);
     assert_ok(renderer != NULL, error);

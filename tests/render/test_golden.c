@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "mesa.h"
+#include "simulate/method.h"
 #include "render/render.h"
 
 #include <dirent.h>
@@ -56,7 +57,10 @@ static void unload(Golden *golden) {
 
 static Image *draw(const Golden *golden, ContextChoice context) {
     Error error = {0};
-    RenderOptions options = {.width = golden->image->width, .height = golden->image->height, .context = context};
+    RenderOptions options = {.width = golden->image->width,
+                             .height = golden->image->height,
+                             .context = context,
+                             .describe = method_describe};
     const Trajectory *const panels[PANELS] = {golden->panels[0], golden->panels[1]};
     Renderer *renderer = renderer_create(panels, PANELS, &options, &error);
     assert_ok(renderer != NULL, error);

@@ -14,7 +14,7 @@ static Picture dressed(int count, const RenderLook *look) {
     Error error = {0};
     RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = *look};
     assert_ok(picture_plan(&picture, panels, count, WIDTH, HEIGHT, &error), error);
-    assert_ok(picture_dress(&picture, &options, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
     return picture;
 }
 
@@ -25,15 +25,13 @@ static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
         int count;
         const char *text;
     } wrong[] = {
-        {{.compare = LOOK_OVERLAY}, 1, "'overlay' compares runs, and there is but one"},
+        {{.compare = LOOK_OVERLAY}, 1, "'overlay' compares runs, but there is only one"},
         {{.compare = LOOK_DIFFERENCE}, 1, "'difference' compares runs"},
         {{.show = LOOK_GHOSTS}, 1, "'ghosts' compares"},
         {{.show = LOOK_DISTANCE}, 1, "'distance' compares"},
         {{.show = LOOK_TIMELINE | LOOK_TRAILS}, 1, "'timeline' compares"},
         {{.camera = LOOK_DIVERGENCE}, 1, "'divergence' compares"},
-        {{.compare = LOOK_OVERLAY},
-         3,
-         "'overlay' compares run 3 with the first, but they are of other worlds (size of"},
+        {{.compare = LOOK_OVERLAY}, 3, "'overlay' compares run 3 with the first, but their worlds differ (size of"},
     };
     runs[2]->size[FIRST_BOX].x = 2;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -45,7 +43,7 @@ static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
     Error error = {0};
     runs[0]->bomb = -1;
     assert_false(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error));
-    assert_error(error, ERROR_INPUT, "no bomb");
+    assert_error(error, ERROR_INPUT, "cannot follow the bomb");
     error = (Error){0};
     assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
 }
@@ -68,9 +66,9 @@ static void poses_between_frames_lie_between(void **state) {
 static void distances_between_frames_lie_between(void **state) {
     (void)state;
     Picture picture = dressed(2, &(RenderLook){0});
-    double before = picture_apart(&picture, moment_stored(9)), after = picture_apart(&picture, moment_stored(10));
-    assert_near(picture_apart(&picture, (Moment){MOMENT_BETWEEN, 9, 0.5, 2}), (before + after) / 2, 1e-6);
-    assert_true(isnan(picture_run_apart(&picture, 0, moment_stored(9))));
+    double before = picture_distance(&picture, moment_stored(9)), after = picture_distance(&picture, moment_stored(10));
+    assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 0.5, 2}), (before + after) / 2, 1e-6);
+    assert_true(isnan(picture_run_distance(&picture, 0, moment_stored(9))));
     picture_free(&picture);
 }
 
@@ -78,11 +76,11 @@ static void events_are_found_where_they_are(void **state) {
     (void)state;
     Events events = events_find(panels, 2);
     assert_int_equal(events.impact, 20);
-    assert_int_equal(events.apart, 5); /* 2 mm */
+    assert_int_equal(events.divergence, 5); /* 2 mm */
     assert_int_equal(events.run, 1);
     assert_int_equal(events.body, FIRST_BOX);
     events = events_find(panels, 3);
-    assert_int_equal(events.apart, 1);
+    assert_int_equal(events.divergence, 1);
     assert_int_equal(events.run, 2);
     runs[2]->size[FIRST_BOX].x = 2; /* another world */
     assert_int_equal(events_find(panels, 3).run, 1);
@@ -95,7 +93,7 @@ static void each_compare_has_its_panels(void **state) {
     static const int shown[] = {3, 1, 2}, first[] = {0, 0, 1};
     for (int compare = LOOK_SPLIT; compare <= LOOK_DIFFERENCE; compare++) {
         Picture picture = dressed(3, &(RenderLook){.compare = (LookCompare)compare});
-        assert_int_equal(picture.shown, shown[compare]);
+        assert_int_equal(picture.panel_count, shown[compare]);
         assert_int_equal(picture_run(&picture, 0), first[compare]);
         picture_free(&picture);
     }
@@ -178,14 +176,14 @@ static void distances_have_their_place_on_the_scale(void **state) {
     Picture picture = dressed(2, &(RenderLook){.show = LOOK_IMPULSES});
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
-    assert_false(scales.goes_beyond);
+    assert_false(scales.exceeded);
     assert_near(scales_share(&scales, 0), 0, 0);
     assert_near(scales_share(&scales, NAN), 0, 0);
     assert_near(scales_share(&scales, 0.001), 0, 1e-12);
     assert_near(scales_share(&scales, 0.1), 2.0 / 3, 1e-12);
     assert_near(scales_share(&scales, 5), 1, 0);
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, 5000, &error), error);
-    assert_true(scales.goes_beyond && scales.last_decade == 1);
+    assert_true(scales.exceeded && scales.last_decade == 1);
     picture_free(&picture);
 }
 

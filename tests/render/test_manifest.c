@@ -3,12 +3,12 @@
 #include "testing.h"
 
 #include "common/hash.h"
-#include "common/json.h"
 #include "folders.h"
 #include "mesa.h"
 #include "render/render.h"
 #include "runs.h"
 
+#include <jansson.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -83,54 +83,52 @@ static const char *copied(const char *name) {
     return directory;
 }
 
-static uint64_t hash_of(const Json *json, const JsonValue *object, const char *key) {
-    Error error = {0};
-    const JsonValue *text = json_need(json, object, key, JSON_STRING, &error);
-    assert_ok(text != NULL, error);
-    return strtoull(text->text, NULL, 16);
+static uint64_t hash_of(const json_t *value) {
+    assert_int_equal(json_string_length(value), 16);
+    return strtoull(json_string_value(value), NULL, 16);
 }
 
-static void check_states(const JsonValue *states, int frame) {
-    int panel = 0;
-    for (const JsonValue *state = json_first(states); state != NULL; state = json_next(states, state), panel++) {
+static void check_states(const json_t *states, int frame) {
+    assert_int_equal(json_array_size(states), 2);
+    for (size_t panel = 0; panel < 2; panel++) {
         int last = panels[panel]->frames - 1;
         uint64_t hash = trajectory_frame_hash(panels[panel], frame < last ? frame : last);
-        assert_true(strtoull(state->text, NULL, 16) == hash);
+        assert_true(hash_of(json_array_get(states, panel)) == hash);
     }
-    assert_int_equal(panel, 2);
+}
+
+static void check_picture(const json_t *item, int index) {
+    Error error = {0};
+    size_t size;
+    const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
+    int frame = (int)json_integer_value(json_object_get(item, "frame"));
+    char *data = read_whole(path, &size), text[64] = "";
+    Image *image = image_read_png(path, &error);
+    assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
+    assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
+    assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
+    assert_true(json_is_integer(json_object_get(item, "frame")));
+    assert_in_range(frame, 0, FRAMES - 1);
+    check_states(json_object_get(item, "states"), frame);
+    /* The picture's own texts state the same. */
+    assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
+    assert_int_equal(atoi(text), frame);
+    text[0] = '\0';
+    image_read_text(path, "Part", text, sizeof text, &(Error){0});
+    assert_string_equal(text, part != NULL ? part : "");
+    image_destroy(image);
+    free(data);
 }
 
 static void a_manifest_tells_of_every_picture(void **state) {
     (void)state;
-    Error error = {0};
-    Json json;
-    assert_ok(json_read(&json, manifest_of(whole), 1 << 20, &error), error);
-    const JsonValue *pictures = json_need(&json, json.values, "pictures", JSON_ARRAY, &error);
-    assert_int_equal(pictures->count, PICTURES);
-    int index = 0;
-    for (const JsonValue *it = json_first(pictures); it != NULL; it = json_next(pictures, it), index++) {
-        int64_t frame;
-        size_t size;
-        const char *path = frame_path(whole, index),
-                   *part = json_member(it, "part") ? json_member(it, "part")->text : "";
-        char *data = read_whole(path, &size), text[64] = "";
-        Image *image = image_read_png(path, &error);
-        assert_true(hash_of(&json, it, "pixels") == image_hash(image));
-        assert_true(hash_of(&json, it, "file_hash") == hash_xxh3(data, size));
-        assert_non_null(strstr(path, json_member(it, "file")->text));
-        assert_ok(json_need_int(&json, it, "frame", 0, FRAMES - 1, &frame, &error), error);
-        check_states(json_member(it, "states"), (int)frame);
-        /* The picture's own texts say the same. */
-        assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
-        assert_int_equal(atoi(text), frame);
-        text[0] = '\0';
-        image_read_text(path, "Part", text, sizeof text, &(Error){0});
-        assert_string_equal(text, part);
-        image_destroy(image);
-        free(data);
-    }
-    assert_int_equal(index, PICTURES);
-    json_free(&json);
+    json_error_t failure;
+    json_t *manifest = json_load_file(manifest_of(whole), JSON_REJECT_DUPLICATES, &failure);
+    if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
+    const json_t *pictures = json_object_get(manifest, "pictures");
+    assert_int_equal(json_array_size(pictures), PICTURES);
+    for (int i = 0; i < PICTURES; i++) check_picture(json_array_get(pictures, (size_t)i), i);
+    json_decref(manifest);
 }
 
 static void a_manifest_names_no_place(void **state) {
@@ -244,11 +242,12 @@ static void another_sequence_is_drawn_anew(void **state) {
     static const struct {
         RenderOptions options;
         const char *why;
-    } others[] = {{{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "is of other runs"}};
+    } others[] = {
+        {{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         Error error = {0};
@@ -282,7 +281,7 @@ static void another_run_is_drawn_anew(void **state) {
     free(result.hashes);
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
     assert_int_equal(resume(directory, why), 0);
-    assert_non_null(strstr(why, "is of other runs"));
+    assert_non_null(strstr(why, "differs: other runs"));
 }
 
 static char *replaced(const char *text, const char *from, const char *to) {
@@ -335,7 +334,7 @@ static void what_is_no_manifest_stays(void **state) {
         put(manifest_of(options.directory), foreign, sizeof foreign - 1);
         error = (Error){0};
         assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
-        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is no manifest of twinbox");
+        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is not a manifest of twinbox");
         size_t size;
         char *text = read_whole(manifest_of(options.directory), &size);
         assert_string_equal(text, foreign);

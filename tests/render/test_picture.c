@@ -87,7 +87,8 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     copy_panel(a, last, &caption);
     copy_panel(b, later, &caption);
     assert_true(image_hash(a) != image_hash(b));
-    assert_true(isnan(picture_apart(&picture, moment_stored(9))) && picture_apart(&picture, moment_stored(5)) == 0);
+    assert_true(isnan(picture_distance(&picture, moment_stored(9))) &&
+                picture_distance(&picture, moment_stored(5)) == 0);
     image_destroy(last);
     image_destroy(later);
     image_destroy(a);
@@ -101,11 +102,11 @@ static void the_largest_distance_of_any_panel_counts(void **state) {
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
     run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
-    assert_true(fabs(picture_apart(&picture, moment_stored(4)) - 2) < 1e-6);
-    assert_true(picture_apart(&picture, moment_stored(3)) == 0);
-    assert_true(fabs(picture.largest_apart - 2) < 1e-6);
+    assert_true(fabs(picture_distance(&picture, moment_stored(4)) - 2) < 1e-6);
+    assert_true(picture_distance(&picture, moment_stored(3)) == 0);
+    assert_true(fabs(picture.largest_distance - 2) < 1e-6);
     assert_ok(picture_plan(&picture, panels, 1, 640, 360, &error), error);
-    assert_true(isnan(picture_apart(&picture, moment_stored(4))));
+    assert_true(isnan(picture_distance(&picture, moment_stored(4))));
 }
 
 /* Seen in the header: the distance and nothing else. */
@@ -150,8 +151,8 @@ static void bodies_out_of_view_are_counted(void **state) {
     *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
     *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* not there at all */
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
-    assert_int_equal(panel_count_unseen(&picture, 1, moment_stored(5)), 2);
-    assert_int_equal(panel_count_unseen(&picture, 0, moment_stored(5)), 0);
+    assert_int_equal(panel_count_out_of_view(&picture, 1, moment_stored(5)), 2);
+    assert_int_equal(panel_count_out_of_view(&picture, 0, moment_stored(5)), 0);
 }
 
 static void an_absent_body_is_not_drawn(void **state) {
@@ -248,13 +249,13 @@ static void what_cannot_be_shown_is_refused(void **state) {
         Error error = {0};
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
         assert_null(renderer_create(panels, 1, &options, &error));
-        assert_error(error, ERROR_INPUT, "each side can be 64 to 8192");
+        assert_error(error, ERROR_INPUT, "must be 64 to 8192 pixels (got");
     }
     RenderOptions options = {.width = 64, .height = 64};
     for (int count = 0; count <= 7; count += 7) {
         Error error = {0};
         assert_null(renderer_create(panels, count, &options, &error));
-        assert_error(error, ERROR_INPUT, "1 to 6 can be shown");
+        assert_error(error, ERROR_INPUT, "the number of panels must be 1 to 6 (got");
     }
     Error error = {0};
     runs[1]->dt = 1.0F / 50;

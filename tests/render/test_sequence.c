@@ -177,7 +177,7 @@ static void a_killed_process_is_told(void **state) {
     bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
-    assert_error(error, ERROR_SYSTEM, "a drawing process was ended by signal");
+    assert_error(error, ERROR_SYSTEM, "a drawing process was killed by signal");
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
 }
 
@@ -202,13 +202,13 @@ static void wrong_options_are_refused(void **state) {
         RenderOptions options;
         const char *text;
     } wrong[] = {
-        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "0 jobs asked for; there can be 1 to 256"},
-        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "257 jobs"},
+        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "the number of jobs must be 1 to 256 (got 0)"},
+        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "(got 257)"},
         {{.width = 16, .height = 90, .last = -1, .jobs = 1}, "16 x 90"},
-        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "the frames are 0 to 10"},
-        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "frames 3 to 11 asked for"},
-        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "frames 3 to 2 asked for"},
-        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "frames -1 to 2 asked for"},
+        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "within 0 to 10 (got 11 to 10)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "(got 3 to 11)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "(got 3 to 2)"},
+        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "(got -1 to 2)"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         Error error = {0};

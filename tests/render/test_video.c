@@ -124,8 +124,8 @@ static void a_damaged_frame_makes_no_video(void **state) {
     Error error = {0};
     Image *small = image_create(8, 8, &error);
     for (int i = 0; i < 4; i++) {
-        static const char *const texts[] = {"cannot open", "it ends too early", "has other pixels than were drawn",
-                                            "frame 4 is 8x8, the first one 96x64"};
+        static const char *const texts[] = {"cannot open", "it ends too early", "differ from those drawn",
+                                            "frame 4 is 8x8, but the first is 96x64"};
         VideoOptions options = options_for(path);
         put(path, "old", 3);
         error = (Error){0};
@@ -186,7 +186,7 @@ static void a_video_that_lacks_a_frame_is_removed(void **state) {
     pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\n");
     pretend("ffprobe", "#!/bin/sh\necho 8\n");
     assert_false(video_encode(&options, NULL, &error));
-    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames of 9");
+    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)");
     setenv("PATH", "/usr/bin:/bin", 1);
 }
 
@@ -225,13 +225,13 @@ static void wrong_names_are_refused(void **state) {
         int width;
         ErrorKind kind;
         const char *text;
-    } cases[] = {{"a.avi", 64, ERROR_INPUT, "ends in .mp4, .webm or .gif"},
+    } cases[] = {{"a.avi", 64, ERROR_INPUT, "must end in .mp4, .webm or .gif"},
                  {".mp4", 64, ERROR_NONE, ""},
-                 {"mp4", 64, ERROR_INPUT, "ends in"},
-                 {"a.mp4", 63, ERROR_INPUT, "even width and height (got 63x64)"},
-                 {"a.webm", 63, ERROR_INPUT, "even width and height"},
+                 {"mp4", 64, ERROR_INPUT, "must end in"},
+                 {"a.mp4", 63, ERROR_INPUT, "width and height must be even for this video format (got 63x64)"},
+                 {"a.webm", 63, ERROR_INPUT, "width and height must be even"},
                  {"a.gif", 63, ERROR_NONE, ""},
-                 {"folder.mp4", 64, ERROR_INPUT, "is no regular file"},
+                 {"folder.mp4", 64, ERROR_INPUT, "is not a regular file"},
                  {"films/a.mp4", 64, ERROR_NONE, ""},
                  {"a.y4m/a.mp4", 64, ERROR_SYSTEM, "cannot write there"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -12,12 +12,7 @@
 #define BODY(keys) BASE "bodies:\n  - {" keys "}\n"
 
 static inline const char *write_scene(const void *text, size_t size) {
-    const char *path = temporary_path("scene.yaml");
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return path;
+    return write_bytes(temporary_path("scene.yaml"), text, size);
 }
 
 /* The error's message begins with the path returned. */

@@ -9,12 +9,7 @@
 static Scene *aiming_scene(void) { return good_scene(BASE GROUND BOMB ", velocity: {times_position: -1.5}}\n"); }
 
 static const char *write_launches(const char *text, size_t size) {
-    const char *path = temporary_path("launches.csv");
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return path;
+    return write_bytes(temporary_path("launches.csv"), text, size);
 }
 
 static LaunchTable read_good(const char *text) {

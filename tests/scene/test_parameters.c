@@ -123,9 +123,9 @@ static void bad_settings_are_refused(void **state) {
         {{{"ratio", INFINITY}}, 1, " error: ratio must be from -1000 to 1000 (set to inf)"},
         {{{"height", 2.5}}, 1, " error: height must be a whole number (set to 2.5)"},
         {{{"height", 3}, {"height", 3}}, 2, " error: the parameter 'height' is set twice"},
-        {{{"hight", 3}}, 1, " error: there is no parameter 'hight' to set; did you mean 'height'?"},
-        {{{"speed", 3}}, 1, " error: there is no parameter 'speed' to set; there are: height, ratio"},
-        {{{"", 3}}, 1, " error: there is no parameter '' to set; there are: height, ratio"},
+        {{{"hight", 3}}, 1, " error: 'hight' is not a parameter; did you mean 'height'?"},
+        {{{"speed", 3}}, 1, " error: 'speed' is not a parameter; known: height, ratio"},
+        {{{"", 3}}, 1, " error: '' is not a parameter; known: height, ratio"},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         Error error;
@@ -135,7 +135,7 @@ static void bad_settings_are_refused(void **state) {
     }
     Error error;
     assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
-    assert_string_equal(behind_path(&error), " error: there is no parameter 'height' to set; there are none");
+    assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
     /* A value in its bounds may still be none for the number that is made of it. */
     assert_null(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error));
     assert_error(error, ERROR_INPUT,
@@ -161,10 +161,10 @@ static const Refused chains[] = {
     {SCENE("$*2"), "6:44: error: mass: the name of a parameter must follow the '$' (got $*2)"},
     {SCENE("$Height"), "6:44: error: mass: the name of a parameter must follow the '$' (got $Height)"},
     {SCENE("2*$hieght"), "6:44: error: mass: unknown parameter '$hieght'; did you mean 'height'?"},
-    {SCENE("$speed"), "6:44: error: mass: unknown parameter '$speed'; there are: height, ratio"},
-    {MASS("$speed"), "6:44: error: mass: unknown parameter '$speed'; there are none"},
+    {SCENE("$speed"), "6:44: error: mass: unknown parameter '$speed'; known: height, ratio"},
+    {MASS("$speed"), "6:44: error: mass: unknown parameter '$speed'; known: none"},
     {MASS("$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"),
-     "6:44: error: mass: unknown parameter '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa'; there are none"},
+     "6:44: error: mass: unknown parameter '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa'; known: none"},
     {SCENE("2*"), "6:44: error: mass " CHAIN " (got 2*)"},
     {SCENE("'*2'"), "6:45: error: mass " CHAIN " (got *2)"},
     {SCENE("2**3"), "6:44: error: mass " CHAIN " (got 2**3)"},
@@ -184,7 +184,7 @@ static const Refused chains[] = {
     {SCENE(EIGHT(EIGHT(EIGHT("2*3*"))) "1"),
      "6:44: error: mass: a chain may have at most 16 numbers (got 2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2...)"},
     {BODY("size: [1, $height], mass: 1, position: [0, 0]"),
-     "6:16: error: size: unknown parameter '$height'; there are none"},
+     "6:16: error: size: unknown parameter '$height'; known: none"},
 };
 
 /* The value of a key of the scene, and a parameter half. */
@@ -224,7 +224,7 @@ static const Refused parameters[] = {
     {PARAMETERS(NAME_32 ": {value: 1, from: 0, to: 2}"),
      "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got " NAME_32 ")"},
     {ONE("value: 1, from: 0"), "8:6: error: a parameter needs the key 'to'"},
-    {ONE("value: 1, form: 0"), "8:17: error: unknown key 'form'; did you mean 'from'?"},
+    {ONE("value: 1, form: 0"), "8:17: error: 'form' is not a key of a parameter; did you mean 'from'?"},
     {ONE("value: 1, from: 2, to: 3"), "8:14: error: value must be from 2 to 3 (got 1)"},
     {ONE("value: 1/2, from: 0.75, to: 3"), "8:14: error: value must be from 0.75 to 3 (got 0.5, from 1/2)"},
     {ONE("value: 1, from: 3, to: 0"), "8:14: error: value must be from 3 to 0 (got 1)"},

@@ -127,27 +127,6 @@ static void points_that_coincide_are_solved_one_by_one(void **state) {
     free_solution(&found);
 }
 
-/* In a resting stack the normal impulses under box i carry the weight of all above: m g dt (n - i). */
-static void a_resting_stacks_impulses_carry_its_weight(void **state) {
-    (void)state;
-    enum { BOXES = 5 };
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    ContactSolver block = make_solver(&solver_block, "k=30");
-    run(world, &block, 600);
-    const ContactProblem *problem = world_problem(world);
-    assert_int_equal(problem->contact_count, 2 * BOXES);
-    for (int i = 0; i < problem->contact_count; i += 2) {
-        const ContactImpulse *impulses = &world_solution(world)->impulses[i];
-        float weight = 2 * 10 * world_dt * (float)(BOXES - problem->contacts[i].a);
-        assert_near(impulses[0].normal + impulses[1].normal, weight, 1e-3f * weight);
-    }
-    free_solver(&block);
-    world_destroy(world);
-}
-
 /* Where numbers overflow the order of visits shows; then the plain text decides. */
 static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
     (void)state;
@@ -176,7 +155,6 @@ int main(void) {
                                        cmocka_unit_test(a_box_on_two_points_stops_in_one_sweep),
                                        cmocka_unit_test(one_sweep_solves_the_complementarity_problem),
                                        cmocka_unit_test(points_that_coincide_are_solved_one_by_one),
-                                       cmocka_unit_test(a_resting_stacks_impulses_carry_its_weight),
                                        cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,6 +16,12 @@ static int judge_robust(void **state) {
     return 0;
 }
 
+static int judge_block(void **state) {
+    (void)state;
+    judged = &solver_block;
+    return 0;
+}
+
 /* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
 static void a_free_box_falls_as_it_should(void **state) {
     (void)state;
@@ -184,11 +190,11 @@ static void iterations_out_of_range_are_refused(void **state) {
     (void)state;
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, "k=0", solver_engine.settings, "engine", &error), error);
+    assert_ok(settings_parse(&settings, "k=0", solver_engine.description.settings, "engine", &error), error);
     assert_null(solver_engine.create(&settings, &error));
     assert_error(error, ERROR_INPUT, "k");
     error = (Error){0};
-    assert_false(settings_parse(&settings, "sweeps=3", solver_engine.settings, "engine", &error));
+    assert_false(settings_parse(&settings, "sweeps=3", solver_engine.description.settings, "engine", &error));
     assert_error(error, ERROR_INPUT, "sweeps");
 }
 
@@ -202,6 +208,7 @@ int main(void) {
     const struct CMUnitTest of_the_engine[] = {cmocka_unit_test(the_form_without_accumulation_keeps_a_box_up),
                                                cmocka_unit_test(iterations_out_of_range_are_refused)};
     return cmocka_run_group_tests_name("engine", laws, judge_engine, NULL) +
+           cmocka_run_group_tests_name("block", laws, judge_block, NULL) +
            cmocka_run_group_tests_name("robust", laws, judge_robust, NULL) +
            cmocka_run_group_tests(of_the_engine, NULL, NULL);
 }

@@ -25,7 +25,7 @@ static void texts_that_do_not_fit_each_other_are_refused(void **state) {
     network = make_pair_network(PAIR_RAW, TARGET_PAIR, 2);
     strcpy(network->target, "gross");
     assert_network_refused(&solver_pair_net, write_pair_network(network),
-                           "the target 'gross'; a pair is asked for one of pair, net, impulse, points");
+                           "'gross' is not a target of pair networks; known: pair, net, impulse, points");
     network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, 6);
     strcpy(network->target, "points");
     assert_network_refused(&solver_contact_net, write_pair_network(network),

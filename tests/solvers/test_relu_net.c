@@ -4,14 +4,6 @@
 #include "kernels.h"
 #include "random_problem.h"
 
-static void solve(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
-                  ContactSolution *solution) {
-    ContactSolver solver = make_solver(kind, text);
-    Error error = {0};
-    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
-    free_solver(&solver);
-}
-
 /* Where a visit may end: the contact pulls and is let go, or it pushes and rubs at the lower end of the cone, within, or
    at the upper end. */
 enum { LET_GO, LOWER, INSIDE, UPPER, BRANCHES };
@@ -22,11 +14,11 @@ enum { LET_GO, LOWER, INSIDE, UPPER, BRANCHES };
 static int check_visit(RandomProblem *random) {
     ContactProblem *problem = &random->problem;
     ContactSolution net = make_solution(problem), engine = make_solution(problem), free_to_rub = make_solution(problem);
-    solve(&solver_relu_net, "k=1", problem, &net);
-    solve(&solver_engine, "k=1", problem, &engine);
+    solve_with(&solver_relu_net, "k=1", problem, &net);
+    solve_with(&solver_engine, "k=1", problem, &engine);
     const float friction = random->contacts[0].friction;
     random->contacts[0].friction = 1e30f;
-    solve(&solver_engine, "k=1", problem, &free_to_rub);
+    solve_with(&solver_engine, "k=1", problem, &free_to_rub);
     const ContactImpulse is = net.impulses[0], expected = engine.impulses[0];
     const float w = free_to_rub.impulses[0].tangent, limit = friction * expected.normal;
     const double most = (double)fmaxf(fabsf(w), limit);
@@ -75,7 +67,7 @@ static void momentum_is_kept(void **state) {
         for (int i = 0; i < random.problem.body_count; i++)
             start[i] = (BodyVelocity){random.bodies[i].velocity, random.bodies[i].angular_velocity};
         momentum_of(&random.problem, start, before);
-        solve(&solver_relu_net, "", &random.problem, &found);
+        solve_with(&solver_relu_net, "", &random.problem, &found);
         momentum_of(&random.problem, found.velocities, after);
         for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 1e-3);
         assert_memory_not_equal(start, found.velocities, sizeof *start * (size_t)random.problem.body_count);

@@ -8,14 +8,6 @@
 
 #include <math.h>
 
-static void solve(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
-                  ContactSolution *solution) {
-    ContactSolver solver = make_solver(kind, text);
-    Error error = {0};
-    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
-    free_solver(&solver);
-}
-
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
     World *world = make_world();
@@ -47,10 +39,10 @@ static void all_meet_the_plain_sweeps(void **state) {
                   {&solver_block, "k=2000"},
                   {&solver_nncg, "k=200"},
                   {&solver_engine, "k=20000,warm=off"}};
-    solve(&solver_engine, "k=10", problem, &found);
+    solve_with(&solver_engine, "k=10", problem, &found);
     assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
     for (int r = 0; r < 6; r++) {
-        solve(rivals[r].kind, rivals[r].text, problem, &found);
+        solve_with(rivals[r].kind, rivals[r].text, problem, &found);
         for (int i = 0; i < problem->body_count; i++) {
             assert_near(found.velocities[i].linear.x, plain.velocities[i].linear.x, 5e-3);
             assert_near(found.velocities[i].linear.y, plain.velocities[i].linear.y, 5e-3);
@@ -85,7 +77,7 @@ static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
         char text[32];
         snprintf(text, sizeof text, "k=%d", k);
         for (int rival = 0; rival < 5; rival++) {
-            solve(rivals[rival], text, problem, &found);
+            solve_with(rivals[rival], text, problem, &found);
             linear_momentum(problem, found.velocities, after);
             for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 4e-3);
             for (int i = 0; i < problem->contact_count; i++) {
@@ -119,9 +111,9 @@ static void a_cold_engine_starts_from_zero(void **state) {
     for (int i = 0; i < cold.contact_count; i++) contacts[i].warm_normal = contacts[i].warm_tangent = 0;
     cold.contacts = contacts;
     ContactSolution off = make_solution(&cold), on = make_solution(&cold), of_cold = make_solution(&cold);
-    solve(&solver_engine, "k=3,warm=off", world_problem(world), &off);
-    solve(&solver_engine, "k=3", world_problem(world), &on);
-    solve(&solver_engine, "k=3", &cold, &of_cold);
+    solve_with(&solver_engine, "k=3,warm=off", world_problem(world), &off);
+    solve_with(&solver_engine, "k=3", world_problem(world), &on);
+    solve_with(&solver_engine, "k=3", &cold, &of_cold);
     assert_same_bits(&cold, &off, &of_cold, "warm=off");
     assert_memory_not_equal(off.impulses, on.impulses, (size_t)cold.contact_count * sizeof *on.impulses);
     free_solution(&off);
@@ -145,7 +137,7 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     Colours colours = {0};
     assert_true(colours_order(&colours, &problem));
     momentum_solve_plain(&problem, colours.visits, factors, 10, &before, &plain);
-    solve(&solver_momentum, "", &problem, &fast);
+    solve_with(&solver_momentum, "", &problem, &fast);
     bool finite = isfinite(plain.velocities[1].linear.y);
     assert_false(finite);
     assert_memory_equal(fast.velocities, plain.velocities, (size_t)problem.body_count * sizeof *plain.velocities);
@@ -160,7 +152,7 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
 static void assert_refused(const ContactSolverKind *kind, const char *text, const char *message) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
     assert_null(kind->create(&settings, &error));
     assert_error(error, ERROR_INPUT, message);
 }
@@ -202,8 +194,8 @@ static void learned_factors_are_those_of_the_file(void **state) {
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution learned = make_solution(problem), by_hand = make_solution(problem);
-    solve(&solver_learned_momentum, text, problem, &learned);
-    solve(&solver_momentum, "k=20", problem, &by_hand);
+    solve_with(&solver_learned_momentum, text, problem, &learned);
+    solve_with(&solver_momentum, "k=20", problem, &by_hand);
     assert_same_bits(problem, &learned, &by_hand, "factors from a file");
     free_solution(&learned);
     free_solution(&by_hand);

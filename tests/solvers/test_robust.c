@@ -33,14 +33,6 @@ static ForestAnswer answer_to(const ContactProblem *problem) {
     return answer;
 }
 
-static void solve_by(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
-                     ContactSolution *solution) {
-    Error error = {0};
-    ContactSolver solver = make_solver(kind, text);
-    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
-    free_solver(&solver);
-}
-
 /* 40 boxes and a thousandfold one on top, cold: g dt times what is above, after one step. The sum of 40 roundings. */
 static void a_stack_carries_its_weight_at_once(void **state) {
     (void)state;
@@ -92,8 +84,8 @@ static void trees_are_solved_as_sweeps_would_in_the_end(void **state) {
         World *world = make_trees(&seed);
         const ContactProblem problem = begin(world);
         ContactSolution found = make_solution(&problem), converged = make_solution(&problem);
-        solve_by(&solver_robust, "k=1", &problem, &found);
-        solve_by(&solver_reference, "", &problem, &converged);
+        solve_with(&solver_robust, "k=1", &problem, &found);
+        solve_with(&solver_reference, "", &problem, &converged);
         assert_consistent(&problem, &found);
         if (answer_to(&problem) == FOREST_WHOLE) {
             whole++;

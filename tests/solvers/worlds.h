@@ -12,7 +12,7 @@ static const float world_dt = 1.0f / 60.0f;
 static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
     ContactSolver solver = {kind, kind->create(&settings, &error)};
     assert_ok(solver.state != NULL, error);
     return solver;
@@ -21,6 +21,15 @@ static inline ContactSolver make_solver(const ContactSolverKind *kind, const cha
 static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
+
+/* Solves a problem by a solver made for this once. */
+static inline void solve_with(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                              ContactSolution *solution) {
+    Error error = {0};
+    ContactSolver solver = make_solver(kind, text);
+    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
+    free_solver(&solver);
+}
 
 static inline World *make_world(void) {
     Error error = {0};

@@ -191,7 +191,7 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
-    assert_ok(contenders_read(&methods, "robust,pair-net", &error), error);
+    assert_ok(contenders_parse(&methods, "robust,pair-net", STUDY_STABILITY, &error), error);
     StabilityScan scan = {&study, scenes, &methods};
     char *text = NULL;
     size_t size = 0;
@@ -264,7 +264,7 @@ static void names_and_methods_that_there_are_not_are_refused(void **state) {
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "luck: error: no such study or map; there are stack_height, ");
+    assert_error(error, ERROR_INPUT, "'luck' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     error = (Error){0};

@@ -7,7 +7,7 @@
 static ContenderList parse(const char *text) {
     Error error = {0};
     ContenderList list;
-    assert_ok(contenders_parse(&list, text, false, &error), error);
+    assert_ok(contenders_parse(&list, text, STUDY_CHART, &error), error);
     return list;
 }
 
@@ -48,7 +48,7 @@ static void the_engine_as_shipped_is_always_there(void **state) {
     for (int quick = 0; quick < 2; quick++) {
         Error error = {0};
         ContenderList list;
-        assert_ok(contenders_parse(&list, NULL, quick, &error), error);
+        assert_ok(contenders_parse(&list, NULL, quick ? STUDY_CHART_QUICK : STUDY_CHART, &error), error);
         int found = 0;
         for (int i = 0; i < list.count; i++)
             found += strcmp(list.items[i].name, "engine") == 0 && strcmp(list.items[i].setting, "k=10") == 0;
@@ -60,18 +60,18 @@ static void the_engine_as_shipped_is_always_there(void **state) {
 static void refuse(const char *text, const char *reason) {
     Error error = {0};
     ContenderList list;
-    assert_false(contenders_parse(&list, text, false, &error));
+    assert_false(contenders_parse(&list, text, STUDY_CHART, &error));
     assert_error(error, ERROR_INPUT, reason);
 }
 
 static void bad_lists_are_refused(void **state) {
     (void)state;
-    refuse("engin", "engin: error: no such method");
-    refuse("engine,", "no such method");
-    refuse("", "no such method");
+    refuse("engin", "method: error: 'engin' is not a method");
+    refuse("engine,", "is not a method");
+    refuse("", "is not a method");
     refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
     refuse("engine,engine:k=10", "is given twice");
-    refuse("engine:sweeps=3", "unknown setting 'sweeps'");
+    refuse("engine:sweeps=3", "'sweeps' is not a setting");
     char text[1000];
     memset(text, 'x', sizeof text);
     text[999] = '\0';

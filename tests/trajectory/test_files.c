@@ -202,11 +202,7 @@ static void random_damage_is_refused_or_harmless(void **state) {
         size_t at = (seed >> 4) % size;
         char mask = (char)(1 + (seed >> 24) % 255);
         data[at] ^= mask;
-        remove(path);
-        FILE *out = fopen(path, "wb");
-        assert_non_null(out);
-        fwrite(data, 1, size - (round % 4 == 0 ? (seed >> 12) % size : 0), out);
-        fclose(out);
+        write_bytes(path, data, size - (round % 4 == 0 ? (seed >> 12) % size : 0));
         data[at] ^= mask;
         Error refusal = {0};
         Trajectory *r = trajectory_read(path, &refusal);

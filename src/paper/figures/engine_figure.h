@@ -2,6 +2,7 @@
 /* The four figures, each in a file of its own (src/figure/figure_NAME.c). */
 #pragma once
 #include "scene/scene.h"
+#include "sketch/page_width.h"
 #include "sketch/sketch.h"
 
 enum { CAPTION_SIZE = 800 };

@@ -15,22 +15,18 @@ static const EngineFigure *const figures[] = {&figure_loop, &figure_narrow_phase
 
 const char *const engine_figure_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
 
-static bool join(char path[PATH_MAX], const char *folder, const char *name, const char *ending, Error *error) {
-    int length = snprintf(path, PATH_MAX, "%s/%s%s", folder, name, ending);
-    return (length > 0 && length < PATH_MAX) || error_input(error, folder, "this path is too long");
-}
-
 static bool write_caption(const char *folder, const char *name, const char *caption, Error *error) {
     char path[PATH_MAX], line[CAPTION_SIZE + 1];
     int length = snprintf(line, sizeof line, "%s\n", caption);
-    return join(path, folder, name, ".txt", error) && file_write(path, line, (size_t)length, error);
+    return file_path(path, sizeof path, error, "%s/%s.txt", folder, name) &&
+           file_write(path, line, (size_t)length, error);
 }
 
 static bool draw_figure(const EngineFigure *figure, const char *name, Scene *const *scenes, const char *folder,
                         Error *error) {
     Sketch sketch;
     char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
-    if (!join(stem, folder, name, "", error)) return false;
+    if (!file_path(stem, sizeof stem, error, "%s/%s", folder, name)) return false;
     sketch_begin(&sketch, figure->width, figure->height);
     bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, error);
     sketch_free(&sketch);
@@ -39,7 +35,7 @@ static bool draw_figure(const EngineFigure *figure, const char *name, Scene *con
 
 static Scene *read_scene(const char *folder, const char *name, Error *error) {
     char path[PATH_MAX];
-    if (!join(path, folder, name, ".yaml", error)) return NULL;
+    if (!file_path(path, sizeof path, error, "%s/%s.yaml", folder, name)) return NULL;
     Scene *scene = scene_read(path, error);
     if (scene == NULL || scene->bomb.present) return scene;
     error_input(error, path, "the scene has no bomb to launch");

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double width = 174, height = 96, split = 73; /* mm */
+static const double width = FIGURE_PAGE_WIDTH, height = 96, split = 73; /* mm */
 
 /* Of what each number tells, in the order of pair_inputs() and pair_changes(). */
 typedef struct NumberName {

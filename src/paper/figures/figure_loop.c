@@ -148,4 +148,4 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     return true;
 }
 
-const EngineFigure figure_loop = {174, 76, draw};
+const EngineFigure figure_loop = {FIGURE_PAGE_WIDTH, 76, draw};

@@ -11,7 +11,7 @@
 
 #define LEAST_TILT 10.0 /* degrees: below, two axes of one box can hardly be told from the other's */
 
-static const double width = 174, height = 84, split = 97; /* mm */
+static const double width = FIGURE_PAGE_WIDTH, height = 84, split = 97; /* mm */
 
 /* Degrees between the sides of two boxes. */
 static double tilt(const ProblemBody *a, const ProblemBody *b) {

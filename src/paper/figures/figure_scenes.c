@@ -14,7 +14,7 @@
 static const double left = -8, bottom = -1, wide = 16, high = 22.6;
 
 /* On the page, mm; the scale is 39 pixels a metre in the PNG. */
-static const double width = 174, height = 87, scale = 3.302, gap = 3.4, low = 1;
+static const double width = FIGURE_PAGE_WIDTH, height = 87, scale = 3.302, gap = 3.4, low = 1;
 
 /* The renderer then has 39 pixels a metre, too. */
 enum { RENDER_WIDTH = 1300, RENDER_HEIGHT = 1075 };
@@ -29,7 +29,7 @@ static Image *cut_window(const Image *frame, const Picture *picture, Error *erro
     int y0 = panel->top + (int)lrint(camera->top - camera->scale * (bottom + high));
     int columns = (int)lrint(camera->scale * wide), rows = (int)lrint(camera->scale * high);
     if (x0 < panel->left || y0 < panel->top || x0 + columns > panel->right || y0 + rows > panel->bottom) {
-        error_input(error, picture->panels[0]->scene, "the picture does not show all of the figure's window");
+        error_input(error, picture->runs[0]->scene, "the picture does not show all of the figure's window");
         return NULL;
     }
     Image *window = image_create(columns, rows, error);

@@ -26,8 +26,7 @@ static bool write_page(int i, const char *folder, FigureSheet *sheet, Error *err
 bool result_figures_draw(const char *folder, Error *error) {
     FigureSheet sheets[FIGURES] = {0};
     char path[PATH_MAX];
-    int length = snprintf(path, sizeof path, "%s/figures", folder);
-    if (length < 0 || length >= (int)sizeof path) return error_input(error, folder, "this path is too long");
+    if (!file_path(path, sizeof path, error, "%s/figures", folder)) return false;
     bool done = true;
     for (int i = 0; done && i < FIGURES; i++) done = write_page(i, folder, &sheets[i], error);
     done = done && file_make_directory(path, error);

@@ -12,7 +12,7 @@
      laws         laws.csv         error and violations over the weight of the laws in the loss
      transfer     transfer.csv     error over launches, from scratch and after smaller scenes
    Columns are found by name, in any order; others are left alone. Pages and columns of a paper wide
-   (174 or 85 mm); told apart by the colour-blind and in grey.
+   (sketch/page_width.h); told apart by the colour-blind and in grey.
 
    Each of the six tables has to be there and in order: else "path:line:column: error: text", and nothing is drawn. A
    table may lack the rows that its figure shows: then that figure is left out (one of an earlier run stays).

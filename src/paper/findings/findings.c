@@ -14,8 +14,7 @@ bool findings_add(const FindingsFile *file, const void *row) {
 static bool write_table(const FindingsTable *table, const StudyTables *study, const char *folder, Error *error) {
     char path[PATH_MAX], *text = NULL;
     size_t size;
-    if (snprintf(path, sizeof path, "%s/findings/%s.csv", folder, table->layout.name) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, table->layout.name)) return false;
     const FindingsFile file = {&table->layout, open_memstream(&text, &size), error};
     if (file.out == NULL) return error_memory(error, path);
     csv_header_print(file.out, file.layout);
@@ -32,9 +31,8 @@ bool findings_write(const char *folder, Error *error) {
         &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims};
     StudyTables study;
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/findings", folder) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
-    if (!study_tables_read(&study, folder, error)) return false;
+    if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))
+        return false;
     bool written = file_make_directory(path, error);
     for (size_t i = 0; written && i < sizeof tables / sizeof *tables; i++)
         written = write_table(tables[i], &study, folder, error);

@@ -90,8 +90,8 @@ static bool write_picture(const Writing *writing, cmark_node *node, const char *
 
 static bool write_figure(const Writing *writing, cmark_node *image, cmark_node *caption) {
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/%s", writing->page->folder, cmark_node_get_url(image)) >= PATH_MAX)
-        return error_input(writing->error, writing->page->folder, "the name is too long");
+    if (!file_path(path, sizeof path, writing->error, "%s/%s", writing->page->folder, cmark_node_get_url(image)))
+        return false;
     fputs("<figure>", writing->out);
     if (!write_picture(writing, image, path)) return false;
     fputs("<figcaption>", writing->out);

@@ -43,9 +43,8 @@ static bool write_html(const Text *markdown, Text *html, const char *folder, Err
 
 static bool store(const Text *text, const char *folder, const char *name, Error *error) {
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
-        return error_input(error, folder, "the name is too long");
-    return file_write(path, text->data, text->size, error);
+    return file_path(path, sizeof path, error, "%s/%s", folder, name) &&
+           file_write(path, text->data, text->size, error);
 }
 
 bool paper_report_write(const char *folder, Error *error) {

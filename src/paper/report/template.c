@@ -2,6 +2,7 @@
 #include "paper/report/template.h"
 
 #include "common/csv.h"
+#include "common/file.h"
 #include "common/parse.h"
 #include "paper/report/template_value.h"
 
@@ -53,8 +54,7 @@ static bool read_tag(const Filling *filling, const char *from, Tag *tag) {
 }
 
 static bool make_path(const Filling *filling, const char *name, char path[PATH_MAX]) {
-    return snprintf(path, PATH_MAX, "%s/%s", filling->folder, name) < PATH_MAX ||
-           error_input(filling->error, filling->folder, "the name is too long");
+    return file_path(path, PATH_MAX, filling->error, "%s/%s", filling->folder, name);
 }
 
 static const char *find_in_row(const Csv *csv, int row, const char *name) {

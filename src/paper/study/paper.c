@@ -175,9 +175,8 @@ static bool find_key(const Run *run, uint64_t *key, Error *error) {
 
 static bool begin(Run *run, Error *error) {
     uint64_t key;
-    if (snprintf(run->networks_folder, sizeof run->networks_folder, "%s/networks", run->options->folder) >=
-        (int)sizeof run->networks_folder)
-        return error_input(error, run->options->folder, "the name is too long");
+    if (!file_path(run->networks_folder, sizeof run->networks_folder, error, "%s/networks", run->options->folder))
+        return false;
     run->networks = malloc((size_t)paper_network_count * sizeof *run->networks);
     if (run->networks == NULL) return error_memory(error, "paper");
     choose_networks(run);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/study/paper_data.h"
 
+#include "common/file.h"
+
 #include <stdio.h>
 
 const char *const paper_scene_names[PAPER_SCENES + 1] = {"single", "stack", "pyramid", "pyramid_settled"};
@@ -10,9 +12,8 @@ bool paper_datasets_begin(PaperDatasets *datasets, const char *scenes, const Pap
     datasets->size = size;
     datasets->seed = seed;
     for (int i = 0; i < PAPER_SCENES; i++)
-        if (snprintf(datasets->scenes[i], PAPER_PATH_SIZE, "%s/%s.yaml", scenes, paper_scene_names[i]) >=
-            PAPER_PATH_SIZE)
-            return error_input(error, scenes, "the name is too long");
+        if (!file_path(datasets->scenes[i], PAPER_PATH_SIZE, error, "%s/%s.yaml", scenes, paper_scene_names[i]))
+            return false;
     return true;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/study/paper_scores.h"
 
+#include "common/file.h"
 #include "common/parallel.h"
 #include "paper/study/pair_rates.h"
 #include "paper/study/paper_tables.h"
@@ -56,8 +57,7 @@ static bool takes_steps(const PaperNetwork *network) {
 }
 
 static bool network_path(const PaperScoring *scoring, int i, char path[PAPER_PATH_SIZE], Error *error) {
-    return snprintf(path, PAPER_PATH_SIZE, "%s/%s.npz", scoring->folder, scoring->networks[i].name) < PAPER_PATH_SIZE ||
-           error_input(error, scoring->folder, "the name is too long");
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", scoring->folder, scoring->networks[i].name);
 }
 
 static bool sample_launch(void *context, int i, Error *error) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/study/paper_training.h"
 
+#include "common/file.h"
 #include "paper/study/paper_tables.h"
 #include "study/study_parts.h"
 #include "training/training.h"
@@ -112,8 +113,7 @@ static bool write_network(FILE *lines, const PaperNetwork *of, const Network *ne
 
 static bool store(const PaperTraining *training, Network *network, Error *error) {
     char path[PAPER_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/%s.npz", training->folder, training->network.name) >= (int)sizeof path)
-        return error_input(error, training->folder, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/%s.npz", training->folder, training->network.name)) return false;
     snprintf(network->command, sizeof network->command, "twinbox paper: %s", training->network.name);
     return network_write(network, path, error);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The network made for samples: slots, caps and scales counted anew, and the laws of what it sees. */
+/* The initial network: slots, caps and scales against independent counts; the distribution of its inputs and
+   outputs. */
 #include "impacts.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ static bool is_below(const Slot *x, const Slot *y) {
     return x->b != y->b ? x->b < y->b : x->feature < y->feature;
 }
 
-static void slots_are_the_contacts_of_three_samples(void **state) {
+static void slots_are_contacts_of_at_least_three_samples(void **state) {
     (void)state;
     int left_out = 0, known = 0;
     for (int i = 0; i < samples.count; i++)
@@ -66,7 +67,7 @@ static void slots_are_the_contacts_of_three_samples(void **state) {
     assert_int_equal(network->bomb, samples.items[0].problem.bomb);
 }
 
-static void caps_are_the_largest_before_the_touch(void **state) {
+static void caps_are_the_largest_warm_impulses_at_the_touch(void **state) {
     (void)state;
     int capped = 0, larger_later = 0;
     for (int i = 0; i < network->slot_count; i++) {
@@ -85,7 +86,7 @@ static void caps_are_the_largest_before_the_touch(void **state) {
     assert_true(capped > 5 && larger_later > 5);
 }
 
-/* The square of the mean root of the distance, and 0.05 N s. */
+/* mean(sqrt(|goal - base|))^2 + 0.05 N s. */
 static void scales_are_how_far_the_goal_is(void **state) {
     (void)state;
     for (int i = 0; i < network->slot_count; i++) {
@@ -106,7 +107,7 @@ static void scales_are_how_far_the_goal_is(void **state) {
     }
 }
 
-/* Of each projection the first are white but for the rounding of its rows, those beyond its rank 0. */
+/* Components of each projection are white up to the rounding of its packed rows; those beyond its rank are 0. */
 static void inputs_have_mean_0_and_variance_1_or_0(void **state) {
     (void)state;
     int moving = 0;
@@ -126,8 +127,8 @@ static void inputs_have_mean_0_and_variance_1_or_0(void **state) {
     assert_true(moving > slot_network_inputs(network) / 2);
 }
 
-/* Else no step would tell from another where the bomb struck. */
-static void every_launch_looks_different(void **state) {
+/* Otherwise the network could not know where the bomb struck. */
+static void every_launch_has_different_inputs(void **state) {
     (void)state;
     for (int i = 0; i < samples.count; i++)
         for (int k = 0; k < i; k++)
@@ -135,7 +136,7 @@ static void every_launch_looks_different(void **state) {
                                     (size_t)slot_network_inputs(network) * sizeof(float));
 }
 
-static void the_answer_begins_near_no_change(void **state) {
+static void initial_outputs_are_near_0(void **state) {
     (void)state;
     float first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[200];
     double sum = 0;
@@ -153,7 +154,7 @@ static void the_answer_begins_near_no_change(void **state) {
 
 static SlotNetwork *make_again(uint64_t seed) {
     Error error = {0};
-    SlotNetwork *made = slot_network_for(&samples, &small_widths, seed, &error);
+    SlotNetwork *made = slot_network_from_samples(&samples, &small_widths, seed, &error);
     assert_ok(made != NULL, error);
     return made;
 }
@@ -167,7 +168,7 @@ static bool same_parameters(const SlotNetwork *a, const SlotNetwork *b) {
     return memcmp(a->parameters, b->parameters, a->parameter_count * sizeof(float)) == 0;
 }
 
-static void seeds_decide_and_threads_do_not(void **state) {
+static void same_seed_same_bits(void **state) {
     (void)state;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(threads == 1 ? 2 : 1);
@@ -181,30 +182,30 @@ static void seeds_decide_and_threads_do_not(void **state) {
     slot_network_destroy(other);
 }
 
-static void what_has_no_slots_is_refused(void **state) {
+static void samples_without_slots_are_refused(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples few = {0};
-    assert_null(slot_network_for(&few, &small_widths, 1, &error));
-    assert_error(error, ERROR_INPUT, "there is something to learn");
+    assert_null(slot_network_from_samples(&few, &small_widths, 1, &error));
+    assert_error(error, ERROR_INPUT, "no launch has an impact whose residual reaches the gate");
     error = (Error){0};
     for (int i = 0; i < 2; i++) assert_true(slot_samples_add(&few, &samples.items[0].problem, i, 0));
     assert_ok(slot_samples_label(&few, 0, IMPACT_VISITS, NULL, &error), error);
-    assert_null(slot_network_for(&few, &small_widths, 1, &error));
+    assert_null(slot_network_from_samples(&few, &small_widths, 1, &error));
     assert_error(error, ERROR_INPUT, "0 slots");
     slot_samples_free(&few);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slots_are_the_contacts_of_three_samples),
-        cmocka_unit_test(caps_are_the_largest_before_the_touch),
+        cmocka_unit_test(slots_are_contacts_of_at_least_three_samples),
+        cmocka_unit_test(caps_are_the_largest_warm_impulses_at_the_touch),
         cmocka_unit_test(scales_are_how_far_the_goal_is),
         cmocka_unit_test(inputs_have_mean_0_and_variance_1_or_0),
-        cmocka_unit_test(every_launch_looks_different),
-        cmocka_unit_test(the_answer_begins_near_no_change),
-        cmocka_unit_test(seeds_decide_and_threads_do_not),
-        cmocka_unit_test(what_has_no_slots_is_refused),
+        cmocka_unit_test(every_launch_has_different_inputs),
+        cmocka_unit_test(initial_outputs_are_near_0),
+        cmocka_unit_test(same_seed_same_bits),
+        cmocka_unit_test(samples_without_slots_are_refused),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "impact_training/scene_score.h"
+#include "impact_training/scene_net_score.h"
 
 #include "impact_training/slot_fit.h"
 #include "reference/solution_error.h"
@@ -10,7 +10,7 @@
 
 enum { MOMENTUM_SWEEPS = 20 };
 
-/* Mean error after the network and its sweeps. */
+/* Mean error of the network and its sweeps. */
 static bool network_error(const SlotNetwork *network, const SlotSamples *samples, double *result, Error *error) {
     double *errors = malloc(((size_t)samples->count + 1) * sizeof *errors), sum = 0;
     bool ok = errors != NULL || error_memory(error, "scene-net");
@@ -21,7 +21,7 @@ static bool network_error(const SlotNetwork *network, const SlotSamples *samples
     return ok;
 }
 
-/* Mean error of momentum from the cached start. */
+/* Mean error of momentum with warm start. */
 static bool momentum_error(const SlotSamples *samples, double *result, Error *error) {
     float factors[MOMENTUM_SWEEPS];
     for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = momentum_factor_by_hand(s, MOMENTUM_SWEEPS);
@@ -44,8 +44,8 @@ static bool momentum_error(const SlotSamples *samples, double *result, Error *er
     return ok;
 }
 
-bool scene_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out, SceneScore *score,
-                 Error *error) {
+bool scene_net_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out,
+                     SceneNetScore *score, Error *error) {
     score->samples = samples->count;
     return network_error(network, samples, &score->train, error) &&
            network_error(network, held_out, &score->held_out, error) &&

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "impact_training/slot_shape.h"
+#include "impact_training/slot_network_init.h"
 
 #include "impact_training/principal.h"
 
@@ -9,10 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SEEN_AT_LEAST = 3 };
+enum { OCCURRENCES_MIN = 3 };
 
-/* The bomb's contacts say where it struck. They are few among those at rest, and without a weight of their own no
-   component would tell of them. */
+/* The bomb's contacts show where it struck. They are few, so without extra weight no component would represent them. */
 static const float bomb_weight = 5;
 
 static int compare_slots(const void *first, const void *second) {
@@ -22,7 +21,7 @@ static int compare_slots(const void *first, const void *second) {
     return order != 0 ? order : (x->feature > y->feature) - (x->feature < y->feature);
 }
 
-/* The contacts of the samples, each once. The caller's. */
+/* The distinct contacts of the samples that occur often enough. The caller frees the array. */
 static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
     size_t contacts = 0;
     for (int i = 0; i < samples->count; i++) contacts += (size_t)samples->items[i].problem.contact_count;
@@ -42,14 +41,14 @@ static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
     qsort(slots, contacts, sizeof *slots, compare_slots);
     for (size_t i = 0, end; i < contacts; i = end) {
         for (end = i; end < contacts && compare_slots(&slots[i], &slots[end]) == 0;) end++;
-        if (end - i >= SEEN_AT_LEAST && kept < SLOTS_MAX) slots[kept++] = slots[i];
+        if (end - i >= OCCURRENCES_MIN && kept < SLOTS_MAX) slots[kept++] = slots[i];
     }
     *count = (int)kept;
     return slots;
 }
 
-/* A warm impulse counts up to the largest there was before the bomb's first touch: what is above it is left from the
-   shock of the step before. */
+/* Warm impulses are capped at the largest one seen at the first touch: what exceeds it is left over from the shock in
+   the step before. */
 static void find_caps(SlotNetwork *network, const SlotSamples *samples) {
     for (int i = 0; i < samples->count; i++) {
         const ContactProblem *problem = &samples->items[i].problem;
@@ -61,8 +60,8 @@ static void find_caps(SlotNetwork *network, const SlotSamples *samples) {
     }
 }
 
-/* The unit of a slot's outputs: the square of the mean root of how far the goal is from the base. Rare shocks are
-   hundreds of times the rest, and would leave nothing of it in their own unit. */
+/* The unit of a slot's outputs: mean(sqrt(|goal - base|))^2. Rare shocks are hundreds of times larger than the rest; in
+   a unit such as the RMS the rest would be negligible. */
 static bool find_scales(SlotNetwork *network, const SlotSamples *samples) {
     double *sums = calloc(2 * (size_t)network->slot_count, sizeof *sums);
     if (sums == NULL) return false;
@@ -86,7 +85,7 @@ static bool find_scales(SlotNetwork *network, const SlotSamples *samples) {
     return true;
 }
 
-/* Rows to find components of: filled by one function a kind of numbers. */
+/* Sparse rows under construction. */
 typedef struct Numbers {
     int64_t *begin;
     int32_t *column;
@@ -101,7 +100,7 @@ static bool make_numbers(Numbers *numbers, const SlotSamples *samples, size_t ea
     return numbers->begin != NULL && numbers->column != NULL && numbers->value != NULL;
 }
 
-static void put(Numbers *numbers, int column, float value) {
+static void append(Numbers *numbers, int column, float value) {
     numbers->column[numbers->count] = column;
     numbers->value[numbers->count++] = value;
 }
@@ -122,7 +121,7 @@ static void weigh_row(Projection *projection, int i, float weight) {
     for (int k = 0; k < projection->to; k++) projection->rows[(size_t)i * (size_t)projection->to + (size_t)k] *= weight;
 }
 
-/* One over the spread of each number of the bodies, which has to be more than what does not matter. */
+/* 1 / spread of each state variable; `least` keeps irrelevant variations small. */
 static void find_units(const SlotSamples *samples, bool bomb, int count, float *units) {
     static const double least[SLOT_BODY_NUMBERS] = {0.01, 0.01, 0.01, 0.1, 0.1, 0.1}; /* m, rad, m/s, rad/s */
     for (int k = 0; k < count; k++) {
@@ -138,8 +137,8 @@ static void find_units(const SlotSamples *samples, bool bomb, int count, float *
     }
 }
 
-static bool see_bodies(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
-                       Error *error) {
+static bool fit_body_projections(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
+                                 Error *error) {
     Projection *projections[] = {&network->bomb_state, &network->state};
     for (int p = 0; p < 2; p++) {
         const int count = projections[p]->from;
@@ -149,7 +148,7 @@ static bool see_bodies(SlotNetwork *network, const SlotSamples *samples, Numbers
         for (int i = 0; i < samples->count; i++) {
             const SceneView *view = &samples->items[i].view;
             numbers->begin[i] = numbers->count;
-            for (int k = 0; k < count; k++) put(numbers, k, units[k] * (p == 0 ? view->bomb[k] : view->state[k]));
+            for (int k = 0; k < count; k++) append(numbers, k, units[k] * (p == 0 ? view->bomb[k] : view->state[k]));
         }
         bool ok = fit(numbers, samples, seed, projections[p], error);
         for (int k = 0; k < count; k++) weigh_row(projections[p], k, units[k]);
@@ -159,13 +158,13 @@ static bool see_bodies(SlotNetwork *network, const SlotSamples *samples, Numbers
     return true;
 }
 
-static bool see_contacts(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
-                         Error *error) {
+static bool fit_contact_projections(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
+                                    Error *error) {
     for (int i = 0; i < samples->count; i++) {
         const SlotView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
         for (int k = 0; k < slots->slot_count; k++)
-            put(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
+            append(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
     }
     if (!fit(numbers, samples, seed, &network->present, error)) return false;
     for (int slot = 0; slot < network->slot_count; slot++)
@@ -173,7 +172,7 @@ static bool see_contacts(SlotNetwork *network, const SlotSamples *samples, Numbe
     for (int i = 0; i < samples->count; i++) {
         const SlotView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
-        for (int k = 0; k < 2 * slots->slot_count; k++) put(numbers, slots->impulses[k], slots->warm[k]);
+        for (int k = 0; k < 2 * slots->slot_count; k++) append(numbers, slots->impulses[k], slots->warm[k]);
     }
     return fit(numbers, samples, seed, &network->warm, error);
 }
@@ -186,8 +185,8 @@ static bool find_projections(SlotNetwork *network, const SlotSamples *samples, u
     }
     Numbers numbers;
     bool ok = make_numbers(&numbers, samples, each) || error_memory(error, "projections");
-    ok = ok && see_bodies(network, samples, &numbers, seed, error) &&
-         see_contacts(network, samples, &numbers, seed, error);
+    ok = ok && fit_body_projections(network, samples, &numbers, seed, error) &&
+         fit_contact_projections(network, samples, &numbers, seed, error);
     free(numbers.begin);
     free(numbers.column);
     free(numbers.value);
@@ -198,7 +197,8 @@ static void draw(float *numbers, size_t count, double spread, gsl_rng *generator
     for (size_t i = 0; i < count; i++) numbers[i] = (float)gsl_ran_gaussian(generator, spread);
 }
 
-/* Hidden layers keep the size of what comes in (Glorot, Bengio 2010); the last begins near no change. */
+/* Hidden layers preserve the variance of their inputs (Glorot, Bengio 2010); the last layer starts with outputs near
+   0. */
 static bool draw_weights(SlotNetwork *network, uint64_t seed) {
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return false;
@@ -211,7 +211,7 @@ static bool draw_weights(SlotNetwork *network, uint64_t seed) {
     return true;
 }
 
-/* Rounding the rows to bytes moved the means of what it sees, too: back to 0. */
+/* Packing the projections to bytes shifted the means of the inputs; moves them back to 0. */
 static void recentre(SlotNetwork *network, const SlotSamples *samples) {
     Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
     for (int p = 0, input = 0; p < 4; p++)
@@ -222,9 +222,9 @@ static void recentre(SlotNetwork *network, const SlotSamples *samples) {
         }
 }
 
-SlotNetwork *slot_network_for(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error) {
+SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error) {
     if (samples->count == 0) {
-        error_input(error, "scene-net", "no launch touches a box so hard that there is something to learn");
+        error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate");
         return NULL;
     }
     const ContactProblem *problem = &samples->items[0].problem;
@@ -235,14 +235,14 @@ SlotNetwork *slot_network_for(SlotSamples *samples, const SlotWidths *widths, ui
     free(slots);
     if (network == NULL) return NULL;
     find_caps(network, samples);
-    bool ok = slot_samples_look(samples, 0, network, error) &&
+    bool ok = slot_samples_compute_inputs(samples, 0, network, error) &&
               (find_scales(network, samples) || error_memory(error, "scene-net")) &&
               find_projections(network, samples, seed, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
     if (ok) slot_network_pack(network);
-    ok = ok && slot_samples_look(samples, 0, network, error);
+    ok = ok && slot_samples_compute_inputs(samples, 0, network, error);
     if (ok) recentre(network, samples);
-    if (ok && slot_samples_look(samples, 0, network, error)) return network;
+    if (ok && slot_samples_compute_inputs(samples, 0, network, error)) return network;
     slot_network_destroy(network);
     return NULL;
 }

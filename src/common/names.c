@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/names.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool has(const NameList *list, const char *name, size_t length) {
+    for (const char *at = list->text; (at = strstr(at, name)) != NULL; at++) {
+        bool begins = at == list->text || at[-1] == ' ', ends = at[length] == '\0' || at[length] == ',';
+        if (begins && ends) return true;
+    }
+    return false;
+}
+
+void name_list_add(NameList *list, const char *name) {
+    size_t length = strlen(name);
+    if (length == 0 || list->used + length + 3 > sizeof list->text || has(list, name, length)) return;
+    list->used += (size_t)snprintf(list->text + list->used, sizeof list->text - list->used, "%s%s",
+                                   list->used > 0 ? ", " : "", name);
+}
+
+bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known) {
+    return error_input(error, where, "'%.64s' is not %s; known: %s", name, what,
+                       known->used > 0 ? known->text : "none");
+}
