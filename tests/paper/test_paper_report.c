@@ -16,15 +16,9 @@ static const char *folder(void) {
     return temporary_folder;
 }
 
-/* Without waiting for the disk. */
-static void write_bytes(const char *name, const void *data, size_t size) {
-    FILE *file = fopen(temporary_path(name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, size, file), size);
-    fclose(file);
+static void write_text_file(const char *name, const char *text) {
+    write_bytes(temporary_path(name), text, strlen(text));
 }
-
-static void write_text_file(const char *name, const char *text) { write_bytes(name, text, strlen(text)); }
 
 static const char *figure_name(const char *name, const char *ending) {
     static char path[64];
@@ -61,7 +55,7 @@ static void make_study(void) {
     size_t size;
     char *picture = draw_picture(&size);
     for (int i = 0; figures[i] != NULL; i++) {
-        write_bytes(figure_name(figures[i], "png"), picture, size);
+        write_bytes(temporary_path(figure_name(figures[i], "png")), picture, size);
         write_text_file(figure_name(figures[i], "txt"), "Boxes at 5 µs <step> & *more*.\n");
     }
     free(picture);

@@ -3,12 +3,7 @@
 
 #include "paper/report/template.h"
 
-static void write_file(const char *name, const char *text) {
-    FILE *file = fopen(temporary_path(name), "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
+static void write_file(const char *name, const char *text) { write_bytes(temporary_path(name), text, strlen(text)); }
 
 static void write_tables(void) {
     write_file("values.csv", "key,value\nruns,12\nshare,0.125\nnone,\nbig,123456\nscene,stack\n");

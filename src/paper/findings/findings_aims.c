@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study's aims, and the paper's claims about factors. */
-#include "paper/findings/findings_aims.h"
-
 #include "paper/findings/findings_tables.h"
+#include "paper/study/aims.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,13 +26,13 @@ static void judge(AimRow *row, bool at_least) {
 }
 
 /* The network for a target with the lowest error. */
-static AimRow error_aim(const StudyTables *study, PairTarget target, double aim) {
+static AimRow error_aim(const StudyTables *study, PairTarget target) {
     int among;
     const TrainedRow *best = study_best(study, target, NULL, SMALL_NETWORK, &among);
     AimRow row = {.kind = "error",
                   .subject = pair_target_names[target],
                   .network = best != NULL ? best->network : "",
-                  .aim = aim,
+                  .aim = target_aims[target],
                   .measured = best != NULL ? best->ratio : NAN,
                   .free = 1};
     judge(&row, false);
@@ -63,12 +62,12 @@ static AimRow rate_aim(const StudyTables *study, int scene, double aim) {
 
 static bool write_aims(const FindingsFile *file, const StudyTables *study) {
     enum { SINGLE, STACK }; /* of paper_scene_names */
-    const AimRow rows[] = {error_aim(study, TARGET_PAIR, 0.4), error_aim(study, TARGET_NET, 0.4),
-                           error_aim(study, TARGET_IMPULSE, 0.1), rate_aim(study, SINGLE, 0.95),
-                           rate_aim(study, STACK, 0.75)};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (!findings_add(file, &rows[i])) return false;
-    return true;
+    for (int target = 0; target < PAPER_TARGETS; target++) {
+        const AimRow row = error_aim(study, (PairTarget)target);
+        if (!findings_add(file, &row)) return false;
+    }
+    const AimRow single = rate_aim(study, SINGLE, 0.95), stack = rate_aim(study, STACK, 0.75);
+    return findings_add(file, &single) && findings_add(file, &stack);
 }
 
 static const CsvColumn aim_columns[] = {FINDINGS_TEXT(AimRow, kind),     FINDINGS_TEXT(AimRow, subject),

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Counts and extremes over all networks and runs. */
-#include "paper/findings/findings_aims.h"
 #include "paper/findings/findings_outlook.h"
 #include "paper/findings/findings_tables.h"
+#include "paper/study/aims.h"
 #include "paper/study/published.h"
 #include "study/closed_loop.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores during training beside those of the paper's Table 1. */
-#include "paper/findings/findings_aims.h"
 #include "paper/findings/findings_tables.h"
+#include "paper/study/aims.h"
 #include "paper/study/published.h"
 
 #include <math.h>

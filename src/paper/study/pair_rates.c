@@ -209,7 +209,7 @@ static bool is_right(const Rating *rating, RateDefinition definition, Vec2 error
 }
 
 /* right[PHASES], count[PHASES] to shares of each phase and of all. */
-static void put_shares(const Rating *rating, const double *right, const double *count, RateDefinition definition,
+static void set_shares(const Rating *rating, const double *right, const double *count, RateDefinition definition,
                        RateColumn column, PairRates *rates) {
     double all_right = 0, all_count = 0;
     for (int phase = 0; phase < PHASES; phase++) {
@@ -227,7 +227,7 @@ static void count_pairs(const Rating *rating, RateDefinition definition, RateCol
         right[pair->phase] += is_right(rating, definition, pair->error[column]);
         count[pair->phase]++;
     }
-    put_shares(rating, right, count, definition, column, rates);
+    set_shares(rating, right, count, definition, column, rates);
 }
 
 static void summarise(const Rating *rating, PairRates *rates) {
@@ -237,7 +237,7 @@ static void summarise(const Rating *rating, PairRates *rates) {
             right[phase] = rating->right[phase][c];
             bodies[phase] = rating->bodies[phase][c];
         }
-        put_shares(rating, right, bodies, RATE_BODIES, c, rates);
+        set_shares(rating, right, bodies, RATE_BODIES, c, rates);
         count_pairs(rating, RATE_RANGE, c, rates);
         count_pairs(rating, RATE_ABSOLUTE, c, rates);
     }

@@ -6,8 +6,8 @@
 
 #include "common/file.h"
 #include "dataset/dataset.h"
-#include "paper/figures/engine_figure.h"
-#include "paper/figures/engine_figures.h"
+#include "paper/figures/illustration_parts.h"
+#include "paper/figures/illustrations.h"
 #include "figure/separating_axes.h"
 #include "sketch/sketch_files.h"
 #include "simulate/simulate.h"
@@ -20,7 +20,7 @@ static int draw_all(void **state) {
     (void)state;
     Error error = {0};
     temporary_path(""); /* makes the folder */
-    if (engine_figures_draw(SCENES, temporary_folder, &error)) return 0;
+    if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
     print_error("%s\n", error.message);
     return 1;
 }
@@ -37,8 +37,8 @@ static char *read_file(const char *name, const char *ending, size_t *size) {
 static void every_figure_is_a_picture_a_drawing_and_a_caption(void **state) {
     (void)state;
     int count = 0;
-    for (; engine_figure_names[count] != NULL; count++) {
-        const char *name = engine_figure_names[count];
+    for (; illustration_names[count] != NULL; count++) {
+        const char *name = illustration_names[count];
         size_t size;
         char *png = read_file(name, "png", &size);
         /* 174 mm at 300 dots an inch: 2055. */
@@ -99,8 +99,8 @@ static void the_loop_counts_what_the_run_has(void **state) {
     const char *counts = strstr(caption, "counts of step");
     assert_non_null(counts);
     assert_int_equal(sscanf(counts,
-                            "counts of step %d of stack.yaml, the one after the bomb's first touch: of %d pairs of "
-                            "bodies %d have bounding boxes that overlap, of these %d touch, in %d points, %d of",
+                            "counts of step %d of stack.yaml, the one after the bomb's first touch. Of %d pairs of "
+                            "bodies, %d have overlapping bounding boxes; %d of these touch, in %d points, of which %d",
                             &step, &pairs, &candidates, &touching, &points, &warm),
                      6);
     free(caption);
@@ -143,9 +143,9 @@ static void the_collision_shown_is_the_engines(void **state) {
     double x, y;
     char *caption = read_file("narrow-phase", "txt", &size);
     assert_int_equal(sscanf(caption, "The narrow phase for bodies %d and %d in step %d", &a, &b, &step), 3);
-    const char *end = strstr(caption, "The least");
+    const char *end = strstr(caption, "The smallest overlap, ");
     assert_non_null(end);
-    assert_int_equal(sscanf(end, "The least, %d mm, gives the normal (%lf, %lf)", &least, &x, &y), 3);
+    assert_int_equal(sscanf(end, "The smallest overlap, %d mm, gives the normal (%lf, %lf)", &least, &x, &y), 3);
     end = strstr(end, "points, ");
     assert_non_null(end);
     assert_int_equal(sscanf(end, "points, %d and %d mm deep.", &deep[0], &deep[1]), 2);
@@ -232,10 +232,10 @@ static void the_row_shown_is_the_datasets(void **state) {
     int rows, bodies[2], step;
     double x, changes[4];
     char *caption = read_file("data", "txt", &size);
-    const char *count = strstr(caption, "in each step, "), *row = strstr(caption, "of bodies");
+    const char *count = strstr(caption, "per step, "), *row = strstr(caption, "of bodies");
     const char *box = strstr(caption, "velocity of the box by ");
     assert_true(count != NULL && row != NULL && box != NULL);
-    assert_int_equal(sscanf(count, "in each step, %d rows", &rows), 1);
+    assert_int_equal(sscanf(count, "per step, %d rows", &rows), 1);
     assert_int_equal(
         sscanf(row, "of bodies %d and %d in step %d of the launch from x = %lf m", &bodies[0], &bodies[1], &step, &x),
         4);
@@ -268,12 +268,12 @@ static void the_same_run_gives_the_same_files(void **state) {
     (void)state;
     static const char *const endings[] = {"png", "svg"};
     Error error = {0};
-    Scene *scenes[ENGINE_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
+    Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
     assert_ok(scenes[SCENE_STACK] != NULL, error);
     Sketch sketch;
     char caption[CAPTION_SIZE];
-    sketch_begin(&sketch, figure_loop.width, figure_loop.height);
-    assert_ok(figure_loop.draw(&sketch, scenes, caption, &error), error);
+    sketch_begin(&sketch, illustration_loop.width, illustration_loop.height);
+    assert_ok(illustration_loop.draw(&sketch, scenes, caption, &error), error);
     assert_ok(sketch_draw(&sketch, temporary_path("again"), &error), error);
     sketch_free(&sketch);
     scene_destroy(scenes[SCENE_STACK]);
@@ -312,7 +312,7 @@ static void expect_refused(const char *scenes, const char *message) {
     Error error = {0};
     const char *folder = temporary_path("refused");
     assert_ok(file_make_directory(folder, &error), error);
-    assert_false(engine_figures_draw(scenes, folder, &error));
+    assert_false(illustrations_draw(scenes, folder, &error));
     assert_error(error, ERROR_INPUT, message);
     char path[512];
     snprintf(path, sizeof path, "%s/loop.png", folder);

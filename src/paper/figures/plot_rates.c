@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Three readings of "successful prediction" side by side; impacts above, rest below. */
+/* Three definitions of a right prediction side by side; impacts above, rest below. */
 #include "chart/figure_axis.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static const double panel_height = 37, left = 13.5, right = 2, gap = 4, row_gap 
 /* The paper's prediction rates, %. */
 static const double paper_least = 60, paper_most = 91;
 
-/* Halves of what is drawn at a rate, in units of the axes: a stem, the constant's bar. */
+/* Half sizes of a stem and of the constant predictor's bar, in units of the axes. */
 static const double stem = 0.017, bar_width = 0.08, bar_height = 0.8;
 
 typedef struct Rates {
@@ -71,14 +71,14 @@ static FigureLook band_look(void) {
         "the paper's 60 to 91%", {.colour = "#E4E4E4", .ink = "#E4E4E4", .dashes = "solid"}, 0, false, 2.4, false};
 }
 
-static void put_band(const Rates *rates) {
+static void draw_band(const Rates *rates) {
     FigureLook look = band_look();
     figure_series(rates->page);
     figure_bar(rates->page, -0.5, paper_least, PAPER_SCENES - 0.5, paper_most);
     figure_draw(rates->page, &look);
 }
 
-static void put_network(const Rates *rates, int network, int definition, int phase) {
+static void draw_network(const Rates *rates, int network, int definition, int phase) {
     FigureLook stems = stem_look(network), marks = figure_marks(stems);
     stems.marks = false;
     for (int heads = 0; heads <= 1; heads++) {
@@ -95,7 +95,7 @@ static void put_network(const Rates *rates, int network, int definition, int pha
     }
 }
 
-static void put_constants(const Rates *rates, int definition, int phase) {
+static void draw_constants(const Rates *rates, int definition, int phase) {
     FigureLook look = constant_look();
     figure_series(rates->page);
     for (int i = 0; i < rates->count; i++) {
@@ -107,7 +107,7 @@ static void put_constants(const Rates *rates, int definition, int phase) {
     figure_draw(rates->page, &look);
 }
 
-static void put_engines(const Rates *rates, int definition, int phase) {
+static void draw_engines(const Rates *rates, int definition, int phase) {
     for (int k = 0; k < SWEEPS; k++) {
         FigureLook look = engine_look(k);
         figure_series(rates->page);
@@ -118,7 +118,7 @@ static void put_engines(const Rates *rates, int definition, int phase) {
     }
 }
 
-static void put_panel(const Rates *rates, int definition, int phase) {
+static void draw_panel(const Rates *rates, int definition, int phase) {
     FigurePage *page = rates->page;
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (DEFINITIONS - 1)) / DEFINITIONS;
     double up = bottom + (SHOWN_PHASES - 1 - phase) * (panel_height + row_gap);
@@ -130,14 +130,14 @@ static void put_panel(const Rates *rates, int definition, int phase) {
                   NULL);
     figure_linear(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
                   definition == 0 ? labels[phase] : NULL);
-    put_band(rates);
-    for (int i = 0; i < NETWORKS; i++) put_network(rates, i, definition, phase);
-    put_constants(rates, definition, phase);
-    put_engines(rates, definition, phase);
+    draw_band(rates);
+    for (int i = 0; i < NETWORKS; i++) draw_network(rates, i, definition, phase);
+    draw_constants(rates, definition, phase);
+    draw_engines(rates, definition, phase);
     figure_panel_end(page);
 }
 
-static void put_legend(const Rates *rates) {
+static void draw_legend(const Rates *rates) {
     FigureLook looks[NETWORKS + SWEEPS + 2];
     int count = 0;
     for (int i = 0; i < NETWORKS; i++)
@@ -158,7 +158,7 @@ static void keep_shown(Rates *rates, RateRow *rows, int count) {
     }
 }
 
-bool figure_rates(const char *folder, FigurePage *page, Error *error) {
+bool plot_rates(const char *folder, FigurePage *page, Error *error) {
     Rates rates = {.page = page};
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_rate_layout, error)) return false;
@@ -166,13 +166,13 @@ bool figure_rates(const char *folder, FigurePage *page, Error *error) {
     if (rates.count > 0) {
         figure_begin(page, FIGURE_PAGE_WIDTH, bottom + 2 * panel_height + row_gap + top);
         for (int phase = 0; phase < SHOWN_PHASES; phase++)
-            for (int definition = 0; definition < DEFINITIONS; definition++) put_panel(&rates, definition, phase);
-        put_legend(&rates);
+            for (int definition = 0; definition < DEFINITIONS; definition++) draw_panel(&rates, definition, phase);
+        draw_legend(&rates);
         fprintf(
             page->caption,
-            "Share of right predictions in each scene, by three readings of what is right, in the frames of impacts "
-            "and at rest; beside each network what always predicting the mean would score (bar) and what the "
-            "engine does with 1, 4 and 10 sweeps (crosses). Grey band: the 60 to 91%% of the paper.");
+            "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each network: "
+            "the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: the paper's 60 "
+            "to 91%%.");
         figure_end(page);
     }
     csv_table_free(&table);

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 2: a collision of the bomb from the pyramid's run, at true scale: left the overlaps along the four axes, right
-   the contact points that come of the least. */
+/* Figure 2: a collision of the bomb in the pyramid's run, at true scale. Left: the overlaps along the four axes. Right: the
+   contact points from the smallest overlap. */
 #include "figure/narrow_phase.h"
-#include "paper/figures/engine_figure.h"
+#include "paper/figures/illustration_parts.h"
 #include "paper/figures/engine_run.h"
 
 #include "pair/pair.h"
 
 #include <math.h>
 
-#define LEAST_TILT 10.0 /* degrees: below, two axes of one box can hardly be told from the other's */
+#define LEAST_TILT 10.0 /* degrees; below it the axes of the two boxes look the same */
 
 static const double width = FIGURE_PAGE_WIDTH, height = 84, split = 97; /* mm */
 
-/* Degrees between the sides of two boxes. */
+/* Angle between the sides of two boxes, degrees. */
 static double tilt(const ProblemBody *a, const ProblemBody *b) {
     double turned = fmod(fabs((double)b->angle - (double)a->angle) * 180 / M_PI, 90);
     return fmin(turned, 90 - turned);
 }
 
-/* The bomb against a box that can move, turned against each other and with two points: what the text describes shows. */
+/* The bomb and a movable box, at an angle and with two contact points: a case with all that the caption describes. */
 static bool shows_all(const ContactProblem *problem, int first) {
     int a = problem->contacts[first].a, b = problem->contacts[first].b;
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
@@ -39,7 +39,7 @@ static bool find_in_step(Collision *collision, const EngineRun *run) {
                                  .points = 8};
         for (int k = 0; k < 2; k++)
             snprintf(collision->names[k], sizeof collision->names[k], "%s", is_bomb(collision, k) ? "bomb" : "box");
-        /* Of two that are nearly alike the engine may keep the other. */
+        /* Of two nearly equal overlaps the engine may choose the larger. */
         if (collision_find(collision) && collision->least == least_overlap(collision->overlaps)) return true;
     }
     return false;
@@ -65,17 +65,17 @@ static void write_caption(char caption[CAPTION_SIZE], const Collision *c) {
     const Manifold *manifold = &c->manifold;
     snprintf(
         caption, CAPTION_SIZE,
-        "The narrow phase for bodies %d and %d in step %d of pyramid.yaml, at true scale: the boxes overlap by %.0f "
-        "and %.0f mm along the axes of the %s, and by %.0f and %.0f mm along those of the %s. The least, %.0f mm, "
-        "gives the normal (%s, %s), and the incident edge, clipped to the sides of the reference edge, two contact "
-        "points, %.0f and %.0f mm deep.",
+        "The narrow phase for bodies %d and %d in step %d of pyramid.yaml, at true scale. The boxes overlap by %.0f "
+        "and %.0f mm along the axes of the %s, and by %.0f and %.0f mm along those of the %s. The smallest overlap, "
+        "%.0f mm, gives the normal (%s, %s). The incident edge, clipped to the sides of the reference edge, gives two "
+        "contact points, %.0f and %.0f mm deep.",
         c->bodies[0], c->bodies[1], c->step, 1000 * o[0].depth, 1000 * o[1].depth, name_of(c, 0), 1000 * o[2].depth,
         1000 * o[3].depth, name_of(c, 1), 1000 * o[c->least].depth, show_decimals((double)manifold->normal.x, 3).text,
         show_decimals((double)manifold->normal.y, 3).text, -1000 * (double)manifold->points[0].separation,
         -1000 * (double)manifold->points[1].separation);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
     Collision collision;
     if (!find_collision(&collision, scenes[SCENE_PYRAMID], error)) return false;
     put_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);
@@ -87,4 +87,4 @@ static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char captio
     return true;
 }
 
-const EngineFigure figure_narrow_phase = {width, height, draw};
+const Illustration illustration_narrow_phase = {width, height, draw};

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "paper/figures/engine_figures.h"
+#include "paper/figures/illustrations.h"
 
 #include "common/file.h"
-#include "paper/figures/engine_figure.h"
+#include "paper/figures/illustration_parts.h"
 #include "sketch/sketch_files.h"
 
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *const scene_names[ENGINE_SCENES] = {"single", "stack", "pyramid"};
+static const char *const scene_names[ILLUSTRATION_SCENES] = {"single", "stack", "pyramid"};
 
-static const EngineFigure *const figures[] = {&figure_loop, &figure_narrow_phase, &figure_data, &figure_scenes};
+static const Illustration *const figures[] = {&illustration_loop, &illustration_narrow_phase, &illustration_data, &illustration_scenes};
 
-const char *const engine_figure_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
+const char *const illustration_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
 
 static bool write_caption(const char *folder, const char *name, const char *caption, Error *error) {
     char path[PATH_MAX], line[CAPTION_SIZE + 1];
@@ -22,7 +22,7 @@ static bool write_caption(const char *folder, const char *name, const char *capt
            file_write(path, line, (size_t)length, error);
 }
 
-static bool draw_figure(const EngineFigure *figure, const char *name, Scene *const *scenes, const char *folder,
+static bool draw_figure(const Illustration *figure, const char *name, Scene *const *scenes, const char *folder,
                         Error *error) {
     Sketch sketch;
     char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
@@ -43,15 +43,15 @@ static Scene *read_scene(const char *folder, const char *name, Error *error) {
     return NULL;
 }
 
-bool engine_figures_draw(const char *scenes_folder, const char *folder, Error *error) {
-    Scene *scenes[ENGINE_SCENES] = {NULL};
+bool illustrations_draw(const char *scenes_folder, const char *folder, Error *error) {
+    Scene *scenes[ILLUSTRATION_SCENES] = {NULL};
     bool done = true;
-    for (int i = 0; done && i < ENGINE_SCENES; i++) {
+    for (int i = 0; done && i < ILLUSTRATION_SCENES; i++) {
         scenes[i] = read_scene(scenes_folder, scene_names[i], error);
         done = scenes[i] != NULL;
     }
-    for (size_t i = 0; done && engine_figure_names[i] != NULL; i++)
-        done = draw_figure(figures[i], engine_figure_names[i], scenes, folder, error);
-    for (int i = 0; i < ENGINE_SCENES; i++) scene_destroy(scenes[i]);
+    for (size_t i = 0; done && illustration_names[i] != NULL; i++)
+        done = draw_figure(figures[i], illustration_names[i], scenes, folder, error);
+    for (int i = 0; i < ILLUSTRATION_SCENES; i++) scene_destroy(scenes[i]);
     return done;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 1: the operational loop, with the counts of the step after the bomb's first touch: then each stage leaves out
-   some of what the one before has found. */
-#include "paper/figures/engine_figure.h"
+/* Figure 1: the operational loop, with the counts of the step after the bomb's first touch. In that step each stage
+   finds fewer pairs than the one before. */
+#include "paper/figures/illustration_parts.h"
 #include "paper/figures/engine_run.h"
 
 #include "collision/broad_phase.h"
@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-enum { PAPER_OUTPUTS = 2 }; /* the change of velocity of one body as seen from the other, along x and y */
+enum { PAPER_OUTPUTS = 2 }; /* the change of the relative velocity along x and y */
 
 typedef struct StepCounts {
     int bodies, moving, could_touch, candidates, touching, points, warm, sweeps, step;
@@ -19,7 +19,7 @@ typedef struct StepCounts {
     double bomb_moved;     /* m */
 } StepCounts;
 
-/* The broad phase once more: the world keeps nothing of it. -1 when memory is short. */
+/* Repeats the broad phase, whose result the world does not keep. -1 if out of memory. */
 static int count_candidates(const EngineRun *run) {
     const ContactProblem *problem = world_problem(run->world);
     size_t count = (size_t)problem->body_count;
@@ -66,7 +66,7 @@ static const double box_width = 51, box_height = 20, column = 60.5, low_row = 23
 
 static Point corner(int column_number, double row) { return (Point){1 + column * column_number, row}; }
 
-static void put_stage(Sketch *sketch, Point at, const char *title, const char *first, const char *second,
+static void draw_stage(Sketch *sketch, Point at, const char *title, const char *first, const char *second,
                       const Pen *pen, uint32_t ink) {
     sketch_rectangle(sketch, at, (Point){at.x + box_width, at.y + box_height}, pen);
     const TextStyle heading = {9, TEXT_LEFT, ink, 0, false}, words = {7.5, TEXT_LEFT, INK, 0, false};
@@ -75,7 +75,7 @@ static void put_stage(Sketch *sketch, Point at, const char *title, const char *f
     sketch_text(sketch, (Point){at.x + 2.5, at.y + 4.4}, &words, "%s", second);
 }
 
-static void put_arrows(Sketch *sketch) {
+static void draw_arrows(Sketch *sketch) {
     double low = low_row + box_height / 2, high = high_row + box_height / 2;
     double left = 1 + box_width / 2, right = left + 2 * column;
     for (int i = 0; i < 2; i++) {
@@ -88,7 +88,7 @@ static void put_arrows(Sketch *sketch) {
     sketch_arrow(sketch, (Point){left, top}, (Point){left, bottom}, HEAD_AT_END, INK, 2);
 }
 
-static void put_network(Sketch *sketch, const StepCounts *counts) {
+static void draw_network(Sketch *sketch, const StepCounts *counts) {
     const Pen pen = {NETWORK_COLOUR, 0.12, NETWORK_INK, 1.6, "(12,6)"};
     Point low = {corner(1, 0).x - 20, 1}, high = {low.x + box_width + 40, 15};
     sketch_rectangle(sketch, low, high, &pen);
@@ -102,50 +102,50 @@ static void put_network(Sketch *sketch, const StepCounts *counts) {
 
 enum { LINE_SIZE = 96 };
 
-static void put_stages(Sketch *sketch, const StepCounts *c) {
+static void draw_stages(Sketch *sketch, const StepCounts *c) {
     const Pen stage = pen_fill(BOX_COLOUR, 0.08, BOX_INK), solving = pen_fill(NETWORK_COLOUR, 0.3, NETWORK_INK);
     char first[LINE_SIZE], second[LINE_SIZE];
     snprintf(first, LINE_SIZE, "Bounding boxes of %d bodies:", c->bodies);
     snprintf(second, LINE_SIZE, "%d of %d pairs overlap", c->candidates, c->could_touch);
-    put_stage(sketch, corner(0, high_row), "1  Broad phase", first, second, &stage, BOX_INK);
+    draw_stage(sketch, corner(0, high_row), "1  Broad phase", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "%d of these pairs touch: %d arbiters", c->touching, c->touching);
     snprintf(second, LINE_SIZE, "with %d contact points", c->points);
-    put_stage(sketch, corner(1, high_row), "2  Narrow phase", first, second, &stage, BOX_INK);
+    draw_stage(sketch, corner(1, high_row), "2  Narrow phase", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "Adds %.3f m/s to the", c->gravity);
     snprintf(second, LINE_SIZE, "velocities of %d bodies", c->moving);
-    put_stage(sketch, corner(2, high_row), "3  Gravity", first, second, &stage, BOX_INK);
+    draw_stage(sketch, corner(2, high_row), "3  Gravity", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "%d points: mass, bias, friction", c->points);
     snprintf(second, LINE_SIZE, "Warm start at %d of them", c->warm);
-    put_stage(sketch, corner(2, low_row), "4  Contact problem", first, second, &stage, BOX_INK);
+    draw_stage(sketch, corner(2, low_row), "4  Contact problem", first, second, &stage, BOX_INK);
     snprintf(first, LINE_SIZE, "%d sweeps over %d points:", c->sweeps, c->points);
     snprintf(second, LINE_SIZE, "%d pairs of impulses", c->sweeps * c->points);
-    put_stage(sketch, corner(1, low_row), "5  Constraint solving", first, second, &solving, NETWORK_INK);
+    draw_stage(sketch, corner(1, low_row), "5  Constraint solving", first, second, &solving, NETWORK_INK);
     snprintf(first, LINE_SIZE, "New velocities carry %d bodies", c->moving);
     snprintf(second, LINE_SIZE, "for 1/%.4g s, the bomb %.2f m", c->steps_a_second, c->bomb_moved);
-    put_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
+    draw_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
     EngineRun run;
     StepCounts counts;
     if (!engine_run_begin(&run, scenes[SCENE_STACK], error)) return false;
     bool done = engine_run_to_touch(&run, error) && engine_run_step(&run, error) && count_step(&counts, &run, error);
     engine_run_end(&run);
     if (!done) return false;
-    put_stages(sketch, &counts);
-    put_arrows(sketch);
-    put_network(sketch, &counts);
+    draw_stages(sketch, &counts);
+    draw_arrows(sketch);
+    draw_network(sketch, &counts);
     const TextStyle words = {7.5, TEXT_CENTER, INK_SOFT, 0, false};
     sketch_text(sketch, (Point){corner(1, 0).x + box_width / 2, (low_row + box_height + high_row) / 2}, &words,
                 "One step of 1/%.4g s; counts of step %d of the stack, just after the bomb's first touch",
                 counts.steps_a_second, counts.step);
     snprintf(
         caption, CAPTION_SIZE,
-        "The operational loop, with the counts of step %d of stack.yaml, the one after the bomb's first touch: of %d "
-        "pairs of bodies %d have bounding boxes that overlap, of these %d touch, in %d points, %d of which begin with "
-        "their impulse of the step before. The network takes the place of stage 5 alone.",
+        "The operational loop, with the counts of step %d of stack.yaml, the one after the bomb's first touch. Of %d "
+        "pairs of bodies, %d have overlapping bounding boxes; %d of these touch, in %d points, of which %d have a warm "
+        "start. The network replaces stage 5 only.",
         counts.step, counts.could_touch, counts.candidates, counts.touching, counts.points, counts.warm);
     return true;
 }
 
-const EngineFigure figure_loop = {FIGURE_PAGE_WIDTH, 76, draw};
+const Illustration illustration_loop = {FIGURE_PAGE_WIDTH, 76, draw};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One column wide: does it help to have learned smaller scenes first? */
+/* One column wide: the error from scratch beside that after training on smaller scenes. */
 #include "chart/figure_axis.h"
 #include "chart/figure_seeds.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static FigureLook look_of(int start) {
     return figure_look(start, names[start]);
 }
 
-/* Points of a start's errors; or of all constants. */
+/* Points of the errors of a start; STARTS: of the constant predictor. */
 static int gather(const Transfer *transfer, int start) {
     int count = 0;
     for (int i = 0; i < transfer->count; i++) {
@@ -41,8 +41,8 @@ static int gather(const Transfer *transfer, int start) {
     return count;
 }
 
-/* Powers of two, as many as have room. */
-static void put_launches(FigurePage *page, double low, double high) {
+/* Ticks at powers of two, as many as fit. */
+static void draw_launches(FigurePage *page, double low, double high) {
     int step = (int)(log2(high / low) / most_labels) + 1;
     const char *separator = "";
     fprintf(page->script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", low, high);
@@ -55,7 +55,7 @@ static void put_launches(FigurePage *page, double low, double high) {
     figure_axis_label(page, 'x', "Launches of the pyramid");
 }
 
-static void put_axes(const Transfer *transfer) {
+static void draw_axes(const Transfer *transfer) {
     double least = 1 << MAX_POWER, most = 1, error = least_error;
     for (int i = 0; i < transfer->count; i++) {
         const TransferRow *row = &transfer->rows[i];
@@ -64,7 +64,7 @@ static void put_axes(const Transfer *transfer) {
         error = fmax(error, fmax(row->error, row->constant)); /* of a number and NAN, the number */
     }
     double margin = most > 4 * least ? 1.3 : 2;
-    put_launches(transfer->page, least / margin, most * margin);
+    draw_launches(transfer->page, least / margin, most * margin);
     figure_linear(transfer->page, 'y', 0, error * 1.08, NULL, "RMS velocity error (m/s)");
 }
 
@@ -73,7 +73,7 @@ static void draw(Transfer *transfer) {
     FigureLook looks[STARTS + 1] = {look_of(0), look_of(1), figure_dashed("predicting the mean")};
     figure_begin(page, FIGURE_COLUMN_WIDTH, height);
     figure_panel(page, (FigureBox){left, bottom, page->width - left - right, height - bottom - top}, "");
-    put_axes(transfer);
+    draw_axes(transfer);
     figure_seed_median(page, transfer->points, gather(transfer, STARTS), &looks[STARTS]);
     for (int start = 0; start < STARTS; start++)
         figure_seed_lines(page, transfer->points, gather(transfer, start), &looks[start]);
@@ -82,13 +82,13 @@ static void draw(Transfer *transfer) {
     figure_panel_end(page);
     figure_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
     fprintf(page->caption,
-            "Error on launches of the pyramid kept apart, over how many others a network was trained on: from scratch, "
-            "and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: always "
-            "predicting the mean.");
+            "Error on held-out launches of the pyramid, over the number of launches that a network was trained on: from "
+            "scratch, and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: the "
+            "constant predictor.");
     figure_end(page);
 }
 
-bool figure_transfer(const char *folder, FigurePage *page, Error *error) {
+bool plot_transfer(const char *folder, FigurePage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_transfer_layout, error)) return false;
     Transfer transfer = {page, table.rows, table.count, malloc((size_t)table.count * sizeof(SeedPoint))};

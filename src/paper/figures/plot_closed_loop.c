@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One line a network, one symbol a scene: how long it lasts, and what a step costs. */
+/* One line per network, one symbol per scene: frames until divergence, and the cost of a step. */
 #include "chart/figure_axis.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 #include "study/closed_loop.h"
 
@@ -23,7 +23,7 @@ typedef struct Loop {
 
 static double ratio(const ClosedLoopRow *row) { return row->us_step / row->us_step_engine; }
 
-/* Networks in the order in which the table first names them. */
+/* Networks in the order of their first rows. */
 static void number_lines(Loop *loop) {
     for (int i = 0; i < loop->count; i++) {
         int first = 0;
@@ -32,7 +32,7 @@ static void number_lines(Loop *loop) {
     }
 }
 
-/* Scenes a little above each other: equal values must not hide each other. */
+/* Scenes are offset, so that equal values do not hide each other. */
 static double place(const Loop *loop, int i) {
     return loop->line[i] + 0.23 * (loop->rows[i].scene - (PAPER_SCENES - 1) / 2.0);
 }
@@ -42,7 +42,7 @@ static FigureLook scene_look(int scene) {
     return figure_marks(figure_look(scene, names[scene]));
 }
 
-static void put_guides(const Loop *loop, const FigureAxis *axis, double mark) {
+static void draw_guides(const Loop *loop, const FigureAxis *axis, double mark) {
     FigureLook guide = {"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false, 0, false};
     FigureLook dashed = figure_dashed("");
     figure_series(loop->page);
@@ -54,7 +54,7 @@ static void put_guides(const Loop *loop, const FigureAxis *axis, double mark) {
     figure_draw(loop->page, &dashed);
 }
 
-static void put_panel(Loop *loop, bool costs) {
+static void draw_panel(Loop *loop, bool costs) {
     const FigureAxis *axis = costs ? &loop->cost : &loop->frames;
     FigurePage *page = loop->page;
     double width = costs ? FIGURE_PAGE_WIDTH - left - frames_width - gap - right : frames_width;
@@ -62,7 +62,7 @@ static void put_panel(Loop *loop, bool costs) {
                  costs ? "Cost" : "In place of the solver");
     figure_log(page, 'x', axis, costs ? "Step time / the engine's" : "Frames until apart by 0.1 m (600: never)");
     figure_linear(page, 'y', loop->lines - 0.5, -0.5, "", NULL);
-    put_guides(loop, axis, costs ? 1 : CLOSED_LOOP_FRAMES);
+    draw_guides(loop, axis, costs ? 1 : CLOSED_LOOP_FRAMES);
     for (int scene = 0; scene < PAPER_SCENES; scene++) {
         FigureLook look = scene_look(scene);
         figure_series(page);
@@ -75,7 +75,7 @@ static void put_panel(Loop *loop, bool costs) {
     }
 }
 
-static void put_names(const Loop *loop) {
+static void draw_names(const Loop *loop) {
     for (int i = 0, next = 0; i < loop->count; i++) {
         if (loop->line[i] != next) continue;
         char text[CSV_NAME_SIZE];
@@ -85,7 +85,7 @@ static void put_names(const Loop *loop) {
     }
 }
 
-static void put_legend(const Loop *loop) {
+static void draw_legend(const Loop *loop) {
     FigureLook looks[PAPER_SCENES];
     int count = 0;
     for (int scene = 0; scene < PAPER_SCENES; scene++) {
@@ -103,7 +103,7 @@ static void choose_axes(Loop *loop) {
     loop->cost = figure_axis(costs, 1e-3, 1e4, false);
 }
 
-bool figure_closed_loop(const char *folder, FigurePage *page, Error *error) {
+bool plot_closed_loop(const char *folder, FigurePage *page, Error *error) {
     Loop loop = {.page = page};
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_closed_loop_layout, error)) return false;
@@ -113,15 +113,14 @@ bool figure_closed_loop(const char *folder, FigurePage *page, Error *error) {
     choose_axes(&loop);
     figure_begin(page, FIGURE_PAGE_WIDTH, bottom + loop.lines * row_height + top);
     for (int costs = 0; costs <= 1; costs++) {
-        put_panel(&loop, costs);
-        if (costs == 0) put_names(&loop);
+        draw_panel(&loop, costs);
+        if (costs == 0) draw_names(&loop);
         figure_panel_end(page);
     }
-    put_legend(&loop);
+    draw_legend(&loop);
     fprintf(page->caption,
-            "Networks in place of the solver. Left: frames until a body is 0.1 m from where the engine has it (600, "
-            "dashed: never within the run). Right: time of a step over the engine's with its own solver (dashed: "
-            "equal).");
+            "Networks in place of the solver. Left: frames until a body is 0.1 m from its place in the engine's run (600, "
+            "dashed: never). Right: time of a step over that of the engine with its own solver (dashed: equal).");
     figure_end(page);
     csv_table_free(&table);
     return true;

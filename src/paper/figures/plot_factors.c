@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A dot plot in two columns: one line a network, the networks of a factor together. */
+/* A dot plot in two columns, one line per network, grouped by factor. */
 #include "chart/figure_axis.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
+#include "paper/study/aims.h"
 #include "paper/study/paper_tables.h"
 
 #include <math.h>
@@ -9,9 +10,6 @@
 #include <string.h>
 
 enum { HALVES = 2, LABEL_MAX = 30 };
-
-/* What the best network of a target is to reach; 0: no aim. */
-static const double aims[PAIR_TARGETS] = {0.4, 0.4, 0.1, 0};
 
 /* mm */
 static const double row_height = 3.3, half_width = FIGURE_PAGE_WIDTH / HALVES, plot_left = 36, plot_width = 39,
@@ -24,8 +22,7 @@ static const double least_ratio = 1e-4, most_ratio = 100;
 
 static bool same_factor(const TrainedRow *a, const TrainedRow *b) { return strcmp(a->factor, b->factor) == 0; }
 
-/* The rows of each factor together, factors in the order of their first rows. The caller frees them; NULL when memory is
-   short. */
+/* Rows grouped by factor, factors in the order of their first rows. The caller frees them; NULL if out of memory. */
 static TrainedRow *group_rows(const TrainedRow *rows, int count) {
     TrainedRow *grouped = malloc((size_t)count * sizeof *grouped);
     int grouped_count = 0;
@@ -45,7 +42,7 @@ static double span_of(const TrainedRow *rows, int begin, int end) {
     return span;
 }
 
-/* The second half begins with a group, where both are about as high. */
+/* Index of the first row of the second half: the start of a group, such that the higher half is as low as possible. */
 static int split(const TrainedRow *rows, int count, double *span) {
     int best = count;
     *span = span_of(rows, 0, count);
@@ -76,13 +73,13 @@ static FigureLook aim_look(void) {
         "aim for the best", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, aim_width, true};
 }
 
-/* Places of rows, downwards from 0. */
+/* Places of rows, from 0 downwards. */
 static double next_place(const Factors *factors, int i, double place) {
     if (i == factors->begin) return 0.65;
     return place + 1 + (same_factor(&factors->rows[i], &factors->rows[i - 1]) ? 0 : group_gap);
 }
 
-static void put_guides(const Factors *factors) {
+static void draw_guides(const Factors *factors) {
     FigureLook guide = guide_look(), constant = figure_dashed("");
     double place = 0;
     figure_series(factors->page);
@@ -97,7 +94,7 @@ static void put_guides(const Factors *factors) {
     figure_draw(factors->page, &constant);
 }
 
-static void put_dots(const Factors *factors, int target) {
+static void draw_dots(const Factors *factors, int target) {
     FigureLook dot = figure_marks(figure_look(target, ""));
     double place = 0;
     figure_series(factors->page);
@@ -110,22 +107,22 @@ static void put_dots(const Factors *factors, int target) {
     figure_draw(factors->page, &dot);
 }
 
-/* Higher than a dot, so that they show behind one. */
-static void put_aims(const Factors *factors) {
+/* Higher than a dot, so that they can be seen behind it. */
+static void draw_aims(const Factors *factors) {
     FigureLook look = aim_look();
     double half = pow(factors->x.log.high / factors->x.log.low, aim_width / 2 / plot_width), place = 0;
     figure_series(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
-        double aim = aims[row->target];
+        double aim = target_aims[row->target];
         if (strcmp(row->factor, "best") == 0 && aim > 0)
             figure_bar(factors->page, aim / half, place - aim_height / 2, aim * half, place + aim_height / 2);
     }
     figure_draw(factors->page, &look);
 }
 
-static void put_names(const Factors *factors, double left) {
+static void draw_names(const Factors *factors, double left) {
     double place = 0;
     for (int i = factors->begin; i < factors->end; i++) {
         const TrainedRow *row = &factors->rows[i];
@@ -142,21 +139,21 @@ static void put_names(const Factors *factors, double left) {
     }
 }
 
-static void put_half(Factors *factors, int half) {
+static void draw_half(Factors *factors, int half) {
     FigurePage *page = factors->page;
     double left = half * half_width;
     figure_panel(page, (FigureBox){left + plot_left, bottom, plot_width, factors->span * row_height}, "");
     figure_log(page, 'x', &factors->x, "Test error / that of predicting the mean");
     figure_linear(page, 'y', factors->span, 0, "", NULL);
     figure_text(page, left + numbers_right, page->height - top / 2, "right", 6.5, "parameters");
-    put_names(factors, left);
-    put_guides(factors);
-    put_aims(factors);
-    for (int target = 0; target < PAIR_TARGETS; target++) put_dots(factors, target);
+    draw_names(factors, left);
+    draw_guides(factors);
+    draw_aims(factors);
+    for (int target = 0; target < PAIR_TARGETS; target++) draw_dots(factors, target);
     figure_panel_end(page);
 }
 
-static void put_legend(FigurePage *page, const TrainedRow *rows, int count) {
+static void draw_legend(FigurePage *page, const TrainedRow *rows, int count) {
     static const char *const names[PAIR_TARGETS] = {"target pair", "target net", "target impulse", "target points"};
     FigureLook looks[PAIR_TARGETS + 2];
     int entries = 0;
@@ -171,7 +168,7 @@ static void put_legend(FigurePage *page, const TrainedRow *rows, int count) {
 }
 
 static void draw(FigurePage *page, const TrainedRow *rows, int count) {
-    FigureRange range = {aims[2], 1};
+    FigureRange range = {target_aims[TARGET_IMPULSE], 1};
     for (int i = 0; i < count; i++) figure_widen(&range, rows[i].ratio);
     Factors factors = {page, rows, 0, 0, figure_axis(range, least_ratio, most_ratio, false), 0};
     int middle = split(rows, count, &factors.span);
@@ -179,18 +176,18 @@ static void draw(FigurePage *page, const TrainedRow *rows, int count) {
     for (int half = 0; half < HALVES; half++) {
         factors.begin = half == 0 ? 0 : middle;
         factors.end = half == 0 ? middle : count;
-        if (factors.begin < factors.end) put_half(&factors, half);
+        if (factors.begin < factors.end) draw_half(&factors, half);
     }
-    put_legend(page, rows, count);
+    draw_legend(page, rows, count);
     fprintf(
         page->caption,
-        "Test error of every network, as a share of that of always predicting the mean (dashed: 1), by what differs "
-        "from the baseline; on the right the number of parameters. Upright bars: the aims for the best networks, "
-        "0.4 for the targets pair and net and 0.1 for impulse.");
+        "Test error of every network over that of the constant predictor (dashed: 1), by the factor in which it differs "
+        "from the baseline. On the right: the number of parameters. Upright bars: the aims for the best networks, 0.4 "
+        "for the targets pair and net and 0.1 for impulse.");
     figure_end(page);
 }
 
-bool figure_factors(const char *folder, FigurePage *page, Error *error) {
+bool plot_factors(const char *folder, FigurePage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_trained_layout, error)) return false;
     const int count = table.count;

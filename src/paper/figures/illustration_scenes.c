@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 4: the three scenes with the bomb on its way, by the renderer, its way drawn over them. */
-#include "paper/figures/engine_figure.h"
+/* Figure 4: the three scenes with the bomb in flight, rendered, with the bomb's path drawn over them. */
+#include "paper/figures/illustration_parts.h"
 #include "paper/figures/engine_run.h"
 
 #include "picture/picture.h"
@@ -13,15 +13,15 @@
 /* What each picture shows, m. */
 static const double left = -8, bottom = -1, wide = 16, high = 22.6;
 
-/* On the page, mm; the scale is 39 pixels a metre in the PNG. */
+/* On the page, mm; the scale is 39 pixels per metre in the PNG. */
 static const double width = FIGURE_PAGE_WIDTH, height = 87, scale = 3.302, gap = 3.4, low = 1;
 
-/* The renderer then has 39 pixels a metre, too. */
+/* The renderer then has 39 pixels per metre, too. */
 enum { RENDER_WIDTH = 1300, RENDER_HEIGHT = 1075 };
 
-static const char *const titles[ENGINE_SCENES] = {"1  Single", "2  Stack", "3  Pyramid"};
+static const char *const titles[ILLUSTRATION_SCENES] = {"1  Single", "2  Stack", "3  Pyramid"};
 
-/* The part of a rendered frame that shows the figure's window. */
+/* The part of a rendered frame inside the figure's window. */
 static Image *cut_window(const Image *frame, const Picture *picture, Error *error) {
     const Rect *panel = &picture->layout.panels[0];
     const Camera *camera = &picture->camera;
@@ -52,7 +52,7 @@ static Image *render_last(const Trajectory *run, Error *error) {
     return window;
 }
 
-/* The step of the bomb's first touch, 0 with error set where there is none. */
+/* The step of the bomb's first touch; 0 with error set if it never touches. */
 static int touching_step(const Scene *scene, Error *error) {
     EngineRun run;
     if (!engine_run_begin(&run, scene, error)) return 0;
@@ -61,7 +61,7 @@ static int touching_step(const Scene *scene, Error *error) {
     return touched ? run.frame : 0;
 }
 
-/* The scene's run until the bomb is two thirds on its way. */
+/* The scene's run up to two thirds of the bomb's flight. */
 static Trajectory *run_part(const Scene *scene, Error *error) {
     int touch = touching_step(scene, error), begin = scene->bomb.frame;
     if (touch == 0) return NULL;
@@ -73,13 +73,13 @@ static Trajectory *run_part(const Scene *scene, Error *error) {
     return method_parse(&engine, "engine", error) ? simulate(&part, &engine, NULL, error) : NULL;
 }
 
-/* A state of the bomb: in the last frame, or in its first. */
+/* Index of the bomb's state in a frame. */
 static size_t bomb_row(const Trajectory *run, int frame) {
     return (size_t)frame * (size_t)run->bodies + (size_t)run->bomb;
 }
 
-/* Where the bomb came from and where it goes, clear of the bomb itself. */
-static void put_way(Sketch *sketch, const View *view, const Trajectory *run, int begin) {
+/* Where the bomb came from and where it goes, at a distance from the bomb itself. */
+static void draw_path(Sketch *sketch, const View *view, const Trajectory *run, int begin) {
     const Pen dashed = pen_line(BOMB.fill, 1.8, "(6,5)");
     const size_t first = bomb_row(run, begin), last = bomb_row(run, run->frames - 1);
     const Vec2 from = run->position[first], to = run->position[last], v = run->velocity[last];
@@ -107,7 +107,7 @@ static double bomb_speed(const Trajectory *run) {
     return (double)hypotf(v.x, v.y);
 }
 
-static void put_words(Sketch *sketch, const View *view, const char *title, const Scene *scene, const Trajectory *run) {
+static void draw_words(Sketch *sketch, const View *view, const char *title, const Scene *scene, const Trajectory *run) {
     const TextStyle heading = {8.5, TEXT_LEFT, INK, 0, false}, words = {7.5, TEXT_LEFT, INK_SOFT, 0, false};
     int boxes = count_boxes(scene);
     sketch_text(sketch, (Point){view->low.x, height - 2.8}, &heading, "%s: %d %s", title, boxes,
@@ -116,7 +116,7 @@ static void put_words(Sketch *sketch, const View *view, const char *title, const
                 (double)scene->bomb.body.mass, bomb_speed(run));
 }
 
-static bool put_scene(Sketch *sketch, int i, const Scene *scene, int *step, Error *error) {
+static bool draw_scene(Sketch *sketch, int i, const Scene *scene, int *step, Error *error) {
     Trajectory *run = run_part(scene, error);
     if (run == NULL) return false;
     const double x = (width - 3 * scale * wide - 2 * gap) / 2 + i * (scale * wide + gap);
@@ -124,8 +124,8 @@ static bool put_scene(Sketch *sketch, int i, const Scene *scene, int *step, Erro
     Image *window = render_last(run, error);
     if (window != NULL) {
         sketch_image(sketch, window, view.low, scale * wide);
-        put_way(sketch, &view, run, scene->bomb.frame);
-        put_words(sketch, &view, titles[i], scene, run);
+        draw_path(sketch, &view, run, scene->bomb.frame);
+        draw_words(sketch, &view, titles[i], scene, run);
         sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
         if (i == 0) sketch_bar(sketch, (Point){x + 2.5, low + 1.6}, view.scale, 5, "m", 7.5);
     }
@@ -135,18 +135,16 @@ static bool put_scene(Sketch *sketch, int i, const Scene *scene, int *step, Erro
     return window != NULL;
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[ENGINE_SCENES], char caption[CAPTION_SIZE], Error *error) {
-    int steps[ENGINE_SCENES];
-    for (int i = 0; i < ENGINE_SCENES; i++)
-        if (!put_scene(sketch, i, scenes[i], &steps[i], error)) return false;
+static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
+    int steps[ILLUSTRATION_SCENES];
+    for (int i = 0; i < ILLUSTRATION_SCENES; i++)
+        if (!draw_scene(sketch, i, scenes[i], &steps[i], error)) return false;
     snprintf(caption, CAPTION_SIZE,
-             "The three scenes at one scale, two thirds of the way to the bomb's first touch: %d box (single.yaml, "
-             "step %d), a "
-             "stack of %d (stack.yaml, step %d) and a pyramid of %d, still falling into place (pyramid.yaml, step %d). "
-             "Dashed: "
-             "where the bomb started; arrow: its way in 0.12 s.",
+             "The three scenes at one scale, at two thirds of the bomb's flight to its first touch: %d box (single.yaml, "
+             "step %d), a stack of %d (stack.yaml, step %d) and a pyramid of %d, still falling into place (pyramid.yaml, "
+             "step %d). Dashed: the bomb's start. Arrow: its path in 0.12 s.",
              count_boxes(scenes[0]), steps[0], count_boxes(scenes[1]), steps[1], count_boxes(scenes[2]), steps[2]);
     return true;
 }
 
-const EngineFigure figure_scenes = {width, height, draw};
+const Illustration illustration_scenes = {width, height, draw};

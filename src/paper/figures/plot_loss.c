@@ -1,21 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Three panels, one a target: the paper leaves open which of them its Table 1 is about. */
+/* Three panels, one per target: the paper does not state which of them its Table 1 is about. */
 #include "chart/figure_axis.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
+#include "paper/study/published.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Avatavului, Ifrim, Voncila 2023, Table 1, test score. */
-static const struct {
-    double iteration, test;
-} paper[] = {{0, 0.105798}, {10, 0.051244}, {50, 0.015246}, {100, 0.007767}, {1000, 0.001212}, {2000, 0.000728}};
+enum { PANELS = 3, NETWORKS = 12, LINES = PAPER_OPTIMIZERS + 2 };
 
-enum { PAPER = sizeof paper / sizeof *paper, PANELS = 3, NETWORKS = 12, LINES = PAPER_OPTIMIZERS + 2 };
-
-/* The networks that differ from the baseline in nothing but target or optimizer; their looks; the panels' titles. */
+/* The networks that differ from the baseline only in target or optimizer. */
 static const char *const networks[NETWORKS] = {"baseline",       "target-net",   "target-impulse", "optimizer-gd",
                                                "optimizer-bfgs", "optimizer-lm", "net-gd",         "net-bfgs",
                                                "net-lm",         "impulse-gd",   "impulse-bfgs",   "impulse-lm"};
@@ -26,7 +22,7 @@ static const char *const titles[PANELS] = {"Pair: change by its own impulses", "
 /* mm */
 static const double height = 72, left = 13.5, right = 2, gap = 4.5, bottom = 17.5, top = 6, legend_top = 6;
 
-/* Beyond these a training that went astray would press the others together. */
+/* Limits of the axis: a training that diverged would squeeze the others. */
 static const double least_error = 1e-8, most_error = 10;
 
 static bool is_shown(const ScoreRow *row) {
@@ -52,7 +48,7 @@ typedef struct Loss {
 
 static void choose_axes(Loss *loss) {
     FigureRange x = figure_range(), y = figure_range();
-    for (int i = 0; i < PAPER; i++) figure_widen(&x, paper[i].iteration), figure_widen(&y, paper[i].test);
+    for (int i = 0; i < PUBLISHED_SCORES; i++) figure_widen(&x, published_scores[i].iteration), figure_widen(&y, published_scores[i].test);
     for (int i = 0; i < loss->count; i++) {
         figure_widen(&x, loss->rows[i].iteration);
         figure_widen(&y, loss->rows[i].test);
@@ -63,11 +59,11 @@ static void choose_axes(Loss *loss) {
     loss->y = figure_axis(y, least_error, most_error, false);
 }
 
-static void put_point(Loss *loss, double iteration, double error) {
+static void draw_point(Loss *loss, double iteration, double error) {
     figure_point(loss->page, figure_on(loss->page, &loss->x, iteration), figure_on(loss->page, &loss->y, error));
 }
 
-static void put_constant(Loss *loss, int target) {
+static void draw_constant(Loss *loss, int target) {
     FigureLook look = figure_dashed("");
     figure_series(loss->page);
     for (int i = 0; i < loss->count; i++) {
@@ -86,15 +82,15 @@ static FigureLook paper_look(void) {
     return look;
 }
 
-static void put_paper(Loss *loss) {
+static void draw_paper(Loss *loss) {
     FigureLook look = paper_look();
     figure_series(loss->page);
-    for (int i = 0; i < PAPER; i++) put_point(loss, paper[i].iteration, paper[i].test);
+    for (int i = 0; i < PUBLISHED_SCORES; i++) draw_point(loss, published_scores[i].iteration, published_scores[i].test);
     figure_draw(loss->page, &look);
 }
 
-/* Rows of one network and one target lie side by side. */
-static void put_networks(Loss *loss, int target) {
+/* Rows are sorted: those of one network and target follow each other. */
+static void draw_networks(Loss *loss, int target) {
     for (int i = 0, end; i < loss->count; i = end) {
         const ScoreRow *row = &loss->rows[i];
         for (end = i; end < loss->count && strcmp(loss->rows[end].network, row->network) == 0; end++)
@@ -102,25 +98,25 @@ static void put_networks(Loss *loss, int target) {
         if (row->target != target) continue;
         FigureLook look = figure_look(row->optimizer, "");
         figure_series(loss->page);
-        for (int k = i; k < end; k++) put_point(loss, loss->rows[k].iteration, loss->rows[k].test);
+        for (int k = i; k < end; k++) draw_point(loss, loss->rows[k].iteration, loss->rows[k].test);
         figure_draw(loss->page, &look);
     }
 }
 
-static void put_panel(Loss *loss, int target) {
+static void draw_panel(Loss *loss, int target) {
     FigurePage *page = loss->page;
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (PANELS - 1)) / PANELS;
     figure_panel(page, (FigureBox){left + target * (width + gap), bottom, width, height - top - bottom},
                  titles[target]);
     figure_log(page, 'x', &loss->x, "Training iteration");
     figure_log(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
-    put_constant(loss, target);
-    put_networks(loss, target);
-    put_paper(loss);
+    draw_constant(loss, target);
+    draw_networks(loss, target);
+    draw_paper(loss);
     figure_panel_end(page);
 }
 
-static void put_legend(Loss *loss) {
+static void draw_legend(Loss *loss) {
     FigureLook looks[LINES];
     int count = 0;
     for (int i = 0; i < PAPER_OPTIMIZERS; i++)
@@ -130,7 +126,7 @@ static void put_legend(Loss *loss) {
     figure_legend(loss->page, looks, count, 3, left, legend_top);
 }
 
-bool figure_loss(const char *folder, FigurePage *page, Error *error) {
+bool plot_loss(const char *folder, FigurePage *page, Error *error) {
     Loss loss = {.page = page};
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_score_layout, error)) return false;
@@ -142,13 +138,12 @@ bool figure_loss(const char *folder, FigurePage *page, Error *error) {
         loss.rows = rows;
         choose_axes(&loss);
         figure_begin(page, FIGURE_PAGE_WIDTH, height);
-        for (int target = 0; target < PANELS; target++) put_panel(&loss, target);
-        put_legend(&loss);
+        for (int target = 0; target < PANELS; target++) draw_panel(&loss, target);
+        draw_legend(&loss);
         fprintf(page->caption,
                 "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
-                "training), for each reading of what the network is to predict. Dashed: always predicting the mean "
-                "of the training rows. The paper's own figures, which do not say which target they are for, stand in "
-                "each panel.");
+                "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors are in "
+                "each panel, as the paper does not state which target they are for.");
         figure_end(page);
     }
     csv_table_free(&table);

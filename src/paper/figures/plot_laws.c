@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What laws in the loss cost and bring: the error on the left, what is violated on the right. */
+/* Laws in the loss: the test error on the left, the violation of each law on the right. */
 #include "chart/figure_axis.h"
 #include "chart/figure_seeds.h"
-#include "paper/figures/figures.h"
+#include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static const char *const titles[LAWS] = {"Momentum (kg m/s)", "Energy (J)", "App
 static const double height = 97, left = 13.5, error_width = 56, small_left = 84, small_width = 38.5, small_gap = 10,
                     right_bottom = 17.8, row_gap = 7.5, top = 6, legend_top = 6.2;
 
-/* Of violations; and what is smaller than this share of the largest is nothing. */
+/* Limits of violations; and the lowest one shown, as a share of the highest. */
 static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
 
 typedef struct LawsFigure {
@@ -25,12 +25,12 @@ typedef struct LawsFigure {
     FigureAxis x;
 } LawsFigure;
 
-/* What a panel shows: the violation of a law, or (LAW_SET_ALL) the error over the constant's. */
+/* The value in a panel: the violation of its law, or (LAW_SET_ALL) the error over the constant predictor's. */
 static double measure(const LawRow *row, int panel) {
     return panel == LAW_SET_ALL ? row->test / row->constant : row->violation[panel];
 }
 
-/* The points of a line: without laws, that is weight 0, and with its own. */
+/* The points of a line: networks without laws, at weight 0, and those with the line's law. */
 static int gather(const LawsFigure *laws, int line, int panel, const FigureAxis *y) {
     int count = 0;
     for (int i = 0; i < laws->count; i++) {
@@ -54,8 +54,8 @@ static FigureLook look_of(int line) {
     return figure_look(line == LAW_SET_ALL ? 0 : line + 1, names[line]);
 }
 
-/* Lines that a panel shows: in the error's all, else the law's own and all. */
-static void put_lines(const LawsFigure *laws, int panel, const FigureAxis *y) {
+/* The panel of the error has a line for each law and for all; that of a law has its own line and the one for all. */
+static void draw_lines(const LawsFigure *laws, int panel, const FigureAxis *y) {
     for (int thick = 0; thick <= 1; thick++)
         for (int line = 0; line <= LAW_SET_ALL; line++) {
             if ((panel != LAW_SET_ALL && line != panel && line != LAW_SET_ALL) || !is_used(laws, line)) continue;
@@ -65,8 +65,8 @@ static void put_lines(const LawsFigure *laws, int panel, const FigureAxis *y) {
         }
 }
 
-/* Dashed: the labels' own violation; in the error's panel the constant, 1. */
-static void put_dashed(const LawsFigure *laws, int panel, const FigureAxis *y) {
+/* The labels' own violation; in the error's panel the constant predictor, 1. */
+static void draw_dashed(const LawsFigure *laws, int panel, const FigureAxis *y) {
     FigureLook look = figure_dashed("");
     double value = panel == LAW_SET_ALL ? 1 : NAN;
     for (int i = 0; i < laws->count; i++)
@@ -98,7 +98,7 @@ static FigureAxis axis_of(const LawsFigure *laws, int panel) {
     return axis;
 }
 
-static void put_panel(const LawsFigure *laws, int panel) {
+static void draw_panel(const LawsFigure *laws, int panel) {
     FigurePage *page = laws->page;
     FigureAxis y = axis_of(laws, panel);
     double small = (height - right_bottom - row_gap - top) / 2;
@@ -112,12 +112,12 @@ static void put_panel(const LawsFigure *laws, int panel) {
                panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
                : panel % 2 == 0     ? "Mean violation"
                                     : "");
-    put_dashed(laws, panel, &y);
-    put_lines(laws, panel, &y);
+    draw_dashed(laws, panel, &y);
+    draw_lines(laws, panel, &y);
     figure_panel_end(page);
 }
 
-static void put_legend(const LawsFigure *laws) {
+static void draw_legend(const LawsFigure *laws) {
     FigureLook looks[LAW_SET_ALL + 2];
     int count = 0;
     for (int line = 0; line <= LAW_SET_ALL; line++)
@@ -132,17 +132,17 @@ static void draw(LawsFigure *laws) {
         if (laws->rows[i].laws <= LAW_SET_ALL) figure_widen(&weights, laws->rows[i].weight);
     laws->x = figure_axis(weights, 1e-9, 1e9, true);
     figure_begin(laws->page, FIGURE_PAGE_WIDTH, height);
-    put_panel(laws, LAW_SET_ALL);
-    for (int law = 0; law < LAWS; law++) put_panel(laws, law);
-    put_legend(laws);
+    draw_panel(laws, LAW_SET_ALL);
+    for (int law = 0; law < LAWS; law++) draw_panel(laws, law);
+    draw_legend(laws);
     fprintf(laws->page->caption,
-            "LawsFigure of physics in the loss, over their weight (0: without). Left: test error over that of always "
-            "predicting the mean. Right: mean violation of each law on the test rows, with that law alone and with all "
-            "four; dashed: of the engine's own solution. Thin: one seed each; thick: their median.");
+            "Laws of physics in the loss, over their weight (0: without). Left: test error over that of the constant "
+            "predictor. Right: mean violation of each law on the test rows, with only that law and with all four; dashed: "
+            "the engine's own solution. Thin: one seed each; thick: their median.");
     figure_end(laws->page);
 }
 
-bool figure_laws(const char *folder, FigurePage *page, Error *error) {
+bool plot_laws(const char *folder, FigurePage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_law_layout, error)) return false;
     LawsFigure laws = {.page = page, .rows = table.rows, .count = table.count};
