@@ -110,8 +110,9 @@ static void numbers_are_computed_from_the_tables(void **state) {
 static void runs_are_counted(void **state) {
     (void)state;
     char *text = write_and_read("report.md");
-    expect_text(text, "2 of 5 runs stay within 0.1 m of the engine's for 600 frames (10 s). The lowest number of frames is "
-                      "4.");
+    expect_text(text,
+                "2 of 5 runs stay within 0.1 m of the engine's for 600 frames (10 s). The lowest number of frames is "
+                "4.");
     expect_text(text, "In 1 of 2 runs the stack stands as it does in the engine.");
     expect_text(text, "| baseline | 12.5 | 0.208 |\n| contact-net | 600 | 10 |");
     expect_text(text, "The largest momentum error of its runs is 4e-07 N s, that of the baseline 1.5 N s.");
@@ -139,13 +140,15 @@ static void medians_are_over_seeds(void **state) {
     expect_text(text, "| none | 0 | 3 | 0.002 | 0.001 | 0.003 | 0.5 | 0.8 | 0.4 | 0.1 | 0.05 |");
     expect_text(text, "| engine | – | 1 | – | – | – | – | 0 | 0.01 | 0.02 | 0 |");
     /* momentum is violated less at a larger error, the cone more at a smaller one. */
-    expect_text(text, "Of 2 cases with a single law in the loss, 1 violate that law less than the network without laws, "
-                      "and 1 have");
+    expect_text(text,
+                "Of 2 cases with a single law in the loss, 1 violate that law less than the network without laws, "
+                "and 1 have");
     /* 4, 3.8, 9: 4 from scratch; 2.9, 3, 3.1: 3 with transfer, as 2 launches give from scratch. */
     expect_text(text, "| 1 | 4 | 3 | 1 |\n| 2 | 3 | 2 | 1 |\n| 8 | 1.5 | 1.8 | – |");
     expect_text(text, "They lower the test error in 1 of 2 cases, and the violation of the law in question in 1.");
     expect_text(text, "In 1 of the 2 rows below the first, transfer needs fewer launches");
-    expect_text(text, "from scratch is 1.5 m/s, below the constant predictor's; the lowest with transfer is 1.8 m/s, below");
+    expect_text(text,
+                "from scratch is 1.5 m/s, below the constant predictor's; the lowest with transfer is 1.8 m/s, below");
     free(text);
 }
 
@@ -155,8 +158,9 @@ static void aims_state_by_how_much_they_are_missed(void **state) {
     expect_text(text, "| Test / constant, pair | at most 0.4 | inputs-contact | 0.2 | 1 | reached | – |");
     expect_text(text, "| Test / constant, net | at most 0.4 | net | 0.7 | 1 | missed | 0.3 |");
     expect_text(text, "| Test / constant, impulse | at most 0.1 | impulse | 0.5 | 1 | missed | 0.4 |");
-    expect_text(text, "| Within 0.1 m/s, single | at least 95.0% | contact-net | 96.1% | 96.0% | reached, also at no cost | "
-                      "– |");
+    expect_text(text,
+                "| Within 0.1 m/s, single | at least 95.0% | contact-net | 96.1% | 96.0% | reached, also at no cost | "
+                "– |");
     expect_text(text, "| Within 0.1 m/s, stack | at least 75.0% | contact-net | 70.0% | 72.0% | missed | 5.0% |");
     free(text);
 }
@@ -168,7 +172,8 @@ static void claims_are_judged(void **state) {
     expect_text(text, "0.25 with relative inputs, 1.1 with raw ones. The claim holds here.");
     /* The linear layer on min-max outputs is neither the one reading nor the other. */
     expect_text(text, "0.31 with them, 0.25 with sigmoid outputs on \\[0, 1\\]. The claim does not hold here.");
-    expect_text(text, "0.3 with labels of the converged solution, 0.25 with the engine's. The claim does not hold here.");
+    expect_text(text,
+                "0.3 with labels of the converged solution, 0.25 with the engine's. The claim does not hold here.");
     /* No network was trained on random launches. */
     expect_no_text(text, "swept in even steps");
     expect_text(text, "In 4 of 9 rates, over all networks");
@@ -330,11 +335,12 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
 static void few_rows_and_empty_fields_are_a_report_too(void **state) {
     (void)state;
     make_study();
-    write_text_file("networks.csv", "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,"
-                             "iterations,parameters,test,train,constant,ratio,accuracy\n"
-                             "x,y,,,,,pair,,,,,,,,1,,,,,\n");
+    write_text_file("networks.csv",
+                    "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,"
+                    "iterations,parameters,test,train,constant,ratio,accuracy\n"
+                    "x,y,,,,,pair,,,,,,,,1,,,,,\n");
     write_text_file("rates.csv", "network,scene,definition,phase,rate,constant,engine1,engine4,engine10\n"
-                          "x,stack,range,all,,,,,\n");
+                                 "x,stack,range,all,,,,,\n");
     write_text_file("transfer.csv", "start,seed,launches,error,constant\ntransfer,1,1,2,3\n");
     write_text_file("laws.csv", "laws,weight,seed,test,constant,momentum,energy,approach,cone\nall,,,,,,,,\n");
     Error error = {0};

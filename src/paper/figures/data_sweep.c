@@ -97,7 +97,7 @@ static void draw_path(Sketch *sketch, const Path *path, bool of_row) {
 }
 
 static bool draw_launch(Sketch *sketch, const View *view, const Scene *scene, int i, SweepRow *row, int *rows,
-                       Error *error) {
+                        Error *error) {
     Path path;
     Launch launch = launch_of(scene);
     launch.x = sweep_x(i);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 3: how training data are made. Left: the bomb's paths in some launches of the sweep. Right: one of the recorded
-   rows, with the state of a pair and the change by its own impulses. */
+/* Figure 3: how training data are made. Left: the bomb's paths in some launches of the sweep. Right: one of the
+   recorded rows, with the state of a pair and the change by its own impulses. */
 #include "paper/figures/data_sweep.h"
 #include "paper/figures/illustration_parts.h"
 

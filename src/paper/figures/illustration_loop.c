@@ -67,7 +67,7 @@ static const double box_width = 51, box_height = 20, column = 60.5, low_row = 23
 static Point corner(int column_number, double row) { return (Point){1 + column * column_number, row}; }
 
 static void draw_stage(Sketch *sketch, Point at, const char *title, const char *first, const char *second,
-                      const Pen *pen, uint32_t ink) {
+                       const Pen *pen, uint32_t ink) {
     sketch_rectangle(sketch, at, (Point){at.x + box_width, at.y + box_height}, pen);
     const TextStyle heading = {9, TEXT_LEFT, ink, 0, false}, words = {7.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){at.x + 2.5, at.y + 15.8}, &heading, "%s", title);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figure 2: a collision of the bomb in the pyramid's run, at true scale. Left: the overlaps along the four axes. Right: the
-   contact points from the smallest overlap. */
+/* Figure 2: a collision of the bomb in the pyramid's run, at true scale. Left: the overlaps along the four axes. Right:
+   the contact points from the smallest overlap. */
 #include "figure/narrow_phase.h"
 #include "paper/figures/illustration_parts.h"
 #include "paper/figures/engine_run.h"

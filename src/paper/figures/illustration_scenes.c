@@ -139,11 +139,12 @@ static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char 
     int steps[ILLUSTRATION_SCENES];
     for (int i = 0; i < ILLUSTRATION_SCENES; i++)
         if (!draw_scene(sketch, i, scenes[i], &steps[i], error)) return false;
-    snprintf(caption, CAPTION_SIZE,
-             "The three scenes at one scale, at two thirds of the bomb's flight to its first touch: %d box (single.yaml, "
-             "step %d), a stack of %d (stack.yaml, step %d) and a pyramid of %d, still falling into place (pyramid.yaml, "
-             "step %d). Dashed: the bomb's start. Arrow: its path in 0.12 s.",
-             count_boxes(scenes[0]), steps[0], count_boxes(scenes[1]), steps[1], count_boxes(scenes[2]), steps[2]);
+    snprintf(
+        caption, CAPTION_SIZE,
+        "The three scenes at one scale, at two thirds of the bomb's flight to its first touch: %d box (single.yaml, "
+        "step %d), a stack of %d (stack.yaml, step %d) and a pyramid of %d, still falling into place (pyramid.yaml, "
+        "step %d). Dashed: the bomb's start. Arrow: its path in 0.12 s.",
+        count_boxes(scenes[0]), steps[0], count_boxes(scenes[1]), steps[1], count_boxes(scenes[2]), steps[2]);
     return true;
 }
 

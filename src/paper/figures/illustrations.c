@@ -11,7 +11,8 @@
 
 static const char *const scene_names[ILLUSTRATION_SCENES] = {"single", "stack", "pyramid"};
 
-static const Illustration *const figures[] = {&illustration_loop, &illustration_narrow_phase, &illustration_data, &illustration_scenes};
+static const Illustration *const figures[] = {&illustration_loop, &illustration_narrow_phase, &illustration_data,
+                                              &illustration_scenes};
 
 const char *const illustration_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
 

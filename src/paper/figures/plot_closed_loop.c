@@ -118,9 +118,10 @@ bool plot_closed_loop(const char *folder, FigurePage *page, Error *error) {
         figure_panel_end(page);
     }
     draw_legend(&loop);
-    fprintf(page->caption,
-            "Networks in place of the solver. Left: frames until a body is 0.1 m from its place in the engine's run (600, "
-            "dashed: never). Right: time of a step over that of the engine with its own solver (dashed: equal).");
+    fprintf(
+        page->caption,
+        "Networks in place of the solver. Left: frames until a body is 0.1 m from its place in the engine's run (600, "
+        "dashed: never). Right: time of a step over that of the engine with its own solver (dashed: equal).");
     figure_end(page);
     csv_table_free(&table);
     return true;

@@ -135,10 +135,11 @@ static void draw(LawsFigure *laws) {
     draw_panel(laws, LAW_SET_ALL);
     for (int law = 0; law < LAWS; law++) draw_panel(laws, law);
     draw_legend(laws);
-    fprintf(laws->page->caption,
-            "Laws of physics in the loss, over their weight (0: without). Left: test error over that of the constant "
-            "predictor. Right: mean violation of each law on the test rows, with only that law and with all four; dashed: "
-            "the engine's own solution. Thin: one seed each; thick: their median.");
+    fprintf(
+        laws->page->caption,
+        "Laws of physics in the loss, over their weight (0: without). Left: test error over that of the constant "
+        "predictor. Right: mean violation of each law on the test rows, with only that law and with all four; dashed: "
+        "the engine's own solution. Thin: one seed each; thick: their median.");
     figure_end(laws->page);
 }
 

@@ -48,7 +48,8 @@ typedef struct Loss {
 
 static void choose_axes(Loss *loss) {
     FigureRange x = figure_range(), y = figure_range();
-    for (int i = 0; i < PUBLISHED_SCORES; i++) figure_widen(&x, published_scores[i].iteration), figure_widen(&y, published_scores[i].test);
+    for (int i = 0; i < PUBLISHED_SCORES; i++)
+        figure_widen(&x, published_scores[i].iteration), figure_widen(&y, published_scores[i].test);
     for (int i = 0; i < loss->count; i++) {
         figure_widen(&x, loss->rows[i].iteration);
         figure_widen(&y, loss->rows[i].test);
@@ -85,7 +86,8 @@ static FigureLook paper_look(void) {
 static void draw_paper(Loss *loss) {
     FigureLook look = paper_look();
     figure_series(loss->page);
-    for (int i = 0; i < PUBLISHED_SCORES; i++) draw_point(loss, published_scores[i].iteration, published_scores[i].test);
+    for (int i = 0; i < PUBLISHED_SCORES; i++)
+        draw_point(loss, published_scores[i].iteration, published_scores[i].test);
     figure_draw(loss->page, &look);
 }
 
@@ -140,10 +142,11 @@ bool plot_loss(const char *folder, FigurePage *page, Error *error) {
         figure_begin(page, FIGURE_PAGE_WIDTH, height);
         for (int target = 0; target < PANELS; target++) draw_panel(&loss, target);
         draw_legend(&loss);
-        fprintf(page->caption,
-                "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
-                "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors are in "
-                "each panel, as the paper does not state which target they are for.");
+        fprintf(
+            page->caption,
+            "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
+            "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors are in "
+            "each panel, as the paper does not state which target they are for.");
         figure_end(page);
     }
     csv_table_free(&table);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width stays
-   0 if the table has no rows to show. False with error set if the table is missing or damaged. */
+/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width
+   stays 0 if the table has no rows to show. False with error set if the table is missing or damaged. */
 #pragma once
 #include "chart/figure_page.h"
 

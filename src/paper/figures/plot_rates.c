@@ -168,11 +168,11 @@ bool plot_rates(const char *folder, FigurePage *page, Error *error) {
         for (int phase = 0; phase < SHOWN_PHASES; phase++)
             for (int definition = 0; definition < DEFINITIONS; definition++) draw_panel(&rates, definition, phase);
         draw_legend(&rates);
-        fprintf(
-            page->caption,
-            "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each network: "
-            "the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: the paper's 60 "
-            "to 91%%.");
+        fprintf(page->caption,
+                "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each "
+                "network: the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: "
+                "the paper's 60 "
+                "to 91%%.");
         figure_end(page);
     }
     csv_table_free(&table);

@@ -81,10 +81,11 @@ static void draw(Transfer *transfer) {
         figure_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
     figure_panel_end(page);
     figure_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
-    fprintf(page->caption,
-            "Error on held-out launches of the pyramid, over the number of launches that a network was trained on: from "
-            "scratch, and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: the "
-            "constant predictor.");
+    fprintf(
+        page->caption,
+        "Error on held-out launches of the pyramid, over the number of launches that a network was trained on: from "
+        "scratch, and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: the "
+        "constant predictor.");
     figure_end(page);
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the report states and the study's tables do not hold as such: counts, extremes, medians and verdicts, as CSV files in
+/* What the report states beyond the study's tables: counts, extremes, medians and verdicts, as CSV files in
    folder/findings.
 
      summary.csv       key, value: counts and extremes over all networks and runs
-     targets.csv       each target: the constant predictor's error, the best small network, how many scores beat the paper's
+     targets.csv       each target: the constant predictor's error, the best small network, how many scores are below the
+                       paper's
      paper_table1.csv  the paper's Table 1
      factors.csv       each factor: its best network beside the baseline
      definitions.csv   each definition of a right prediction: how often a cheaper predictor is right as often
@@ -16,6 +17,6 @@
 #pragma once
 #include "common/error.h"
 
-/* Reads the study's tables (paper/study/paper_tables.h) from the folder. ERROR_INPUT where one is missing or damaged, with
-   path:line:column. */
+/* Reads the study's tables (paper/study/paper_tables.h) from the folder. ERROR_INPUT where one is missing or damaged,
+   with path:line:column. */
 bool findings_write(const char *folder, Error *error);

@@ -41,12 +41,8 @@ static AimRow error_aim(const StudyTables *study, PairTarget target) {
 
 /* The contact-net with the highest rate in a scene. */
 static AimRow rate_aim(const StudyTables *study, int scene, double aim) {
-    AimRow row = {.kind = "rate",
-                  .subject = paper_scene_names[scene],
-                  .network = "",
-                  .aim = aim,
-                  .measured = NAN,
-                  .free = NAN};
+    AimRow row = {
+        .kind = "rate", .subject = paper_scene_names[scene], .network = "", .aim = aim, .measured = NAN, .free = NAN};
     for (int i = 0; i < study->rate_count; i++) {
         const RateRow *rate = &study->rates[i];
         const double share = rate->share[RATE_NETWORK];
@@ -70,8 +66,8 @@ static bool write_aims(const FindingsFile *file, const StudyTables *study) {
     return findings_add(file, &single) && findings_add(file, &stack);
 }
 
-static const CsvColumn aim_columns[] = {FINDINGS_TEXT(AimRow, kind),     FINDINGS_TEXT(AimRow, subject),
-                                        FINDINGS_NUMBER(AimRow, aim),    FINDINGS_TEXT(AimRow, network),
+static const CsvColumn aim_columns[] = {FINDINGS_TEXT(AimRow, kind),       FINDINGS_TEXT(AimRow, subject),
+                                        FINDINGS_NUMBER(AimRow, aim),      FINDINGS_TEXT(AimRow, network),
                                         FINDINGS_NUMBER(AimRow, measured), FINDINGS_NUMBER(AimRow, free),
-                                        FINDINGS_TEXT(AimRow, verdict),  FINDINGS_NUMBER(AimRow, missed_by)};
-const FindingsTable findings_aims = {CSV_LAYOUT("aims", aim_columns, AimRow, .max_rows = PAPER_MAX_ROWS), write_aims};
+                                        FINDINGS_TEXT(AimRow, verdict),    FINDINGS_NUMBER(AimRow, missed_by)};
+const FindingsTable findings_aims = FINDINGS_TABLE("aims", aim_columns, AimRow, write_aims);

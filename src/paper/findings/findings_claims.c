@@ -68,4 +68,4 @@ static bool write_claims(const FindingsFile *file, const StudyTables *study) {
 
 static const CsvColumn columns[] = {FINDINGS_TEXT(ClaimRow, factor), FINDINGS_NUMBER(ClaimRow, with),
                                     FINDINGS_NUMBER(ClaimRow, without), FINDINGS_TEXT(ClaimRow, verdict)};
-const FindingsTable findings_claims = {CSV_LAYOUT("claims", columns, ClaimRow, .max_rows = PAPER_MAX_ROWS), write_claims};
+const FindingsTable findings_claims = FINDINGS_TABLE("claims", columns, ClaimRow, write_claims);

@@ -56,7 +56,7 @@ static bool write_factors(const FindingsFile *file, const StudyTables *study) {
 }
 
 static const CsvColumn factor_columns[] = {
-    FINDINGS_TEXT(FactorRow, factor),  FINDINGS_COUNT(FactorRow, networks), FINDINGS_COUNT(FactorRow, passed),
-    FINDINGS_TEXT(FactorRow, best),    FINDINGS_NUMBER(FactorRow, ratio),   FINDINGS_NUMBER(FactorRow, baseline_ratio),
+    FINDINGS_TEXT(FactorRow, factor), FINDINGS_COUNT(FactorRow, networks), FINDINGS_COUNT(FactorRow, passed),
+    FINDINGS_TEXT(FactorRow, best),   FINDINGS_NUMBER(FactorRow, ratio),   FINDINGS_NUMBER(FactorRow, baseline_ratio),
     FINDINGS_TEXT(FactorRow, verdict)};
-const FindingsTable findings_factors = {CSV_LAYOUT("factors", factor_columns, FactorRow, .max_rows = PAPER_MAX_ROWS), write_factors};
+const FindingsTable findings_factors = FINDINGS_TABLE("factors", factor_columns, FactorRow, write_factors);

@@ -66,13 +66,12 @@ static bool write_laws(const FindingsFile *file, const StudyTables *study) {
     return true;
 }
 
-static const CsvColumn columns[] = {FINDINGS_TEXT(LawCase, laws),         FINDINGS_NUMBER(LawCase, weight),
-                                    FINDINGS_COUNT(LawCase, seeds),       FINDINGS_NUMBER(LawCase, test),
-                                    FINDINGS_NUMBER(LawCase, lowest_test), FINDINGS_NUMBER(LawCase, highest_test),
-                                    FINDINGS_NUMBER(LawCase, ratio),      FINDINGS_NUMBER(LawCase, momentum),
-                                    FINDINGS_NUMBER(LawCase, energy),     FINDINGS_NUMBER(LawCase, approach),
-                                    FINDINGS_NUMBER(LawCase, cone)};
-const FindingsTable findings_laws = {CSV_LAYOUT("laws", columns, LawCase, .max_rows = PAPER_MAX_ROWS), write_laws};
+static const CsvColumn columns[] = {
+    FINDINGS_TEXT(LawCase, laws),       FINDINGS_NUMBER(LawCase, weight),      FINDINGS_COUNT(LawCase, seeds),
+    FINDINGS_NUMBER(LawCase, test),     FINDINGS_NUMBER(LawCase, lowest_test), FINDINGS_NUMBER(LawCase, highest_test),
+    FINDINGS_NUMBER(LawCase, ratio),    FINDINGS_NUMBER(LawCase, momentum),    FINDINGS_NUMBER(LawCase, energy),
+    FINDINGS_NUMBER(LawCase, approach), FINDINGS_NUMBER(LawCase, cone)};
+const FindingsTable findings_laws = FINDINGS_TABLE("laws", columns, LawCase, write_laws);
 
 LawCounts law_counts(const StudyTables *study) {
     static Value *const violations[LAWS] = {

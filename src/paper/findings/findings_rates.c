@@ -15,8 +15,8 @@ static double warm_start_rate(const StudyTables *study, const RateRow *row) {
     return warm != NULL ? warm->share[RATE_NETWORK] : NAN;
 }
 
-/* Of the main networks: in how many rows something cheaper is right at least as often. Of the baseline over all frames: its
-   lowest and highest rate. */
+/* Of the main networks: in how many rows something cheaper is right at least as often. Of the baseline over all frames:
+   its lowest and highest rate. */
 typedef struct DefinitionRow {
     const char *definition;
     int rows, constant, warm_start, one_sweep;
@@ -49,14 +49,11 @@ static bool write_definitions(const FindingsFile *file, const StudyTables *study
     return true;
 }
 
-static const CsvColumn definition_columns[] = {FINDINGS_TEXT(DefinitionRow, definition),
-                                               FINDINGS_COUNT(DefinitionRow, rows),
-                                               FINDINGS_COUNT(DefinitionRow, constant),
-                                               FINDINGS_COUNT(DefinitionRow, warm_start),
-                                               FINDINGS_COUNT(DefinitionRow, one_sweep),
-                                               FINDINGS_COUNT(DefinitionRow, baseline_scenes),
-                                               FINDINGS_NUMBER(DefinitionRow, baseline_low),
-                                               FINDINGS_NUMBER(DefinitionRow, baseline_high),
-                                               FINDINGS_COUNT(DefinitionRow, baseline_constant)};
-const FindingsTable findings_definitions = {CSV_LAYOUT("definitions", definition_columns, DefinitionRow, .max_rows = PAPER_MAX_ROWS),
-                                            write_definitions};
+static const CsvColumn definition_columns[] = {
+    FINDINGS_TEXT(DefinitionRow, definition),        FINDINGS_COUNT(DefinitionRow, rows),
+    FINDINGS_COUNT(DefinitionRow, constant),         FINDINGS_COUNT(DefinitionRow, warm_start),
+    FINDINGS_COUNT(DefinitionRow, one_sweep),        FINDINGS_COUNT(DefinitionRow, baseline_scenes),
+    FINDINGS_NUMBER(DefinitionRow, baseline_low),    FINDINGS_NUMBER(DefinitionRow, baseline_high),
+    FINDINGS_COUNT(DefinitionRow, baseline_constant)};
+const FindingsTable findings_definitions =
+    FINDINGS_TABLE("definitions", definition_columns, DefinitionRow, write_definitions);

@@ -95,7 +95,8 @@ static bool add_laws(const FindingsFile *file, const StudyTables *study) {
 
 static bool add_transfer(const FindingsFile *file, const StudyTables *study) {
     const TransferCounts transfer = transfer_counts(study);
-    return add_number(file, "transfer_rows", transfer.rows) && add_number(file, "transfer_rows_saved", transfer.saved) &&
+    return add_number(file, "transfer_rows", transfer.rows) &&
+           add_number(file, "transfer_rows_saved", transfer.saved) &&
            add_number(file, "transfer_constant", transfer.constant) &&
            add_number(file, "transfer_lowest_scratch", transfer.scratch) &&
            add_text(file, "transfer_scratch_is", transfer.scratch < transfer.constant ? "below" : "not below") &&
@@ -113,4 +114,4 @@ static bool write_summary(const FindingsFile *file, const StudyTables *study) {
 }
 
 static const CsvColumn columns[] = {FINDINGS_TEXT(SummaryRow, key), FINDINGS_TEXT(SummaryRow, value)};
-const FindingsTable findings_summary = {CSV_LAYOUT("summary", columns, SummaryRow, .max_rows = PAPER_MAX_ROWS), write_summary};
+const FindingsTable findings_summary = FINDINGS_TABLE("summary", columns, SummaryRow, write_summary);

@@ -31,3 +31,7 @@ extern const FindingsTable findings_summary, findings_targets, findings_paper_ta
     { #member, CSV_INTEGER, .offset = offsetof(Row, member) }
 #define FINDINGS_NUMBER(Row, member) \
     { #member, CSV_OPTIONAL, .offset = offsetof(Row, member), .digits = 9 }
+
+/* An initialiser of a FindingsTable. */
+#define FINDINGS_TABLE(name, columns, Row, write) \
+    { CSV_LAYOUT(name, columns, Row, .min_rows = 0), write }

@@ -7,17 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-/* The constant predictor's error for a target on the paper's scale, outputs scaled to [0, 1]; NAN if no network has it. */
+/* The constant predictor's error for a target on the paper's scale, [0, 1]; NAN if no network has that scale. */
 static double constant_on_paper_scale(const StudyTables *study, PairTarget target) {
     for (int i = 0; i < study->network_count; i++) {
         const TrainedRow *row = &study->networks[i];
-        if (row->target == (int)target && strcmp(row->scale, "minmax") == 0 && !isnan(row->constant)) return row->constant;
+        if (row->target == (int)target && strcmp(row->scale, "minmax") == 0 && !isnan(row->constant))
+            return row->constant;
     }
     return NAN;
 }
 
-/* The paper's score for a row's iteration. Only networks with a target of the paper's, on its scale, are comparable: NAN
-   for others. */
+/* The paper's score for a row's iteration. Only networks with a target of the paper's, on its scale, are comparable:
+   NAN for others. */
 static double paper_test(const StudyTables *study, const ScoreRow *row) {
     const TrainedRow *network = study_network(study, row->network);
     if (row->target >= PAPER_TARGETS || network == NULL || strcmp(network->scale, "minmax") != 0) return NAN;
@@ -31,7 +32,7 @@ typedef struct TargetRow {
     double constant, ratio;    /* the constant predictor's error on the paper's scale; test error of the best over it */
     int paper_rows_worse;      /* rows of the paper's Table 1 with a higher error than the constant predictor */
     int small_networks;
-    /* Scores of the study: not below the constant predictor's; with a counterpart in the paper; below that; below both. */
+    /* Scores of the study, by how they compare with the constant predictor's and with the paper's for the iteration. */
     int rows, not_below_constant, compared, below_paper, below_both;
 } TargetRow;
 
@@ -61,14 +62,18 @@ static bool write_targets(const FindingsFile *file, const StudyTables *study) {
     return true;
 }
 
-static const CsvColumn target_columns[] = {
-    FINDINGS_TEXT(TargetRow, target),       FINDINGS_NUMBER(TargetRow, constant),
-    FINDINGS_COUNT(TargetRow, paper_rows_worse), FINDINGS_COUNT(TargetRow, small_networks),
-    FINDINGS_TEXT(TargetRow, best),         FINDINGS_NUMBER(TargetRow, ratio),
-    FINDINGS_COUNT(TargetRow, rows),        FINDINGS_COUNT(TargetRow, not_below_constant),
-    FINDINGS_COUNT(TargetRow, compared),    FINDINGS_COUNT(TargetRow, below_paper),
-    FINDINGS_COUNT(TargetRow, below_both)};
-const FindingsTable findings_targets = {CSV_LAYOUT("targets", target_columns, TargetRow, .max_rows = PAPER_MAX_ROWS), write_targets};
+static const CsvColumn target_columns[] = {FINDINGS_TEXT(TargetRow, target),
+                                           FINDINGS_NUMBER(TargetRow, constant),
+                                           FINDINGS_COUNT(TargetRow, paper_rows_worse),
+                                           FINDINGS_COUNT(TargetRow, small_networks),
+                                           FINDINGS_TEXT(TargetRow, best),
+                                           FINDINGS_NUMBER(TargetRow, ratio),
+                                           FINDINGS_COUNT(TargetRow, rows),
+                                           FINDINGS_COUNT(TargetRow, not_below_constant),
+                                           FINDINGS_COUNT(TargetRow, compared),
+                                           FINDINGS_COUNT(TargetRow, below_paper),
+                                           FINDINGS_COUNT(TargetRow, below_both)};
+const FindingsTable findings_targets = FINDINGS_TABLE("targets", target_columns, TargetRow, write_targets);
 
 static bool write_paper_table1(const FindingsFile *file, const StudyTables *study) {
     (void)study;
@@ -80,5 +85,5 @@ static bool write_paper_table1(const FindingsFile *file, const StudyTables *stud
 static const CsvColumn published_columns[] = {FINDINGS_NUMBER(PublishedScore, iteration),
                                               FINDINGS_NUMBER(PublishedScore, test),
                                               FINDINGS_NUMBER(PublishedScore, train)};
-const FindingsTable findings_paper_table1 = {CSV_LAYOUT("paper_table1", published_columns, PublishedScore, .max_rows = PAPER_MAX_ROWS),
-                                             write_paper_table1};
+const FindingsTable findings_paper_table1 =
+    FINDINGS_TABLE("paper_table1", published_columns, PublishedScore, write_paper_table1);

@@ -8,7 +8,7 @@
 
 typedef struct LaunchesRow {
     double launches, scratch, transfer; /* transfer, scratch: median errors, m/s */
-    double needed;                      /* the fewest launches with transfer for the error from scratch; NAN: none suffice */
+    double needed; /* the fewest launches with transfer for the error from scratch; NAN: none suffice */
 } LaunchesRow;
 
 typedef struct Launches {
@@ -58,7 +58,7 @@ static bool write_transfer(const FindingsFile *file, const StudyTables *study) {
 
 static const CsvColumn columns[] = {FINDINGS_NUMBER(LaunchesRow, launches), FINDINGS_NUMBER(LaunchesRow, scratch),
                                     FINDINGS_NUMBER(LaunchesRow, transfer), FINDINGS_NUMBER(LaunchesRow, needed)};
-const FindingsTable findings_transfer = {CSV_LAYOUT("transfer", columns, LaunchesRow, .max_rows = PAPER_MAX_ROWS), write_transfer};
+const FindingsTable findings_transfer = FINDINGS_TABLE("transfer", columns, LaunchesRow, write_transfer);
 
 TransferCounts transfer_counts(const StudyTables *study) {
     TransferCounts counts = {.constant = study->transfers[0].constant, .scratch = NAN, .transfer = NAN};

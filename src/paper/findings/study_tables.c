@@ -5,8 +5,9 @@
 #include <string.h>
 
 bool study_tables_read(StudyTables *study, const char *folder, Error *error) {
-    const CsvLayout *const layouts[STUDY_TABLES] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
-                                                    &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout};
+    const CsvLayout *const layouts[STUDY_TABLES] = {&paper_score_layout, &paper_trained_layout,
+                                                    &paper_rate_layout,  &paper_closed_loop_layout,
+                                                    &paper_law_layout,   &paper_transfer_layout};
     memset(study, 0, sizeof *study);
     CsvTable *table = study->tables;
     for (int i = 0; i < STUDY_TABLES; i++) {

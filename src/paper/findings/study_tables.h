@@ -29,8 +29,8 @@ const TrainedRow *study_baseline(const StudyTables *study);
 /* Whether the network was trained for this factor. */
 bool study_has_factor(const StudyTables *study, const char *network, const char *factor);
 
-/* The network for a target with the lowest ratio, of those with at most max_parameters. factor: NULL for all. NULL if there
-   is none. *among: how many it was chosen from. */
+/* The network for a target with the lowest ratio, of those with at most max_parameters. factor: NULL for all. NULL if
+   there is none. *among: how many it was chosen from. */
 const TrainedRow *study_best(const StudyTables *study, PairTarget target, const char *factor, double max_parameters,
                              int *among);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* cmark-gfm, the reference implementation of GitHub's Markdown, makes the HTML of each block; what surrounds the blocks is
-   written here. */
+/* cmark-gfm, the reference implementation of GitHub's Markdown, makes the HTML of each block; what surrounds the blocks
+   is written here. */
 #include "paper/report/html_page.h"
 
 #include "common/base64.h"

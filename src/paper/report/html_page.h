@@ -12,6 +12,6 @@ typedef struct HtmlPage {
 } HtmlPage;
 
 /* The first heading becomes the page's title, those of level 2 its table of contents. A paragraph that is only an image
-   becomes a figure with the PNG file embedded; the paragraph after it is its caption. ERROR_INPUT where an image is missing
-   or damaged. */
+   becomes a figure with the PNG file embedded; the paragraph after it is its caption. ERROR_INPUT where an image is
+   missing or damaged. */
 bool html_page_write(const HtmlPage *page, FILE *out, Error *error);

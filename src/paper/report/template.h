@@ -6,9 +6,9 @@
                          NAME may be a ratio: test/constant, frames/60
      {{caption FILE}}    the text of a file of one line
      {{each FILE FILTER ...}} TEXT {{end}}
-                         the text once for every row of the CSV file that passes all filters: COLUMN=WORD, COLUMN=WORD|WORD,
-                         or COLUMN, which is to be equal to the value COLUMN outside of the text. A line end right behind
-                         {{each ...}} or {{end}} is left out.
+                         the text, once for every row of the CSV file that passes all filters. A filter is COLUMN=WORD,
+                         COLUMN=WORD|WORD, or COLUMN, which must equal the value COLUMN outside of the text. A line end
+                         directly after {{each ...}} or {{end}} is left out.
 
    NAME is a column of the innermost row that has it; outside of all rows, a key of the values file (key, value). Empty
    fields and NaN are shown as a dash. No character of a value has a meaning to Markdown. */
@@ -17,6 +17,6 @@
 
 #include <stdio.h>
 
-/* Paths in the template and that of the values file are relative to the folder. ERROR_INPUT for files that are missing or
-   damaged, with path:line:column for CSV files; for tags that are wrong; for names without a value. */
+/* Paths in the template and that of the values file are relative to the folder. ERROR_INPUT for files that are missing
+   or damaged, with path:line:column for CSV files; for tags that are wrong; for names without a value. */
 bool template_fill(const char *template, const char *folder, const char *values, FILE *out, Error *error);

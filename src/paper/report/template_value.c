@@ -14,7 +14,8 @@ enum { MAX_CAPTION_SIZE = 2048 };
 
 static bool is_letter(char c) { return isalnum((unsigned char)c) || (unsigned char)c >= 0x80; }
 
-/* An underscore within a word has no meaning. GitHub also strikes through between tildes and sets maths between dollars. */
+/* An underscore within a word has no meaning. GitHub also strikes through between tildes and sets maths between
+   dollars. */
 static void escape(FILE *out, const char *text) {
     for (const char *c = text; *c != '\0'; c++) {
         bool in_word = c > text && is_letter(c[-1]) && is_letter(c[1]);
