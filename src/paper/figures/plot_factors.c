@@ -182,8 +182,7 @@ static void draw(FigurePage *page, const TrainedRow *rows, int count) {
     fprintf(page->caption,
             "Test error of every network over that of the constant predictor (dashed: 1), by the factor in which it "
             "differs from the baseline. On the right: the number of parameters. Upright bars: the aims for the best "
-            "networks, 0.4 "
-            "for the targets pair and net and 0.1 for impulse.");
+            "networks, 0.4 for the targets pair and net and 0.1 for impulse.");
     figure_end(page);
 }
 

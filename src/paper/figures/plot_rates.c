@@ -171,8 +171,7 @@ bool plot_rates(const char *folder, FigurePage *page, Error *error) {
         fprintf(page->caption,
                 "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each "
                 "network: the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: "
-                "the paper's 60 "
-                "to 91%%.");
+                "the paper's 60 to 91%%.");
         figure_end(page);
     }
     csv_table_free(&table);

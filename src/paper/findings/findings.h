@@ -3,8 +3,7 @@
    folder/findings.
 
      summary.csv       key, value: counts and extremes over all networks and runs
-     targets.csv       each target: the constant predictor's error, the best small network, how many scores are below the
-                       paper's
+     targets.csv       each target: the constant predictor's error, the best small network, scores beside the paper's
      paper_table1.csv  the paper's Table 1
      factors.csv       each factor: its best network beside the baseline
      definitions.csv   each definition of a right prediction: how often a cheaper predictor is right as often
