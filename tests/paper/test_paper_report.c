@@ -260,7 +260,7 @@ static void damaged_tables_are_refused_with_their_place(void **state) {
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,1,nan,3\n",
                  "transfer.csv:2:13: error: error must be a number (got nan)");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,1,,3\n",
-                 "transfer.csv:2:13: error: error must be a number (got nothing)");
+                 "transfer.csv:2:13: error: error must be a number (got )");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,-1,2,3\n",
                  "transfer.csv:2:11: error: launches cannot be -1");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\n",
@@ -295,7 +295,7 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
     expect_refused("figures/laws.txt: error: cannot open");
     make_study();
     put_text("figures/rates.png", "\x89PNG and no more");
-    expect_refused("figures/rates.png: error: no PNG file, or a damaged one");
+    expect_refused("figures/rates.png: error: not a PNG file, or damaged");
     make_study();
     put_text("figures/loop.txt", "two\nlines\n");
     expect_refused("figures/loop.txt: error: byte 4 is no text");
