@@ -12,10 +12,7 @@
 
 static const double lost_drift = 0.5; /* m: half a box */
 
-char chart_plain_letter(char letter) {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
-    return strchr(plain, letter) != NULL ? letter : '?';
-}
+char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;

@@ -41,23 +41,22 @@ void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count) {
 }
 
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase) {
-    ChartRow row = {.protocol = (ChartProtocol)protocol,
-                    .phase = (Phase)phase,
-                    .launches = launches,
-                    .us_solver = NAN,
-                    .us_solver_q1 = NAN,
-                    .us_solver_q3 = NAN,
-                    .us_step = NAN,
-                    .instructions = NAN,
-                    .error_worst = NAN,
-                    .penetration_max = NAN,
-                    .drift = NAN,
-                    .energy = NAN,
-                    .moved = NAN};
-    snprintf(row.scene, sizeof row.scene, "%s", scene);
-    snprintf(row.method, sizeof row.method, "%s", contender->name);
-    snprintf(row.setting, sizeof row.setting, "%s", contender->setting);
-    return row;
+    return (ChartRow){.scene = scene,
+                      .method = contender->name,
+                      .setting = contender->setting,
+                      .protocol = (ChartProtocol)protocol,
+                      .phase = (Phase)phase,
+                      .launches = launches,
+                      .us_solver = NAN,
+                      .us_solver_q1 = NAN,
+                      .us_solver_q3 = NAN,
+                      .us_step = NAN,
+                      .instructions = NAN,
+                      .error_worst = NAN,
+                      .penetration_max = NAN,
+                      .drift = NAN,
+                      .energy = NAN,
+                      .moved = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost) {

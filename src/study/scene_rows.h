@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of chart.csv, from the results of a scene's launches. */
+/* Rows of chart.csv from the results of a scene's launches. */
 #pragma once
 #include "study/contenders.h"
 #include "study/rollout.h"
 #include "study/timing.h"
 
-/* A row with names but without results. */
+/* A row with names and no figures; the names stay those of the caller. */
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
 
-/* Mean, quantiles and share over all steps of the row's phase; sorts the scores. */
+/* Sets mean, quantiles and share over all steps of the row's phase; sorts the scores. */
 void scene_row_errors(ChartRow *row, StepScores *scores);
 
 /* Largest penetration and means of the other measures over measures[count], one per launch. */

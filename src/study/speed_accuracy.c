@@ -79,10 +79,9 @@ static bool restore_checkpoint(Run *run) {
     bool timed = true;
     for (int i = 0; i < run->study.contender_count; i++) {
         ChartRow *rows = rows_of(run, i);
-        *rows = (ChartRow){0};
-        snprintf(rows->scene, sizeof rows->scene, "%s", run->study.scene->name);
-        snprintf(rows->method, sizeof rows->method, "%s", run->study.contenders[i]->name);
-        snprintf(rows->setting, sizeof rows->setting, "%s", run->study.contenders[i]->setting);
+        *rows = (ChartRow){.scene = run->study.scene->name,
+                           .method = run->study.contenders[i]->name,
+                           .setting = run->study.contenders[i]->setting};
         run->scored[i] = part_file_find(&run->part, rows, ROWS_EACH);
         timed &= run->scored[i] && !isnan(rows[PROTOCOL_CLOSED * PHASES + PHASE_REST].us_solver);
     }
@@ -123,6 +122,8 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
                                  .solves = run->study.solves,
                                  .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
+        /* The scene ends here, its rows do not. */
+        for (size_t i = (size_t)run->row_count; i < rows; i++) run->rows[i].scene = summary->name;
         run->row_count = (int)rows;
     }
     free(run->scored);
@@ -152,11 +153,11 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
 }
 
 static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
-    char path[STUDY_PATH_SIZE];
-    if (!file_path(path, sizeof path, error, "%s/chart.csv", run->options->folder)) return false;
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, run->options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
-    if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;
+    if (!csv_table_write(path, &chart_layout, run->rows, run->row_count, error)) return false;
     part_file_remove(&run->part);
     return true;
 }

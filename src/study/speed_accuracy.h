@@ -8,11 +8,11 @@
 #include "common/progress.h"
 #include "study/contenders.h"
 
-enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
+enum { STUDY_MAX_SCENES = 16 };
 
 /* Progress per stage of the study. */
 typedef struct StageProgress {
-    const Progress *(*begin)(void *context, const char *what); /* called when a stage begins */
+    const Progress *(*begin)(void *context, const char *what); /* called at the start of a stage */
     void *context;
 } StageProgress;
 
@@ -28,7 +28,7 @@ typedef struct SpeedAccuracyOptions {
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    ContenderNames without_network; /* methods left out, since neither their settings nor the scene name a network */
+    NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
     double frozen_residual;         /* m/s: largest residual of the reference solves of frozen steps */
     int solves, unconverged;        /* reference solves in closed loop since the study was started or resumed; those
                                        with a residual above SOLVE_CONVERGED (rollout.h) */

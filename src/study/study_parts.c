@@ -22,7 +22,7 @@ void study_parts_close(StudyParts *parts) {
     parts->text = NULL;
 }
 
-/* Maps the progress of a part to that of the study. */
+/* The progress of a part as a share of the whole. */
 typedef struct PartProgress {
     const StudyParts *parts;
     double weight;
@@ -45,6 +45,7 @@ static bool append_text(StudyParts *parts, const char *text, size_t size, Error 
     return true;
 }
 
+/* Does the part and writes its file. */
 static bool write_part(StudyParts *parts, const StudyPart *part, const char *path, Error *error) {
     PartProgress own = {parts, part->weight, false};
     const Progress progress = {report, &own};

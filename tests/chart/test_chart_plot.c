@@ -102,7 +102,8 @@ static void tables_without_a_mark_are_refused(void **state) {
                    "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
                    "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
                    "single", none);
-    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean cannot be -1");
+    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single",
+                   "error_mean: '-1' is less than 0");
     expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "cannot be the name of a scene");
     char many[8000] = "";
     for (int i = 0; i < 25; i++)

