@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensitivity of a run to its initial state: the scene is run twice by one method, once unchanged and once with one
-   body shifted by a micrometre. */
+/* Sensitivity to the initial state: runs a scene twice with one method, the second time with one body shifted by a
+   micrometre, and measures how fast the runs diverge. */
 #pragma once
 #include "common/progress.h"
 #include "trajectory/trajectory.h"
 
-#define CHAOS_SHIFT 1e-6f /* m, along x; more if float32 cannot resolve it there */
+#define CHAOS_SHIFT 1e-6f /* m, in x; at least one ulp of the position */
 
 typedef struct Chaos {
-    int body;     /* the one shifted: the bomb, or without one the last that can move */
-    double shift; /* m, as it came out in float32 */
-    int other;    /* first frame in which the scene, run again as it is, is not the run given; -1: it is the same */
+    int body;          /* the shifted body */
+    double shift;      /* m, as represented in float32 */
+    int rerun_differs; /* first frame in which the unshifted run differs from the given run; -1: none */
     int frames;
-    double *distance; /* [frames] m, the largest of all bodies; NAN once the shifted run is NaN or infinite */
+    double *distance; /* [frames] m, the largest of all bodies; NaN from where the shifted run is NaN or infinite */
 } Chaos;
 
-/* Which body to shift, for runs that diverge in this frame at body `parted` (-1, -1: nowhere): the bomb, or without one
-   the last body that can move. A difference cannot grow without contact: if the bomb has not touched anything by that
-   frame, it is the body that diverges. -1: no body can move. */
-int chaos_body(const Trajectory *run, int parted, int frame);
+/* The body to shift, given that two runs diverge in this frame at body `diverged` (-1, -1: nowhere): the bomb or,
+   without a bomb, the last dynamic body. If the bomb has touched nothing by that frame its shift cannot grow, so
+   `diverged` is returned. -1: no dynamic body. */
+int chaos_body(const Trajectory *run, int diverged, int frame);
 
-/* Reads the scene at `path`, which must be that of the run (the hash is checked), and runs its first `frames` frames
-   with the run's method; `body` must be able to move. ERROR_INPUT for another scene, or if the method cannot be
-   created. */
+/* Reads the scene at `path`, checks its hash against the run's, and runs `frames` frames with the run's method. `body`
+   must be dynamic. ERROR_INPUT for another scene or an unavailable method. */
 bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, int frames, const Progress *progress,
                Error *error);
 void chaos_free(Chaos *chaos);

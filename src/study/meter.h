@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of a step: time on one core, and instructions if the system lets a program count them. */
+/* Measures time and, where the system permits it, instructions of the calling thread. */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Pins the calling thread to its current core, so that migration does not disturb the time, and unpins it. No effect if
-   the system does not support it. */
+/* Pins the calling thread to its current core, to avoid the cost of migration; unpins it. No effect if the system does
+   not support it. */
 void meter_pin(void);
 void meter_unpin(void);
 
-/* Nanoseconds since a fixed moment. */
+/* Nanoseconds of a monotonic clock. */
 int64_t meter_time(void);
 
-/* Nanoseconds between two consecutive calls of meter_time: by so much every measurement is too long. */
+/* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
 int64_t meter_time_overhead(void);
 
-/* Instructions of this thread since the counter was opened; 0 if there is no counter. */
+/* Instructions of this thread since the counter was opened; 0 if it is not available. */
 bool meter_open_instructions(void);
 int64_t meter_instructions(void);
 void meter_close_instructions(void);

@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A run of a method in closed loop: each step starts from the result of the last one, and is scored against the
-   converged solution of the same step. */
+/* A closed-loop run of a method; each step is scored against its own converged solution. */
 #pragma once
 #include "common/error.h"
 #include "reference/reference.h"
 #include "simulate/method.h"
 #include "study/run_log.h"
 
-/* Scores of steps. Zero-initialise; free with step_scores_free. */
+/* Errors of the scored steps. Zero-initialise; free with step_scores_free(). */
 typedef struct StepScores {
     int count;
-    double *error; /* [count] m/s, RMS over the bodies that move */
-    double *share; /* [count] share of the bodies whose velocity is right */
+    double *error; /* [count] m/s, RMS over the dynamic bodies */
+    double *share; /* [count] share of bodies that are right (solution_error.h) */
     size_t error_capacity, share_capacity;
 } StepScores;
 
-/* Adds a step, from its end velocities. False when memory is short. */
+/* Adds one step, given its final velocities. False if out of memory. */
 bool step_scores_add(StepScores *scores, const ContactProblem *problem, const BodyVelocity *velocities,
                      const ReferenceVelocity *reference);
 void step_scores_free(StepScores *scores);
 
-/* All impact frames are scored, and one in so many of the others: a reference solve costs more than everything else. */
+/* All impact frames are scored; of the frames after and at rest, every n-th: reference solves dominate the run time. */
 typedef struct Sampling {
     int after, rest;
 } Sampling;
@@ -32,15 +31,15 @@ typedef struct Rollout {
     World *world;
     Reference reference;
     RunLog log;
-    int solves, unconverged; /* reference solves made; those that left a residual above SOLVE_CONVERGED */
+    int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
 } Rollout;
 
-/* m/s: far below the errors compared. Only states that a bad method has blown up do not converge to it. */
+/* m/s, far below the differences between methods. Only states that a bad method made explode do not reach it. */
 #define SOLVE_CONVERGED 1e-3
 
 void rollout_free(Rollout *rollout);
 
-/* Runs a launched scene, and adds the sampled steps to scores[PHASES] (NULL: none). A run whose state becomes NaN or
-   infinite ends there, with a shorter log. False with error set when memory is short. */
+/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none). If the state becomes NaN or
+   infinite, the run ends early and its log is shorter. False with error set if out of memory. */
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error);

@@ -36,7 +36,7 @@ bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error);
 /* Writes a row as such a line; the table's name is the layout's. Errors as csv_row_print(). */
 bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Error *error);
 
-/* Writes folder/TABLE.csv: the header, and all rows of that table in the order of the parts. */
+/* Writes folder/TABLE.csv: the header and the table's rows in the order of the parts. */
 bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error);
 
 /* Removes the stored parts: the study is done. */
