@@ -150,8 +150,7 @@ static bool put_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines,
                         .not_finite = reading->fallbacks.not_finite,
                         .outside_cone = reading->fallbacks.outside_cone,
                         .beyond_training = reading->fallbacks.beyond_training};
-    if (contender->method.kind->description->needs_network &&
-        !study_parts_print(lines, &fallback_layout, &row, error))
+    if (contender->method.kind->description->needs_network && !study_parts_print(lines, &fallback_layout, &row, error))
         return false;
     return !study->rests || study_parts_print(lines, &rest_layout, &row, error);
 }

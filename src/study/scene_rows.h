@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of the chart's table from what a scene's launches gave. */
+/* Rows of chart.csv, from the results of a scene's launches. */
 #pragma once
 #include "study/contenders.h"
 #include "study/rollout.h"
 #include "study/timing.h"
 
-/* A row with names and no figures; the names stay those of the caller. */
+/* A row with names but without results. The names must outlive the row. */
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
 
 /* Mean, quantiles and share over all steps of the row's phase; sorts the scores. */

@@ -20,7 +20,7 @@ static ChartRow bare(void) {
                       NAN,          NAN,        NAN, NAN};
 }
 
-static void rows_are_written_as_the_header_says(void **state) {
+static void rows_are_written_in_the_order_of_the_header(void **state) {
     (void)state;
     Error error = {0};
     const ChartRow rows[] = {full, bare()};
@@ -54,7 +54,7 @@ static void assert_same_row(const ChartRow *found, const ChartRow *expected) {
     for (const double *end = &found->moved; a <= end; a++, b++) assert_same_figure(*a, *b);
 }
 
-static void what_is_written_is_read_again(void **state) {
+static void written_tables_are_read_back(void **state) {
     (void)state;
     Error error = {0};
     ChartRow rows[] = {full, bare(), full};
@@ -125,8 +125,8 @@ static void other_headers_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_written_as_the_header_says),
-        cmocka_unit_test(what_is_written_is_read_again),
+        cmocka_unit_test(rows_are_written_in_the_order_of_the_header),
+        cmocka_unit_test(written_tables_are_read_back),
         cmocka_unit_test(broken_tables_are_refused_with_their_place),
         cmocka_unit_test(long_names_are_refused),
         cmocka_unit_test(other_headers_are_refused),
