@@ -97,7 +97,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
-    const ContenderNames left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
+    const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
     return true;

@@ -64,7 +64,7 @@ static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
 static bool widen_band(Divergence *d, int body, const Progress *progress, Error *error) {
     Chaos chaos;
     if (!chaos_run(&chaos, d->spec->scene, d->spec->runs[0], body, d->frames, progress, error)) return false;
-    bool same = chaos.other < 0;
+    bool same = chaos.rerun_differs < 0;
     for (int i = 0; same && i < d->frames; i++) {
         /* A run that has left the numbers ends the band. */
         double distance = i < chaos.frames ? chaos.distance[i] : NAN;
@@ -73,7 +73,7 @@ static bool widen_band(Divergence *d, int body, const Progress *progress, Error 
         d->low[i] = !there ? NAN : distance > 0 ? fmin(d->low[i], distance) : d->low[i];
         d->high[i] = there ? fmax(d->high[i], distance) : NAN;
     }
-    int other = chaos.other;
+    int other = chaos.rerun_differs;
     chaos_free(&chaos);
     return same || error_input(error, d->spec->paths[0],
                                "%s run again is not this run from frame %d on: made with "

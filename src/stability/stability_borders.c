@@ -19,13 +19,13 @@ typedef struct Borders {
     const BorderTable *table;
     FigurePage *page;
     int study_count, method_count;
-    int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* the first row of each */
+    int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
     int columns, rows, legend_rows;
-    double width, row_height, bottom; /* mm: of a panel; of a method; where the lowest panel begins */
+    double width, row_height, bottom; /* mm: panel width, row height, bottom of the lowest panel */
     bool used[VERDICT_LOOKS];
 } Borders;
 
-/* Adds row i where it is the first of its kind. False where there is no room. */
+/* Adds row i if it is the first of its study or method. False if there are too many. */
 static bool add_first(const BorderTable *table, int i, bool (*same)(const BorderRow *, const BorderRow *), int *firsts,
                       int *count, int most) {
     for (int k = 0; k < *count; k++)
@@ -49,7 +49,7 @@ static bool gather(Borders *borders, Error *error) {
     return true;
 }
 
-/* On a page as high as a paper's where that leaves room enough for a row. */
+/* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
     FigurePage *page = borders->page;
     int items = BORDER_SIGNS;
@@ -66,7 +66,7 @@ static void lay_out(Borders *borders) {
     page->height = legend + borders->rows * (around + borders->row_height * borders->method_count);
 }
 
-static void put_guides(const Borders *borders) {
+static void draw_guides(const Borders *borders) {
     const FigureLook look = {"", {.colour = GUIDE_COLOUR, .dashes = "solid"}, 0.6, false, 0, false};
     figure_series(borders->page);
     for (int method = 0; method < borders->method_count; method++)
@@ -74,7 +74,7 @@ static void put_guides(const Borders *borders) {
     figure_draw(borders->page, &look);
 }
 
-static void put_names(const Borders *borders, double bottom) {
+static void draw_names(const Borders *borders, double bottom) {
     for (int method = 0; method < borders->method_count; method++) {
         const BorderRow *row = &borders->table->rows[borders->methods[method]];
         char text[STABILITY_TEXT_SIZE];
@@ -84,7 +84,7 @@ static void put_names(const Borders *borders, double bottom) {
     }
 }
 
-static void put_panel(const Borders *borders, int study) {
+static void draw_panel(const Borders *borders, int study) {
     const BorderRow *first = &borders->table->rows[borders->studies[study]];
     int column = study % borders->columns, row = study / borders->columns;
     double height = borders->row_height * borders->method_count;
@@ -96,33 +96,33 @@ static void put_panel(const Borders *borders, int study) {
     figure_cut(title, (size_t)(borders->width / title_letter));
     BorderAxis axis = border_axis(borders->table, borders->studies[study], borders->width);
     figure_panel(borders->page, box, title);
-    border_axis_put(&axis, borders->page);
+    border_axis_write(&axis, borders->page);
     figure_linear(borders->page, 'y', -0.5, borders->method_count - 0.5, "", NULL);
-    if (column == 0) put_names(borders, box.bottom);
-    put_guides(borders);
-    border_marks_put(&(BorderRows){borders->table, borders->page, first, &axis, borders->methods, borders->method_count,
-                                   borders->row_height});
+    if (column == 0) draw_names(borders, box.bottom);
+    draw_guides(borders);
+    border_marks_draw(&(BorderRows){borders->table, borders->page, first, &axis, borders->methods,
+                                    borders->method_count, borders->row_height});
     figure_panel_end(borders->page);
 }
 
-static void put_samples(const Borders *borders, const LegendPlace *place, int first) {
+static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
     static const char *const names[BORDER_SIGNS] = {"holds", "holds throughout", "never holds"};
     FigurePage *page = borders->page;
     for (int i = 0; i < BORDER_SIGNS; i++) {
         double x = place->left + place->width * ((first + i) % place->columns),
                y = place->top - FIGURE_LEGEND_ROW * ((first + i) / place->columns);
-        border_sample_put(page, i, x, y, sample);
+        border_sample_draw(page, i, x, y, sample);
         figure_text(page, x + sample + name_gap, y, "left", 7.5, names[i]);
     }
 }
 
-static void put_legend(const Borders *borders) {
+static void draw_legend(const Borders *borders) {
     FigurePage *page = borders->page;
     LegendPlace place = {legend_left, FIGURE_LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
                          (page->width - legend_left) / LEGEND_COLUMNS, LEGEND_COLUMNS};
     figure_page_panel(page);
-    int next = verdict_put_legend(page, borders->used, &place);
-    put_samples(borders, &place, next);
+    int next = verdict_draw_legend(page, borders->used, &place);
+    draw_samples(borders, &place, next);
     figure_panel_end(page);
 }
 
@@ -131,13 +131,12 @@ bool stability_borders_write(const BorderTable *table, FigurePage *page, Error *
     if (!gather(&borders, error)) return false;
     lay_out(&borders);
     figure_begin(page, page->width, page->height);
-    for (int study = 0; study < borders.study_count; study++) put_panel(&borders, study);
-    put_legend(&borders);
+    for (int study = 0; study < borders.study_count; study++) draw_panel(&borders, study);
+    draw_legend(&borders);
     fprintf(page->caption,
-            "How far each method holds, on each study's own axis. Bars go over what holds; tiles stand at the first "
-            "value that fails, or at the far end where luck decides beyond the bar, and tell how. An arrow: holds over "
-            "the whole range that was looked at; a cross: never "
-            "holds; a row without a mark: not in the study.");
+            "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
+            "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
+            "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.");
     figure_end(page);
     return true;
 }

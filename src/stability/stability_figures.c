@@ -7,8 +7,8 @@
 
 #include <stdlib.h>
 
-/* Maps one after the other; all are gathered once before the first is drawn, so that none is drawn of a bad table. */
-static bool go_through_maps(const MapTable *table, const char *folder, bool draw, Error *error) {
+/* Gathers every map and, if `draw`, draws it. A first pass without drawing detects errors before anything is drawn. */
+static bool process_maps(const MapTable *table, const char *folder, bool draw, Error *error) {
     MapPanels *map = malloc(sizeof *map);
     bool ok = map != NULL || error_memory(error, folder);
     for (int row = 0; ok && row < table->count;) {
@@ -38,8 +38,8 @@ bool stability_figures_write(const char *folder, Error *error) {
     MapTable maps = {0};
     BorderTable borders = {0};
     bool ok = border_table_read(&borders, folder, error) && map_table_read(&maps, folder, error) &&
-              go_through_maps(&maps, folder, false, error) && draw_borders(&borders, folder, error) &&
-              go_through_maps(&maps, folder, true, error);
+              process_maps(&maps, folder, false, error) && draw_borders(&borders, folder, error) &&
+              process_maps(&maps, folder, true, error);
     map_table_free(&maps);
     border_table_free(&borders);
     return ok;

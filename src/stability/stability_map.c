@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Panels side by side on a page of a paper, the legend of what occurs below. */
 #include "stability/stability_map.h"
 
 #include "chart/chart_data.h"
@@ -18,7 +17,7 @@ typedef struct Layout {
     const MapPanels *map;
     FigurePage *page;
     int columns, rows, legend_columns, legend_rows;
-    double left, width, height, bottom; /* mm: where the first panel begins; of a panel; where the lowest begins */
+    double left, width, height, bottom; /* mm: left of the first panel, panel size, bottom of the lowest panel */
     TileScale cell;
     bool used[VERDICT_LOOKS];
 } Layout;
@@ -36,13 +35,13 @@ static int count_used(const Layout *layout) {
     return count;
 }
 
-/* With three digits, but whole where it has more. */
+/* Three significant digits; integers up to 1e6 in full. */
 static int name_value(char *text, size_t size, double value) {
     bool whole = fabs(value) > 999 && fabs(value) < 1e6;
     return snprintf(text, size, whole ? "%.0f" : "%.3g", value);
 }
 
-/* mm, of the longest */
+/* mm: width of the longest label. */
 static double number_width(const double *values, int count) {
     char text[32];
     int longest = 0;
@@ -53,7 +52,7 @@ static double number_width(const double *values, int count) {
     return longest * tic_digit;
 }
 
-/* A single method takes a column of the page. */
+/* A single panel is one column of a printed page wide; several fill the page. */
 static Layout lay_out(const MapPanels *map, FigurePage *page) {
     int panels = map->panel_count;
     Layout layout = {.map = map, .page = page};
@@ -62,7 +61,7 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     layout.columns = panels == 1 ? 1 : panels <= 4 ? 2 : panels <= 6 ? 3 : 4;
     layout.rows = (panels + layout.columns - 1) / layout.columns;
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
-    /* One more for the border. */
+    /* The border is one more legend item. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
     layout.left = label_room + number_width(map->y, map->y_count);
     layout.width = (page_width - layout.left - right - gap * (layout.columns - 1)) / layout.columns;
@@ -78,22 +77,22 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     return layout;
 }
 
-static void put_tiles(const Layout *layout, int panel) {
+static void draw_tiles(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
     int count = 0;
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) tiles[count++] = (Tile){x, y, map->looks[panel][x][y]};
-    verdict_put_tiles(layout->page, tiles, count, layout->cell);
+    verdict_draw_tiles(layout->page, tiles, count, layout->cell);
 }
 
-/* Neither: not applicable, or not run. */
-static bool parts(int look, int other) {
+/* One holds and the other fails; cells without a verdict do neither. */
+static bool differ(int look, int other) {
     return look < VERDICTS && other < VERDICTS && verdict_holds((Verdict)look) != verdict_holds((Verdict)other);
 }
 
-/* Bars and not lines, whose ends would leave notches at the corners. */
-static void put_border(const Layout *layout, int panel) {
+/* Drawn as bars: the ends of lines would leave notches at the corners. */
+static void draw_border(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     const FigureLook look = {"", {.colour = "black"}, 0, false, 1, false};
     double across = border_width / 2 / layout->cell.unit_x, up = border_width / 2 / layout->cell.unit_y;
@@ -101,17 +100,17 @@ static void put_border(const Layout *layout, int panel) {
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
             int here = map->looks[panel][x][y];
-            if (x + 1 < map->x_count && parts(here, map->looks[panel][x + 1][y]))
+            if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
                 figure_bar(layout->page, x + 0.5 - across, y - 0.5 - up, x + 0.5 + across, y + 0.5 + up);
-            if (y + 1 < map->y_count && parts(here, map->looks[panel][x][y + 1]))
+            if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
                 figure_bar(layout->page, x - 0.5 - across, y + 0.5 - up, x + 0.5 + across, y + 0.5 + up);
         }
     figure_draw(layout->page, &look);
 }
 
-/* A tic a cell; of their numbers every so many, that they do not touch. */
-static void put_axis(const Layout *layout, char axis, const double *values, int count, bool numbers,
-                     const char *label) {
+/* One tic per cell; labels are thinned so that they do not touch. */
+static void write_axis(const Layout *layout, char axis, const double *values, int count, bool numbers,
+                       const char *label) {
     char tics[TICS_SIZE], text[32];
     double room = axis == 'x' ? layout->cell.unit_x : layout->cell.unit_y;
     double needed = axis == 'x' ? number_width(values, count) + tic_digit : tic_height;
@@ -126,8 +125,8 @@ static void put_axis(const Layout *layout, char axis, const double *values, int 
     figure_linear(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
-/* From each cell to its clip; the title has the cell's name as --clip takes it, but for letters that are not plain. */
-static void put_links(const Layout *layout, int panel, FigureBox box) {
+/* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
+static void draw_links(const Layout *layout, int panel, FigureBox box) {
     const MapPanels *map = layout->map;
     const TileScale size = layout->cell;
     MapCell cell = *map->methods[panel];
@@ -149,7 +148,7 @@ static void put_links(const Layout *layout, int panel, FigureBox box) {
         }
 }
 
-static void put_panel(const Layout *layout, int panel) {
+static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     int column = panel % layout->columns, row = panel / layout->columns;
     double step = layout->height + title_room + row_gap;
@@ -161,21 +160,21 @@ static void put_panel(const Layout *layout, int panel) {
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     figure_panel(layout->page, box, title);
-    put_axis(layout, 'x', map->x, map->x_count, panel + layout->columns >= map->panel_count, x);
-    put_axis(layout, 'y', map->y, map->y_count, column == 0, y);
-    put_tiles(layout, panel);
-    put_border(layout, panel);
-    put_links(layout, panel, box);
+    write_axis(layout, 'x', map->x, map->x_count, panel + layout->columns >= map->panel_count, x);
+    write_axis(layout, 'y', map->y, map->y_count, column == 0, y);
+    draw_tiles(layout, panel);
+    draw_border(layout, panel);
+    draw_links(layout, panel, box);
     figure_panel_end(layout->page);
 }
 
-static void put_legend(const Layout *layout) {
+static void draw_legend(const Layout *layout) {
     FigurePage *page = layout->page;
     const FigureLook border = {"", {.colour = "black"}, 0, false, 1, false};
     LegendPlace place = {layout->left, FIGURE_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
                          (page->width - layout->left) / layout->legend_columns, layout->legend_columns};
     figure_page_panel(page);
-    int next = verdict_put_legend(page, layout->used, &place);
+    int next = verdict_draw_legend(page, layout->used, &place);
     double x = place.left + place.width * (next % place.columns),
            y = place.top - FIGURE_LEGEND_ROW * (next / place.columns);
     figure_series(page);
@@ -185,23 +184,24 @@ static void put_legend(const Layout *layout) {
     figure_panel_end(page);
 }
 
-static void put_caption(const Layout *layout) {
+static void write_caption(const Layout *layout) {
     const MapPanels *map = layout->map;
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    fprintf(layout->page->caption,
-            "Where each method fails: map %s. Across: %s; up: %s; each cell is one run and its worst verdict, the "
-            "darker the worse. Settling, swaying and creeping count as holding; the black line parts them from "
-            "failing. Cells are drawn equally large, whatever their values.",
-            map->first->map, x, y);
+    fprintf(
+        layout->page->caption,
+        "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
+        "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
+        "cells have the same size, whatever their values.",
+        map->first->map, x, y);
 }
 
 void map_panels_write(const MapPanels *map, FigurePage *page) {
     Layout layout = lay_out(map, page);
     figure_begin(page, page->width, page->height);
-    for (int panel = 0; panel < map->panel_count; panel++) put_panel(&layout, panel);
-    put_legend(&layout);
-    put_caption(&layout);
+    for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
+    draw_legend(&layout);
+    write_caption(&layout);
     figure_end(page);
 }

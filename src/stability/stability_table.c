@@ -121,7 +121,7 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-/* "k=10, warm=off"; of "k=5,network=DIR/net.npz": "k=5, net.npz". */
+/* "k=10,warm=off" -> "k=10, warm=off"; "k=5,network=DIR/net.npz" -> "k=5, net.npz". */
 static size_t show_setting(char shown[2 * STABILITY_SETTING_SIZE], const char *setting) {
     size_t used = 0, item = 0;
     for (const char *c = setting; *c != '\0'; c++) {
@@ -138,7 +138,7 @@ static size_t show_setting(char shown[2 * STABILITY_SETTING_SIZE], const char *s
     return used;
 }
 
-/* What is too long loses the end of its name, as long as that leaves some: settings tell panels apart. */
+/* If too long, the method's name is cut first: settings distinguish the panels. */
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
     char name[CSV_NAME_SIZE], shown[2 * STABILITY_SETTING_SIZE];
     size_t used = show_setting(shown, setting);
@@ -148,7 +148,7 @@ void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const ch
     figure_cut(text, most);
 }
 
-/* An underline would be a subscript to gnuplot. */
+/* gnuplot would show an underscore as a subscript. */
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit) {
     snprintf(text, STABILITY_TEXT_SIZE, unit[0] != '\0' ? "%s (%s)" : "%s", parameter, unit);
     for (char *c = text; *c != '\0'; c++)

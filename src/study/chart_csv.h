@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* chart.csv: speed and accuracy of every method; one row per scene, method, setting, protocol and phase. */
+/* chart.csv: speed and accuracy of every method; one row for each scene, method, setting, protocol and phase. */
 #pragma once
 #include "common/csv_table.h"
 #include "simulate/phases.h"
 
 enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
 
-/* Frozen: all methods on the same contact problems. Closed: each on its own trajectory. */
+/* Frozen: all methods solve the same contact problems. Closed: each method runs on its own trajectory. */
 typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
 
 enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
