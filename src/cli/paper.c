@@ -3,8 +3,8 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
-#include "paper/figures/engine_figures.h"
-#include "paper/figures/result_figures.h"
+#include "paper/figures/illustrations.h"
+#include "paper/figures/plots.h"
 #include "paper/report/paper_report.h"
 #include "paper/study/paper.h"
 
@@ -59,8 +59,8 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
     enum { PATH_SIZE = 4096 };
     char figures[PATH_SIZE];
     if (!file_path(figures, sizeof figures, error, "%s/figures", study->folder)) return false;
-    if (!file_make_directory(figures, error) || !engine_figures_draw(study->scenes, figures, error) ||
-        !result_figures_draw(study->folder, error) || !paper_report_write(study->folder, error))
+    if (!file_make_directory(figures, error) || !illustrations_draw(study->scenes, figures, error) ||
+        !plots_draw(study->folder, error) || !paper_report_write(study->folder, error))
         return false;
     printf("tables, figures, networks -> %s\nreport -> %s/report.md, %s/report.html\n", study->folder, study->folder,
            study->folder);

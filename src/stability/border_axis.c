@@ -122,10 +122,10 @@ static void linear_tics(Tics *tics) {
     }
 }
 
-void border_axis_write(const BorderAxis *axis, FigurePage *page) {
+void border_axis_write(const BorderAxis *axis, GnuplotPage *page) {
     Tics tics = {.axis = axis};
     char text[TICS_SIZE + 32];
     (axis->logarithmic ? log_tics : linear_tics)(&tics);
     snprintf(text, sizeof text, "out offset 0,0.3 (%s)", tics.text);
-    figure_linear(page, 'x', 0, axis->width, text, axis->label);
+    gnuplot_linear_axis(page, 'x', 0, axis->width, text, axis->label);
 }

@@ -2,7 +2,7 @@
 /* The axis of a study in the borders figure, in mm from the panel's left edge: tiles keep their size on a logarithmic
    axis too. */
 #pragma once
-#include "chart/figure_page.h"
+#include "chart/gnuplot_page.h"
 #include "stability/stability_table.h"
 
 typedef struct BorderAxis {
@@ -23,4 +23,4 @@ BorderAxis border_axis(const BorderTable *table, int first, double width);
 double border_axis_place(const BorderAxis *axis, double value);
 
 /* Writes the axis to the open panel. */
-void border_axis_write(const BorderAxis *axis, FigurePage *page);
+void border_axis_write(const BorderAxis *axis, GnuplotPage *page);

@@ -7,8 +7,8 @@
 /* mm; half_tile, half_sign: from the centre of a tile, arrow head or cross to its edge */
 static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
 
-static const FigureLook bar_look = {"", {.colour = "#A3CBE5"}, 0, false, 1, false};
-static const FigureLook sign_look = {"", {.colour = "black", .dashes = "solid"}, 1.6, false, 0, false};
+static const GnuplotLook bar_look = {"", {.colour = "#A3CBE5"}, 0, false, 1, false};
+static const GnuplotLook sign_look = {"", {.colour = "black", .dashes = "solid"}, 1.6, false, 0, false};
 
 static bool holds_throughout(const BorderRow *row) {
     return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
@@ -36,21 +36,21 @@ static void draw_bar(const BorderRows *rows, const BorderRow *row, int y) {
     bool low = isnan(row->fails_at) ? !rows->axis->falling : row->holds_at < row->fails_at;
     double from = whole ? 0 : far_end(rows, row, low);
     double to = whole ? rows->axis->width : border_axis_place(rows->axis, row->holds_at);
-    figure_bar(rows->page, fmin(from, to), y - half, fmax(from, to), y + half);
+    gnuplot_bar(rows->page, fmin(from, to), y - half, fmax(from, to), y + half);
 }
 
 /* An arrow head with its tip at x. `up`: axis units per mm. */
-static void draw_head(FigurePage *page, double x, double y, double up, bool to_the_left) {
+static void draw_head(GnuplotPage *page, double x, double y, double up, bool to_the_left) {
     double back = x + (to_the_left ? 2 : -2) * half_sign;
-    figure_point(page, back, y + half_sign * up);
-    figure_point(page, x, y);
-    figure_point(page, back, y - half_sign * up);
-    figure_gap(page);
+    gnuplot_point(page, back, y + half_sign * up);
+    gnuplot_point(page, x, y);
+    gnuplot_point(page, back, y - half_sign * up);
+    gnuplot_gap(page);
 }
 
-static void draw_cross(FigurePage *page, double x, double y, double up) {
-    figure_segment(page, x - half_sign, y - half_sign * up, x + half_sign, y + half_sign * up);
-    figure_segment(page, x - half_sign, y + half_sign * up, x + half_sign, y - half_sign * up);
+static void draw_cross(GnuplotPage *page, double x, double y, double up) {
+    gnuplot_segment(page, x - half_sign, y - half_sign * up, x + half_sign, y + half_sign * up);
+    gnuplot_segment(page, x - half_sign, y + half_sign * up, x + half_sign, y - half_sign * up);
 }
 
 /* In the margin next to the study's easiest value. */
@@ -78,13 +78,13 @@ static int height_of(const BorderRows *rows, const BorderRow *row) {
 }
 
 static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, int),
-                      const FigureLook *look) {
-    figure_series(rows->page);
+                      const GnuplotLook *look) {
+    gnuplot_series_begin(rows->page);
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *row = &rows->table->rows[i];
         if (border_same_study(row, rows->study)) put(rows, row, height_of(rows, row));
     }
-    figure_draw(rows->page, look);
+    gnuplot_series_end(rows->page, look);
 }
 
 static void draw_tiles(const BorderRows *rows) {
@@ -104,12 +104,12 @@ void border_marks_draw(const BorderRows *rows) {
     draw_each(rows, draw_sign, &sign_look);
 }
 
-void border_sample_draw(FigurePage *page, int sign, double x, double y, double width) {
-    figure_series(page);
-    if (sign < 2) figure_bar(page, x, y - bar_height / 2, x + width, y + bar_height / 2);
-    figure_draw(page, &bar_look);
-    figure_series(page);
+void border_sample_draw(GnuplotPage *page, int sign, double x, double y, double width) {
+    gnuplot_series_begin(page);
+    if (sign < 2) gnuplot_bar(page, x, y - bar_height / 2, x + width, y + bar_height / 2);
+    gnuplot_series_end(page, &bar_look);
+    gnuplot_series_begin(page);
     if (sign == 1) draw_head(page, x + width, y, 1, false);
     if (sign == 2) draw_cross(page, x + width / 2, y, 1);
-    figure_draw(page, &sign_look);
+    gnuplot_series_end(page, &sign_look);
 }

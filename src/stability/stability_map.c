@@ -15,7 +15,7 @@ enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2, TICS_SIZE = MAP_MAX_VALUES
 
 typedef struct Layout {
     const MapPanels *map;
-    FigurePage *page;
+    GnuplotPage *page;
     int columns, rows, legend_columns, legend_rows;
     double left, width, height, bottom; /* mm: left of the first panel, panel size, bottom of the lowest panel */
     TileScale cell;
@@ -53,7 +53,7 @@ static double number_width(const double *values, int count) {
 }
 
 /* A single panel is one column of a printed page wide; several fill the page. */
-static Layout lay_out(const MapPanels *map, FigurePage *page) {
+static Layout lay_out(const MapPanels *map, GnuplotPage *page) {
     int panels = map->panel_count;
     Layout layout = {.map = map, .page = page};
     find_used(&layout);
@@ -71,7 +71,7 @@ static Layout lay_out(const MapPanels *map, FigurePage *page) {
     double least = fmax(least_height, letter * (double)strlen(label));
     layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least), most_height);
     layout.cell.unit_y = layout.height / map->y_count;
-    layout.bottom = FIGURE_LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
+    layout.bottom = GNUPLOT_LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     page->width = page_width;
     page->height = layout.bottom + layout.rows * (layout.height + title_room) + (layout.rows - 1) * row_gap;
     return layout;
@@ -94,18 +94,18 @@ static bool differ(int look, int other) {
 /* Drawn as bars: the ends of lines would leave notches at the corners. */
 static void draw_border(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
-    const FigureLook look = {"", {.colour = "black"}, 0, false, 1, false};
+    const GnuplotLook look = {"", {.colour = "black"}, 0, false, 1, false};
     double across = border_width / 2 / layout->cell.unit_x, up = border_width / 2 / layout->cell.unit_y;
-    figure_series(layout->page);
+    gnuplot_series_begin(layout->page);
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
             int here = map->looks[panel][x][y];
             if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
-                figure_bar(layout->page, x + 0.5 - across, y - 0.5 - up, x + 0.5 + across, y + 0.5 + up);
+                gnuplot_bar(layout->page, x + 0.5 - across, y - 0.5 - up, x + 0.5 + across, y + 0.5 + up);
             if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
-                figure_bar(layout->page, x - 0.5 - across, y + 0.5 - up, x + 0.5 + across, y + 0.5 + up);
+                gnuplot_bar(layout->page, x - 0.5 - across, y + 0.5 - up, x + 0.5 + across, y + 0.5 + up);
         }
-    figure_draw(layout->page, &look);
+    gnuplot_series_end(layout->page, &look);
 }
 
 /* One tic per cell; labels are thinned so that they do not touch. */
@@ -122,11 +122,11 @@ static void write_axis(const Layout *layout, char axis, const double *values, in
                                  numbers && i % every == 0 ? text : "", i);
     }
     snprintf(tics + used, sizeof tics - used, ")");
-    figure_linear(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
+    gnuplot_linear_axis(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
 /* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
-static void draw_links(const Layout *layout, int panel, FigureBox box) {
+static void draw_links(const Layout *layout, int panel, GnuplotBox box) {
     const MapPanels *map = layout->map;
     const TileScale size = layout->cell;
     MapCell cell = *map->methods[panel];
@@ -142,9 +142,10 @@ static void draw_links(const Layout *layout, int panel, FigureBox box) {
             snprintf(target, sizeof target, "%s.mp4", clip);
             snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
             for (char *c = title; *c != '\0'; c++) *c = chart_plain_letter(*c);
-            figure_link(layout->page,
-                        (FigureBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
-                        target, title);
+            gnuplot_link(
+                layout->page,
+                (GnuplotBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
+                target, title);
         }
 }
 
@@ -152,36 +153,36 @@ static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     int column = panel % layout->columns, row = panel / layout->columns;
     double step = layout->height + title_room + row_gap;
-    FigureBox box = {layout->left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
-                     layout->width, layout->height};
+    GnuplotBox box = {layout->left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
+                      layout->width, layout->height};
     char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     const MapCell *method = map->methods[panel];
     stability_method_text(title, (size_t)(layout->width / letter), method->method, method->setting);
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    figure_panel(layout->page, box, title);
+    gnuplot_panel_begin(layout->page, box, title);
     write_axis(layout, 'x', map->x, map->x_count, panel + layout->columns >= map->panel_count, x);
     write_axis(layout, 'y', map->y, map->y_count, column == 0, y);
     draw_tiles(layout, panel);
     draw_border(layout, panel);
     draw_links(layout, panel, box);
-    figure_panel_end(layout->page);
+    gnuplot_panel_end(layout->page);
 }
 
 static void draw_legend(const Layout *layout) {
-    FigurePage *page = layout->page;
-    const FigureLook border = {"", {.colour = "black"}, 0, false, 1, false};
-    LegendPlace place = {layout->left, FIGURE_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
+    GnuplotPage *page = layout->page;
+    const GnuplotLook border = {"", {.colour = "black"}, 0, false, 1, false};
+    LegendPlace place = {layout->left, GNUPLOT_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
                          (page->width - layout->left) / layout->legend_columns, layout->legend_columns};
-    figure_page_panel(page);
+    gnuplot_page_panel_begin(page);
     int next = verdict_draw_legend(page, layout->used, &place);
     double x = place.left + place.width * (next % place.columns),
-           y = place.top - FIGURE_LEGEND_ROW * (next / place.columns);
-    figure_series(page);
-    figure_bar(page, x, y - border_width / 2, x + 2.9, y + border_width / 2);
-    figure_draw(page, &border);
-    figure_text(page, x + 4.2, y, "left", 7.5, "border of holding");
-    figure_panel_end(page);
+           y = place.top - GNUPLOT_LEGEND_ROW * (next / place.columns);
+    gnuplot_series_begin(page);
+    gnuplot_bar(page, x, y - border_width / 2, x + 2.9, y + border_width / 2);
+    gnuplot_series_end(page, &border);
+    gnuplot_text(page, x + 4.2, y, "left", 7.5, "border of holding");
+    gnuplot_panel_end(page);
 }
 
 static void write_caption(const Layout *layout) {
@@ -197,11 +198,11 @@ static void write_caption(const Layout *layout) {
         map->first->map, x, y);
 }
 
-void map_panels_write(const MapPanels *map, FigurePage *page) {
+void map_panels_write(const MapPanels *map, GnuplotPage *page) {
     Layout layout = lay_out(map, page);
-    figure_begin(page, page->width, page->height);
+    gnuplot_page_begin(page, page->width, page->height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
     write_caption(&layout);
-    figure_end(page);
+    gnuplot_page_end(page);
 }

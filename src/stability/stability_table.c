@@ -143,9 +143,9 @@ void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const ch
     char name[CSV_NAME_SIZE], shown[2 * STABILITY_SETTING_SIZE];
     size_t used = show_setting(shown, setting);
     snprintf(name, sizeof name, "%s", method);
-    if (used > 0 && used + 2 + LEAST_NAME <= most) figure_cut(name, most - used - 2);
+    if (used > 0 && used + 2 + LEAST_NAME <= most) gnuplot_truncate(name, most - used - 2);
     snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", name, used > 0 ? ", " : "", shown);
-    figure_cut(text, most);
+    gnuplot_truncate(text, most);
 }
 
 /* gnuplot would show an underscore as a subscript. */

@@ -2,7 +2,7 @@
 /* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
    light and round, failing dark and angular, readable in black and white. */
 #pragma once
-#include "chart/figure_page.h"
+#include "chart/gnuplot_page.h"
 #include "stability/verdict.h"
 
 /* Continues Verdict: cells without a verdict. */
@@ -31,13 +31,13 @@ typedef struct Tile {
 } Tile;
 
 /* Draws tiles on the open panel: all fills, then all symbols. */
-void verdict_draw_tiles(FigurePage *page, const Tile *tiles, int count, TileScale scale);
+void verdict_draw_tiles(GnuplotPage *page, const Tile *tiles, int count, TileScale scale);
 
-/* The grid of a legend's items, row by row; rows are FIGURE_LEGEND_ROW apart. */
+/* The grid of a legend's items, row by row; rows are GNUPLOT_LEGEND_ROW apart. */
 typedef struct LegendPlace {
     double left, top, width; /* mm: left edge and centre height of the first item; column width */
     int columns;
 } LegendPlace;
 
 /* Draws tiles and names of the used looks on a panel in mm. Returns their number. */
-int verdict_draw_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place);
+int verdict_draw_legend(GnuplotPage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place);

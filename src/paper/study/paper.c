@@ -21,7 +21,7 @@ enum { LAW_SETS = sizeof law_names / sizeof law_names[0], PART_NAME_SIZE = 128 }
 typedef struct Run {
     const PaperOptions *options;
     const PaperSize *size;
-    bool counting; /* only add up how long the parts take */
+    bool counting; /* only add up the weights of the parts */
     StudyParts parts;
     PaperDatasets datasets;
     PaperOutlook outlook;
@@ -45,7 +45,7 @@ static void choose_networks(Run *run) {
     }
 }
 
-/* Seconds on two cores, roughly, where all 2000 iterations are done. */
+/* About the seconds on two cores for 2000 iterations. */
 static double training_weight(const PaperNetwork *network) {
     static const double of_data[PAPER_DATA] = {
         [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
@@ -131,7 +131,7 @@ static bool all_parts(Run *run, Error *error) {
            study_transfer(run, error);
 }
 
-/* What the report cites. */
+/* The study's parameters, for the report. */
 static bool write_facts(const Run *run, Error *error) {
     const PaperSize *size = run->size;
     const double values[] = {(double)run->options->seed, run->network_count,  size->iterations,
@@ -163,7 +163,7 @@ static bool write_tables(const Run *run, Error *error) {
     return write_facts(run, error);
 }
 
-/* Of everything that decides the result: the program, the options, the scenes. */
+/* A hash of all that decides the result: the program, the options, the scenes. */
 static bool find_key(const Run *run, uint64_t *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &run->options->quick, sizeof run->options->quick);

@@ -22,7 +22,7 @@ void paper_datasets_free(PaperDatasets *datasets) {
     datasets->count = 0;
 }
 
-/* Ranges are this program's own, and can be read. */
+/* Ranges are constants of this program and always valid. */
 static FloatRange range_of(const char *text) {
     FloatRange range = {0};
     parse_range(text, DATASET_MAX_LAUNCHES, &range);

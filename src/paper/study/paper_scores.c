@@ -17,7 +17,7 @@ typedef struct Launched {
     Scene *scene;
     int count;
     Scene *launches;      /* [count] */
-    SnapshotList *states; /* [count] sampled from the engine's runs, where they are asked for */
+    SnapshotList *states; /* [count] sampled from the engine's runs; empty until sampled */
 } Launched;
 
 static void launched_free(Launched *launched) {
@@ -47,11 +47,11 @@ static bool launched_begin(Launched *launched, const char *path, int count, Erro
 typedef struct Scores {
     const PaperScoring *scoring;
     Launched launched;
-    PairRates *rates;   /* [count + 1] the last: of the warm start */
+    PairRates *rates;   /* [count + 1]; the last is the warm start's */
     ClosedLoop *closed; /* [count] */
 } Scores;
 
-/* Networks of single impulses that would need those of points take no step. */
+/* A network of single impulses with inputs by contact would need impulses at points: it cannot take a step. */
 static bool takes_steps(const PaperNetwork *network) {
     return network->target != TARGET_IMPULSE || !pair_views[network->view].by_contact;
 }
@@ -131,7 +131,7 @@ static bool time_network(const Scores *scores, int i, FILE *lines, Error *error)
            study_parts_print(lines, &paper_closed_loop_layout, &row, error);
 }
 
-/* One after the other on one core. */
+/* Sequentially, on one core. */
 static bool time_networks(const Scores *scores, FILE *lines, Error *error) {
     bool ok = true;
     meter_pin();

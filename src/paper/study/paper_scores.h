@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the networks of the paper's study do in one scene: parts of the study (study_parts.h). */
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study (study_parts.h). */
 #pragma once
 #include "paper/study/paper_data.h"
 #include "study/rollout.h"
@@ -12,7 +12,7 @@ typedef struct PaperScoring {
     const char *folder;           /* of the trained networks */
     const PaperNetwork *networks; /* [count] */
     int count;
-    int rate_launches, closed_launches; /* scored on, none of them trained on */
+    int rate_launches, closed_launches; /* launches to score on; none is a training launch */
     Sampling sampling;
     int repetitions; /* of the time measurements */
 } PaperScoring;

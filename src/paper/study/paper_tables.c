@@ -3,7 +3,7 @@
 
 #include "study/closed_loop.h"
 
-/* Beyond these limits a value is an error of the file, not a measurement. */
+/* A value beyond these limits is an error in the file. */
 #define ERROR_MOST 1e30
 #define TIME_MOST 1e12 /* us */
 #define SEED_MOST 1e10 /* --seed is below 2^32 */

@@ -23,7 +23,7 @@ typedef struct ScoreRow {
     const char *network;
     int target; /* PairTarget */
     int optimizer;
-    double iteration, test, train, constant; /* constant: of predicting the mean */
+    double iteration, test, train, constant; /* constant: the constant predictor's */
 } ScoreRow;
 
 /* networks.csv: a trained network; the texts are those of a PaperNetwork. */

@@ -12,7 +12,7 @@
 
 static const double near_share = 0.05; /* of the outputs' range */
 
-/* "10-10-2" of the table above. */
+/* text: "10-10-2". */
 static void read_layers(const char *text, TrainingOptions *options) {
     int count = 0;
     for (char *rest = (char *)text; *rest != '\0';) {
@@ -45,7 +45,7 @@ static void write_score(void *context, const TrainingScore *score) {
     writer->ok = writer->ok && study_parts_print(writer->lines, &paper_score_layout, &row, writer->error);
 }
 
-/* Output k of a row as a network has it: all changes, or those of b's velocity relative to a's. */
+/* Label of output k: one of all changes, or the change of b's velocity relative to a's. */
 static double change_of(const Dataset *dataset, int64_t row, int outputs, int k) {
     const int count = pair_change_count(dataset->target);
     const float *changes = dataset->changes + row * count;
@@ -136,7 +136,7 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     read_layers(of->layers, &options);
     Network *network = training_run(dataset, &options, progress, error);
     if (network == NULL) return false;
-    /* Not of the last weights, but of those that are kept. */
+    /* The score of the weights that are kept, which are not the last ones. */
     TrainingScore score = {.iteration = writer.last.iteration};
     const int iterations = score.iteration;
     bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
