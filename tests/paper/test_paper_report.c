@@ -94,6 +94,7 @@ static void numbers_are_computed_from_the_tables(void **state) {
     expect_text(text, "13 of 15 networks pass this gate; 1 of these are no better than the constant predictor.");
     expect_text(text, "The baseline is right in 81.0% to 92.0% of cases in 2 scenes. In 1 of them");
     /* lm is better for the pair, though not for the impulse. */
+    expect_text(text, "| inputs | 2 | 2 | contact | 20.0% | 25.0% | better than the baseline |");
     expect_text(text, "| scaling | 2 | 1 | linear | 23.0% | 25.0% | better than the baseline |");
     expect_text(text, "| optimizer | 2 | 2 | lm | 24.0% | 25.0% | better than the baseline |");
     expect_text(text, "| target | 3 | 2 | – | – | 25.0% | – |");
