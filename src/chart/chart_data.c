@@ -10,12 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double lost_drift = 0.5; /* m: half a box */
+static const double lost_drift = 0.5; /* m, half a box */
 
-char chart_plain_letter(char letter) {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
-    return strchr(plain, letter) != NULL ? letter : '?';
-}
+char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;
@@ -25,7 +22,7 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     strcpy(out + length, cut ? "..." : "");
 }
 
-/* Distributes "k=20,warm=off" to numbers "k=20" and words ", warm=off". */
+/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off". */
 static void split_setting(const char *setting, char *numbers, char *words) {
     numbers[0] = words[0] = '\0';
     while (*setting != '\0') {
@@ -60,7 +57,7 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         name_row(&table->rows[i], key, label);
         if (find_line(chart, key) < chart->line_count) continue;
         if (chart->line_count == CHART_MAX_LINES)
-            return error_input(error, path, "more than %d methods: too many for a chart", CHART_MAX_LINES);
+            return error_input(error, path, "a chart can show at most %d methods", CHART_MAX_LINES);
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
@@ -68,13 +65,13 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
     return true;
 }
 
-/* A row's panel, or -1. */
+/* The panel of a row, or -1. */
 static int panel_of(const ChartRow *row, const char *scene) {
     if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
     return row->phase == PHASE_IMPACT ? 0 : 1;
 }
 
-/* True where the boxes were elsewhere before the bomb came. */
+/* Whether the boxes had drifted before the bomb came. */
 static bool is_lost(const ChartTable *table, const ChartRow *row) {
     for (int i = 0; i < table->count; i++) {
         const ChartRow *rest = &table->rows[i];
@@ -128,7 +125,7 @@ static int compare_marks(const void *left, const void *right) {
     return (a->error > b->error) - (a->error < b->error);
 }
 
-/* The rows of a scene in closed loop that count: those of a scene that a method lost are counted only. */
+/* Adds a scene's closed-loop rows. Rows of a method that lost the scene are only counted. */
 static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
     int count = 0;
     for (int i = 0; i < table->count; i++) {

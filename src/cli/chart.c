@@ -83,8 +83,8 @@ static const Progress *begin_stage(void *context, const char *what) {
 }
 
 static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
-    char csv[STUDY_PATH_SIZE];
-    if (!file_path(csv, sizeof csv, error, "%s/chart.csv", options->folder)) return false;
+    char csv[CSV_PATH_SIZE];
+    if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < options->scene_count; i++) {
         if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
         printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
@@ -97,7 +97,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
-    const ContenderNames left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
+    const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
     return true;

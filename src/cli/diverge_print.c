@@ -147,10 +147,10 @@ void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth 
         [GROWTH_FASTER] = "grows faster than a tiny shift",
         [GROWTH_SLOWER] = "grows more slowly than a tiny shift",
     };
-    if (chaos->other >= 0)
+    if (chaos->rerun_differs >= 0)
         printf(
             "note: running the scene again gives another run 1 from frame %d on: another network, or another program\n",
-            chaos->other);
+            chaos->rerun_differs);
     printf("shifted run (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);

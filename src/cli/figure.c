@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "figure/run_figures.h"
+#include "figure/figure.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -80,7 +80,7 @@ static bool read_width(const char *text, double *width, Error *error) {
         *width = FIGURE_COLUMN_WIDTH;
     else if (strcmp(text, "page") == 0)
         *width = FIGURE_PAGE_WIDTH;
-    else if (option_float("--width", text, (float)FIGURE_LEAST_WIDTH, (float)FIGURE_LARGEST_WIDTH, &number, error))
+    else if (option_float("--width", text, (float)FIGURE_WIDTH_MIN, (float)FIGURE_WIDTH_MAX, &number, error))
         *width = (double)number;
     else
         return false;
@@ -129,12 +129,12 @@ static bool refuse(const char *option, const FigureKind *kind, Error *error) {
 }
 
 static bool check_inputs(const FigureKind *kind, const Options *options, Error *error) {
-    int least = kind->most_runs == 0 ? 1 : kind->least_runs, most = kind->most_runs == 0 ? 1 : kind->most_runs;
+    int least = kind->max_runs == 0 ? 1 : kind->min_runs, most = kind->max_runs == 0 ? 1 : kind->max_runs;
     if (options->input_count >= least && options->input_count <= most) return true;
     return error_input(error, "figure", "%s needs %s%d%s, not %d", kind->name, least < most ? "at least " : "", least,
-                       kind->most_runs == 0 ? " network (.npz)"
-                       : most == 1          ? " run (.npz)"
-                                            : " runs (.npz)",
+                       kind->max_runs == 0 ? " network (.npz)"
+                       : most == 1         ? " run (.npz)"
+                                           : " runs (.npz)",
                        options->input_count);
 }
 
@@ -152,9 +152,8 @@ static bool read_options(const Options *options, const FigureKind *kind, FigureS
     if (options->at != NULL && options->moments != NULL)
         return error_input(error, "--moments", "cannot be combined with --at");
     if ((options->width != NULL && !read_width(options->width, &spec->width, error)) ||
-        !read_number("--dpi", options->dpi, SKETCH_LEAST_DPI, SKETCH_LARGEST_DPI, &spec->dpi, error) ||
-        !read_number("--font-size", options->points, FIGURE_LEAST_POINTS, FIGURE_LARGEST_POINTS, &spec->points,
-                     error) ||
+        !read_number("--dpi", options->dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX, &spec->dpi, error) ||
+        !read_number("--font-size", options->points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX, &spec->points, error) ||
         (options->at != NULL && !read_times(options->at, spec, error)) ||
         (options->bodies != NULL && !read_bodies(options->bodies, spec, error)))
         return false;
@@ -188,8 +187,8 @@ int command_figure(int argc, char **argv, Error *error) {
     if (kind == NULL || !read_options(&options, kind, &spec, &output, error)) return STATUS_DIFFERENT;
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
     bool ok = true;
-    if (kind->most_runs == 0) spec.network = options.inputs[0];
-    for (int i = 0; ok && kind->most_runs > 0 && i < options.input_count; i++) {
+    if (kind->max_runs == 0) spec.network = options.inputs[0];
+    for (int i = 0; ok && kind->max_runs > 0 && i < options.input_count; i++) {
         runs[i] = trajectory_read(options.inputs[i], error);
         spec.runs[i] = runs[i], spec.paths[i] = options.inputs[i];
         spec.run_count++;

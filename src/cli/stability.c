@@ -93,7 +93,7 @@ static bool study(const StabilityOptions *options, Error *error) {
     bool ok = stability_run(options, &bar.progress, error);
     progress_bar_end(&bar);
     ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
-    const ContenderNames left_out = contenders_left_out(STUDY_STABILITY);
+    const NameList left_out = contenders_left_out(STUDY_STABILITY);
     if (ok && options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
     return ok;

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "common/names.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
 
 /* Keys of argp: --kind, then the options of all kinds, one after the other. */
-enum { KIND = 256, FIRST_OPTION, HELP_SIZE = 512, NAMES_SIZE = 512 };
+enum { KIND = 256, FIRST_OPTION, HELP_SIZE = 2048, USAGE_SIZE = 512 };
 
 /* As given, before it is known what the kind takes. */
 typedef struct GivenOption {
@@ -31,7 +32,7 @@ typedef struct OptionTable {
     struct argp_option *rows;
     int row_count;
     char (*help)[HELP_SIZE]; /* a row each */
-    char names[NAMES_SIZE], usage[NAMES_SIZE];
+    char usage[USAGE_SIZE];
 } OptionTable;
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -57,14 +58,12 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     return 0;
 }
 
-/* The kinds that have the option (NULL: all): "pair-net, scene-net". */
-static void name_kinds(const char *option, char names[NAMES_SIZE]) {
-    names[0] = '\0';
-    for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++) {
-        const size_t used = strlen(names);
-        if (option != NULL && train_find_option(*kind, option) < 0) continue;
-        snprintf(names + used, NAMES_SIZE - used, "%s%s", used > 0 ? ", " : "", (*kind)->name);
-    }
+/* The kinds that have the option; NULL: all. */
+static NameList name_kinds(const char *option) {
+    NameList names = {0};
+    for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
+        if (option == NULL || train_find_option(*kind, option) >= 0) name_list_add(&names, (*kind)->name);
+    return names;
 }
 
 static void add_row(OptionTable *table, struct argp_option row) {
@@ -119,10 +118,10 @@ static bool make_table(OptionTable *table, Options *options, int argc, Error *er
     options->given = calloc((size_t)argc, sizeof *options->given);
     if (table->rows == NULL || table->help == NULL || options->options == NULL || options->given == NULL)
         return error_memory(error, "train");
-    name_kinds(NULL, table->names);
+    const NameList names = name_kinds(NULL);
     snprintf(next_help(table), HELP_SIZE, "File that the network is written to");
     add_row(table, (struct argp_option){.name = "output", .key = 'o', .arg = "NET.npz"});
-    snprintf(next_help(table), HELP_SIZE, "What to train: %s (default: %s)", table->names, train_kinds[0]->name);
+    snprintf(next_help(table), HELP_SIZE, "What to train: %s (default: %s)", names.text, train_kinds[0]->name);
     add_row(table, (struct argp_option){.name = "kind", .key = KIND, .arg = "NAME"});
     for (int i = 0; train_kinds[i] != NULL; i++) add_kind(table, options, train_kinds[i], i + 1);
     return true;
@@ -135,11 +134,10 @@ static const TrainKind *find_kind(const char *name) {
 }
 
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {
-    char names[NAMES_SIZE];
     *request = (TrainRequest){.kind = find_kind(options->kind), .input = options->input, .output = options->output};
     if (request->kind == NULL) {
-        name_kinds(NULL, names);
-        return error_input(error, "--kind", "unknown kind '%s'; known are %s", options->kind, names);
+        const NameList known = name_kinds(NULL);
+        return error_unknown(error, "--kind", options->kind, "a kind", &known);
     }
     for (int i = 0; request->kind->options[i].name != NULL; i++)
         request->values[i] = request->kind->options[i].standard;
@@ -147,10 +145,10 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
         const GivenOption *given = &options->given[i];
         const int option = train_find_option(request->kind, given->name);
         if (option < 0) {
+            const NameList owners = name_kinds(given->name);
             char dashed[64];
-            name_kinds(given->name, names);
             snprintf(dashed, sizeof dashed, "--%s", given->name);
-            return error_input(error, dashed, "is an option of %s, not of %s", names, request->kind->name);
+            return error_input(error, dashed, "is an option of %s, not of %s", owners.text, request->kind->name);
         }
         request->values[option] = given->value;
     }

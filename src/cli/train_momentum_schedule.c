@@ -11,9 +11,9 @@ static const TrainOption options[] = {{"iterations", "N", "100", "Generations of
                                       {"bomb-x", "A:B:STEP", "-5:5:0.5", "Launches that the factors are fitted to, m"},
                                       {NULL, NULL, NULL, NULL}};
 
-static void print_schedule(void *context, int sweeps, double plain, double by_hand, double learned) {
+static void print_schedule(void *context, int sweeps, double without, double tuned, double learned) {
     progress_bar_clear(context);
-    printf("%6d  %11.4f  %11.4f  %11.4f\n", sweeps, plain, by_hand, learned);
+    printf("%6d  %11.4f  %11.4f  %11.4f\n", sweeps, without, tuned, learned);
     fflush(stdout);
 }
 
@@ -26,7 +26,7 @@ static bool fit_and_store(const Scene *scene, const TrainRequest *request, Error
     ProgressBar bar;
     progress_bar_begin(&bar, "fitting");
     fit.context = &bar;
-    printf("error in m/s, at impact plus after\nsweeps        plain      by hand      learned\n");
+    printf("error in m/s, at impact plus after\nsweeps  no momentum   hand-tuned      learned\n");
     MomentumSchedules schedules;
     bool ok = momentum_fit(&schedules, scene, &fit, &bar.progress, error);
     progress_bar_end(&bar);

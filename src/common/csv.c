@@ -131,14 +131,6 @@ static bool take_rows(Csv *csv, int min_rows, int max_rows, Error *error) {
            fail(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
 }
 
-bool csv_is_bare(const char *path) {
-    FILE *file = fopen(path, "r");
-    int lines = 0;
-    for (int c; file != NULL && lines < 2 && (c = fgetc(file)) != EOF;) lines += lines == 0 ? c == '\n' : 1;
-    if (file != NULL) fclose(file);
-    return lines == 1;
-}
-
 bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error) {
     *csv = (Csv){.path = strdup(path)};
     if (csv->path == NULL) return error_memory(error, path);
@@ -176,7 +168,6 @@ bool csv_error(const Csv *csv, int row, int field, Error *error, const char *for
 
 CsvShown csv_show(const char *text) {
     CsvShown shown;
-    if (*text == '\0') text = "nothing";
     size_t length = strlen(text), room = sizeof shown.text - 1;
     bool cut = length > room;
     if (cut) length = room - 3;

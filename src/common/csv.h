@@ -26,9 +26,6 @@ typedef struct Csv {
 bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error);
 void csv_free(Csv *csv);
 
-/* True for a file that is only a header line. */
-bool csv_is_bare(const char *path);
-
 const char *csv_text(const Csv *csv, int row, int field);
 
 /* Sets an input error "path:line:column: error: text". Returns false. */

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/csv_table.h"
 
-#include "common/parse.h"
+#include "common/csv_cell.h"
+#include "common/file.h"
+#include "common/names.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,15 +20,6 @@ typedef struct Reading {
     Error *error;
 } Reading;
 
-/* A field that is being read. */
-typedef struct Cell {
-    const Csv *csv;
-    int row, field;
-    const CsvColumn *column;
-    const char *text;
-    Error *error;
-} Cell;
-
 bool csv_is_plain(char letter) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
     return letter != '\0' && strchr(plain, letter) != NULL;
@@ -39,78 +31,6 @@ int csv_word(const char *const *words, const char *word) {
     return words[i] != NULL ? i : -1;
 }
 
-/* "NAME: 'FIELD' what". */
-static bool refuse(const Cell *cell, const char *what) {
-    if (cell->text[0] == '\0')
-        return csv_error(cell->csv, cell->row, cell->field, cell->error, "%s: the field is empty", cell->column->name);
-    return csv_error(cell->csv, cell->row, cell->field, cell->error, "%s: '%s' %s", cell->column->name,
-                     csv_show(cell->text).text, what);
-}
-
-static bool read_text(const Cell *cell, const char **member) {
-    const bool name = cell->column->kind == CSV_NAME;
-    const size_t most = name ? CSV_NAME_SIZE - 1 : (size_t)cell->column->maximum;
-    char what[64];
-    snprintf(what, sizeof what, "is longer than %zu bytes", most);
-    if (strlen(cell->text) > most) return refuse(cell, what);
-    for (const char *c = cell->text; name && *c != '\0'; c++)
-        if (!csv_is_plain(*c)) return refuse(cell, "may only have letters, digits, spaces and -_.,:=+/()*[]");
-    *member = cell->text;
-    return true;
-}
-
-static bool read_word(const Cell *cell, int *member) {
-    const char *const *words = cell->column->words;
-    char what[256] = "is not one of ";
-    *member = csv_word(words, cell->text);
-    if (*member >= 0) return true;
-    for (int i = 0; words[i] != NULL; i++) {
-        size_t used = strlen(what);
-        snprintf(what + used, sizeof what - used, "%s%s", i > 0 ? ", " : "", words[i]);
-    }
-    return refuse(cell, what);
-}
-
-static bool is_in_range(const Cell *cell, double value) {
-    const CsvColumn *column = cell->column;
-    char what[64];
-    if (value >= column->minimum && value <= column->maximum) return true;
-    const bool less = value < column->minimum;
-    snprintf(what, sizeof what, "is %s than %g", less ? "less" : "greater", less ? column->minimum : column->maximum);
-    return refuse(cell, what);
-}
-
-static bool read_integer(const Cell *cell, int *member) {
-    int64_t value;
-    if (!parse_int(cell->text, INT64_MIN, INT64_MAX, &value)) return refuse(cell, "is not a whole number");
-    *member = (int)value;
-    return is_in_range(cell, (double)value);
-}
-
-static bool read_float(const Cell *cell, float *member) {
-    if (!parse_float(cell->text, member)) return refuse(cell, "is not a number");
-    return is_in_range(cell, (double)*member);
-}
-
-static bool read_number(const Cell *cell, double *member) {
-    *member = NAN;
-    if (cell->text[0] == '\0' && cell->column->kind == CSV_OPTIONAL) return true;
-    if (!parse_double(cell->text, member)) return refuse(cell, "is not a number");
-    return is_in_range(cell, *member);
-}
-
-static bool read_cell(const Cell *cell, char *row) {
-    void *member = row + cell->column->offset;
-    switch (cell->column->kind) {
-    case CSV_TEXT:
-    case CSV_NAME: return read_text(cell, member);
-    case CSV_WORD: return read_word(cell, member);
-    case CSV_INTEGER: return read_integer(cell, member);
-    case CSV_FLOAT: return read_float(cell, member);
-    default: return read_number(cell, member);
-    }
-}
-
 static bool read_rows(const Reading *reading) {
     const CsvLayout *layout = reading->layout;
     CsvTable *table = reading->table;
@@ -119,11 +39,9 @@ static bool read_rows(const Reading *reading) {
     if (table->rows == NULL) return error_memory(reading->error, table->csv.path);
     for (int row = 1; row <= table->count; row++)
         for (int i = 0; i < layout->column_count; i++) {
-            const int field = table->fields[i];
-            if (field < 0) continue;
-            const char *text = csv_text(&table->csv, row, field);
-            const Cell cell = {&table->csv, row, field, &layout->columns[i], text, reading->error};
-            if (!read_cell(&cell, (char *)table->rows + (size_t)(row - 1) * layout->row_size)) return false;
+            const CsvCell cell = {&table->csv, row, table->fields[i], &layout->columns[i]};
+            void *target = (char *)table->rows + (size_t)(row - 1) * layout->row_size;
+            if (cell.field >= 0 && !csv_cell_read(&cell, target, reading->error)) return false;
         }
     return true;
 }
@@ -136,13 +54,10 @@ static int find_column(const CsvLayout *layout, const char *name) {
 
 static bool refuse_column(const Reading *reading, int field) {
     const CsvLayout *layout = reading->layout;
-    char names[512] = "";
-    for (int i = 0; i < layout->column_count; i++) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", layout->columns[i].name);
-    }
+    NameList names = {0};
+    for (int i = 0; i < layout->column_count; i++) name_list_add(&names, layout->columns[i].name);
     return csv_error(&reading->table->csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
-                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names);
+                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names.text);
 }
 
 static bool place_column(const Reading *reading, int field) {
@@ -228,8 +143,7 @@ bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, 
 }
 
 bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayout *layout, Error *error) {
-    return snprintf(path, CSV_PATH_SIZE, "%s/%s.csv", folder, layout->name) < CSV_PATH_SIZE ||
-           error_input(error, folder, "the path is too long");
+    return file_path(path, CSV_PATH_SIZE, error, "%s/%s.csv", folder, layout->name);
 }
 
 bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *layout, Error *error) {

@@ -107,13 +107,13 @@ static bool fit_schedule(Fit *fit, MomentumSchedules *schedules, const MomentumF
     double knots[KNOTS_MAX];
     for (int i = 0; i < fit->knots; i++) {
         int sweep = 1 + (fit->sweeps - 2) * i / (fit->knots - 1);
-        knots[i] = (double)momentum_factor_by_hand(sweep, fit->sweeps);
+        knots[i] = (double)momentum_factor_tuned(sweep, fit->sweeps);
     }
     const CmaEs task = {fit->knots, 0.15, options->generations, options->seed, cost, fit};
     if (!cma_es_minimize(&task, knots, progress, error)) return false;
     float factors[SWEEPS_MOST], hand_tuned[SWEEPS_MOST], none[SWEEPS_MOST] = {0};
     factors_of(fit, knots, factors);
-    for (int s = 0; s < fit->sweeps; s++) hand_tuned[s] = momentum_factor_by_hand(s, fit->sweeps);
+    for (int s = 0; s < fit->sweeps; s++) hand_tuned[s] = momentum_factor_tuned(s, fit->sweeps);
     double learned_error = mean_error(fit, factors), hand_tuned_error = mean_error(fit, hand_tuned);
     /* The interpolated factors cannot represent all hand-tuned ones, so they can be worse. */
     bool better = learned_error < hand_tuned_error;

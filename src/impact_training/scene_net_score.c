@@ -24,7 +24,7 @@ static bool network_error(const SlotNetwork *network, const SlotSamples *samples
 /* Mean error of momentum with warm start. */
 static bool momentum_error(const SlotSamples *samples, double *result, Error *error) {
     float factors[MOMENTUM_SWEEPS];
-    for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = momentum_factor_by_hand(s, MOMENTUM_SWEEPS);
+    for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, MOMENTUM_SWEEPS);
     Momentum momentum = {0};
     double sum = 0;
     bool ok = true;

@@ -124,7 +124,7 @@ static bool first_round(Trainer *trainer, Error *error) {
     network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
     network->sweeps = training->sweeps;
     for (int s = 0; s < training->sweeps && training->momentum; s++)
-        network->factors[s] = momentum_factor_by_hand(s, training->sweeps);
+        network->factors[s] = momentum_factor_tuned(s, training->sweeps);
     return true;
 }
 

@@ -3,7 +3,7 @@
 
 #include "common/parallel.h"
 #include "simulate/phases.h"
-#include "solvers/impact_gap.h"
+#include "solvers/residual.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -48,7 +48,7 @@ static bool run_launch(void *context, int i, Error *error) {
         if (phase != PHASE_IMPACT) continue;
         Sweeps *sweeps = &runs->sweeps[thread];
         if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), &problem)) return error_memory(error, "samples");
-        if (impact_gap_reaches(sweeps, problem.contact_count, rollout->gate) &&
+        if (residual_reaches(sweeps, problem.contact_count, rollout->gate) &&
             !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
             return error_memory(error, "samples");
     }

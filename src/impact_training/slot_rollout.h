@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs launches of a scene with a given solver and records the contact problems of their impacts: the steps after the
-   bomb's first touch in which the residual of the warm start reaches the gate (solvers/impact_gap.h). */
+   bomb's first touch in which the residual of the warm start reaches the gate (solvers/residual.h). */
 #pragma once
 #include "dynamics/contact_solver.h"
 #include "impact_training/slot_samples.h"

@@ -31,11 +31,11 @@ void caption_distance(char *text, size_t size, double metres) {
         snprintf(text, size, ">%.0f", MAX_SHOWN_DISTANCE);
 }
 
-static Item distance_item(const char *label, double apart, double largest) {
+static Item distance_item(const char *label, double distance, double largest) {
     Item item = {.unit = " m"};
     char text[32], longest[32];
     snprintf(item.label, sizeof item.label, "%s", label);
-    caption_distance(text, sizeof text, apart);
+    caption_distance(text, sizeof text, distance);
     caption_distance(longest, sizeof longest, largest);
     pad(item.number, sizeof item.number, text, longest);
     return item;

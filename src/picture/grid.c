@@ -115,7 +115,7 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
     Steps steps = choose_steps(picture);
     Lines lines = vertical_lines(picture, steps);
     int line = layout->hairline, baseline = rect->bottom + layout->axis_drop, gap = font->pixels / 2;
-    int behind = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
+    int free_from = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
     font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
     for (int i = 0; i < lines.count; i++) {
         if (!is_strong(&lines, i, steps)) continue;
@@ -124,8 +124,8 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
         drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick},
                          picture->theme->frame);
-        if (left < behind || left + width + gap > unit) continue;
-        behind = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
+        if (left < free_from || left + width + gap > unit) continue;
+        free_from = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
     }
 }
 

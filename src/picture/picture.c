@@ -119,8 +119,8 @@ int picture_run(const Picture *picture, int panel) {
 }
 
 bool picture_colors_distance(const Picture *picture, int run) {
-    bool asked = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
-    return asked && run > 0;
+    bool enabled = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
+    return enabled && run > 0;
 }
 
 static double distance_between(const Trajectory *a, const Trajectory *b, Moment moment) {

@@ -10,7 +10,7 @@
 
 /* Everything that is chosen once per sequence, from the whole run, so that only bodies move between frames. */
 typedef struct Picture {
-    const Trajectory *runs[RENDER_PANELS_MAX]; /* one panel per run, unless the look says otherwise */
+    const Trajectory *runs[RENDER_PANELS_MAX]; /* one panel per run, unless the look requires otherwise */
     int count;
     int frames; /* of the longest run */
     Layout layout;

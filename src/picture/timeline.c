@@ -215,9 +215,9 @@ void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawin
     stroke_line(drawing, (Point){x, plot->top + lane_height(picture)}, (Point){x, plot->bottom},
                 1.5 * picture->layout.hairline, picture->theme->ink, &clip);
     for (int run = 1; run < picture->count; run++) {
-        double apart = picture_run_distance(picture, run, moment);
-        if (isnan(apart)) continue;
-        stroke_dot(drawing, (Point){x, y_at(picture, apart)}, radius, picture->theme->bodies[run].fill,
+        double distance = picture_run_distance(picture, run, moment);
+        if (isnan(distance)) continue;
+        stroke_dot(drawing, (Point){x, y_at(picture, distance)}, radius, picture->theme->bodies[run].fill,
                    picture->theme->ink, &clip);
     }
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a scene's bomb is thrown: tables of launches to train and to score on. */
 #pragma once
-#include "common/csv.h"
+#include "common/csv_table.h"
 #include "scene/scene.h"
 
-enum { LAUNCHES_MAX = 10000, LAUNCH_COLUMNS = 5 };
+enum { LAUNCHES_MAX = 10000 };
 
 typedef struct Launch {
     float x, rotation, spin, mass; /* m, rad, rad/s, kg */
@@ -18,22 +18,19 @@ Launch launch_of(const Scene *scene);
    A bomb that aims (scene_bomb_body) gets its velocity from the new place. */
 Scene launch_scene(const Scene *scene, const Launch *launch);
 
-/* A table of launches. */
 typedef struct LaunchTable {
-    Csv csv;
+    CsvTable csv; /* rows of Launch */
     int count;
-    int column[LAUNCH_COLUMNS]; /* where x, rotation, spin, mass, frame are, -1: not there */
-    Launch *launches;           /* [count], 0 where a column is not there */
 } LaunchTable;
 
-/* Reads a CSV whose header names any of x, rotation, spin, mass, frame in any order, with 1 to LAUNCHES_MAX lines.
+/* Reads a CSV file with any of the columns x, rotation, spin, mass, frame in any order, and 1 to LAUNCHES_MAX rows.
    Numbers have the ranges of a scene file. On failure error is "path:line:column: error: reason" and nothing is to be
-   freed. path must outlive the table. */
+   freed. */
 bool launches_read(LaunchTable *table, const char *path, Error *error);
 void launches_free(LaunchTable *table);
 
-/* The table's launches for one scene into out[count]; what the table leaves out is as in the scene. Refused: a scene
-   without a bomb, a bomb after the scene's last frame, one that would start too fast. */
+/* The table's launches for one scene into out[count]; values of missing columns are the scene's. Refused: a scene
+   without a bomb, a bomb after the scene's last frame, a bomb that would start too fast. */
 bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Error *error);
 
 /* `count` launches of the scene spread evenly over the paper's grid, x = -5 to 5 m in steps of 0.05 (of 201 places:

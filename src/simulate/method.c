@@ -48,7 +48,7 @@ bool method_with_network(Method *method, const char *name, const char *path, Err
 
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
     const ContactSolverKind *kind = method->kind->solver;
-    if (kind == NULL) return error_input(error, method->text, "no contact solver, but another way of stepping");
+    if (kind == NULL) return error_input(error, method->text, "is not a contact solver; this needs one");
     Settings settings = method->settings;
     char iterations[16];
     snprintf(iterations, sizeof iterations, "%d", scene->iterations);
@@ -75,8 +75,8 @@ bool method_lacks_network(const Method *method, const Scene *scene) {
 }
 
 struct Stepper {
-    ContactSolver solver;         /* in the standard step, */
-    const SteppingKind *stepping; /* or another way of stepping */
+    ContactSolver solver;         /* in the standard step */
+    const SteppingKind *stepping; /* or NULL */
     void *state;
 };
 

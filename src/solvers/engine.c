@@ -14,10 +14,11 @@ typedef struct SequentialImpulses {
     Sweeps sweeps;
 } SequentialImpulses;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
-                                       {"accumulate", "on|off: clamp the sum of impulses, not each one"},
-                                       {"warm", "on|off: start from the impulses of the step before (on)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+    {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)"},
+    {"warm", "on|off: warm start from the previous step's impulses (default: on)"},
+    {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};

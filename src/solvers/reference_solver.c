@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference (reference.h) as a contact solver: whole runs by converged steps. Slow; where a step does not
-   converge, as far as its sweeps reach. */
+/* The reference (reference/reference.h) as a contact solver, for runs of converged steps. Slow. A step that does not
+   converge ends with the result of its last sweep. */
 #include "reference/reference.h"
 #include "solvers/solvers.h"
 
@@ -35,7 +35,8 @@ static void destroy(void *state) {
 
 const ContactSolverKind solver_reference = {
     .description = {.name = "reference",
-                    .summary = "converged in double by NNCG: the measure of the others, slow",
+                    .summary =
+                        "the converged solution, in double precision by NNCG; errors are measured against it; slow",
                     .title = "Converged solution",
                     .role = METHOD_REFERENCE,
                     .stability_place = 6},

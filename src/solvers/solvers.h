@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one line
-   SOLVER(NAME) here. */
+/* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
+   line SOLVER(NAME) here. */
 #pragma once
 #include "dynamics/contact_solver.h"
 
 /* In the order of lists and charts. SOLVER(x) is solver_x of this folder; STEPPING(x) is stepping_x of simulate/, for
-   methods that need more than one solver call in a step (simulate/stepping.h). New methods go to the end: lines of a chart
-   get their colours in this order. */
+   methods that need more than one solver call in a step (simulate/stepping.h). New methods go to the end: lines of a
+   chart get their colours in this order. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
     SOLVER(over_relaxation)       \

@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The study in progress. */
 typedef struct Run {
     const StabilityOptions *options;
     ContenderList methods;
@@ -52,7 +51,7 @@ static bool know_names(const StabilityOptions *options, Error *error) {
     return true;
 }
 
-/* Of the scene and what it names. A network that is not there matters only to the method that asks for it. */
+/* Hashes the scene and its networks. A missing network is an error only of the method that needs it. */
 static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Error *error) {
     char path[STABILITY_PATH_SIZE];
     const StabilityPlace place = {run->options->scenes, name};
@@ -64,7 +63,7 @@ static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Er
     return study_key_add_file(key, path, error);
 }
 
-/* Of everything that decides the result: the program, the options, the scenes. */
+/* Hashes everything that determines the result: the program, the options, the scenes. */
 static bool find_key(const Run *run, uint64_t *key, Error *error) {
     const StabilityOptions *options = run->options;
     if (!study_key_begin(key, error)) return false;
@@ -77,7 +76,7 @@ static bool find_key(const Run *run, uint64_t *key, Error *error) {
     return true;
 }
 
-/* A map of the quick study takes as much less as it has less cells. */
+/* In a quick run, the weight of a map is proportional to its number of cells. */
 static double map_weight(const Run *run, const StabilityMap *map) {
     double share = (double)(map->x.quick_points * map->y.quick_points) / (map->x.scan.points * map->y.scan.points);
     return run->options->quick ? map->weight * share : map->weight;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Puts a value into its place, if it is new. False where there is no room. */
+/* Inserts a value into a sorted list, if it is new. False if the list is full. */
 static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
     int at = 0;
     while (at < *count && values[at] < value) at++;

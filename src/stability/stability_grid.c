@@ -11,11 +11,11 @@
 
 typedef struct Run {
     const StabilityGrid *grid;
-    Scene *typical; /* with the file's own numbers */
+    Scene *typical; /* with default parameters */
     int x_count, y_count;
     double x[BORDER_POINTS_MAX], y[BORDER_POINTS_MAX];
     int method_count;
-    const Contender **methods; /* [method_count] that go with the scene */
+    const Contender **methods; /* [method_count] that apply to the scene */
     VerdictReading *readings;  /* [method_count, y_count, x_count] */
     RunCounter counter;
 } Run;
@@ -47,7 +47,7 @@ static bool judge_cell(void *context, int cell, Error *error) {
     return ok;
 }
 
-static bool put_cells(const Run *run, int method, FILE *lines, Error *error) {
+static bool write_cells(const Run *run, int method, FILE *lines, Error *error) {
     const StabilityMap *map = run->grid->map;
     MapCell row = {.map = map->name,
                    .method = run->methods[method]->name,
@@ -70,7 +70,7 @@ static bool put_cells(const Run *run, int method, FILE *lines, Error *error) {
     return true;
 }
 
-/* In the first and the last cell. */
+/* Tests the first and the last cell. */
 static bool applies(const Run *run, const Method *method) {
     bool ok = true;
     for (int i = 0; ok && i < 2; i++) {
@@ -112,7 +112,7 @@ bool stability_grid_write(void *grid, FILE *lines, const Progress *progress, Err
     const ParallelWork work = {judge_cell, &run};
     bool ok = begin(&run, error) && (run.method_count == 0 ||
                                      parallel_for(&work, run.x_count * run.y_count, run.grid->map->name, NULL, error));
-    for (int i = 0; ok && i < run.method_count; i++) ok = put_cells(&run, i, lines, error);
+    for (int i = 0; ok && i < run.method_count; i++) ok = write_cells(&run, i, lines, error);
     free(run.methods);
     free(run.readings);
     scene_destroy(run.typical);

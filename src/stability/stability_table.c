@@ -3,80 +3,12 @@
 
 #include "chart/chart_data.h"
 #include "common/file.h"
-#include "scene/scene.h"
 
 #include <ctype.h>
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
-#define LARGEST 1e30
-
-enum { LEAST_NAME = 6, REASON_SIZE = 2048, VALUE_DIGITS = 9, REST_DIGITS = 4 };
-
-#define TEXT(Row, member, size) \
-    { #member, CSV_TEXT, .offset = offsetof(Row, member), .maximum = (size)-1 }
-#define NAME(Row, member) \
-    { #member, CSV_NAME, .offset = offsetof(Row, member) }
-#define VERDICT(Row) \
-    { "verdict", CSV_WORD, .offset = offsetof(Row, verdict), .words = verdict_words }
-#define NUMBER(Row, member, sort, least, most, count) \
-    { #member, sort, .offset = offsetof(Row, member), .minimum = least, .maximum = most, .digits = count }
-#define COUNT(member) NUMBER(RunRow, member, CSV_INTEGER, 0, INT_MAX, 0)
-
-static const CsvColumn map_columns[] = {
-    NAME(MapCell, map),
-    NAME(MapCell, method),
-    TEXT(MapCell, setting, STABILITY_SETTING_SIZE),
-    NAME(MapCell, x_parameter),
-    NAME(MapCell, x_unit),
-    NUMBER(MapCell, x, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    NAME(MapCell, y_parameter),
-    NAME(MapCell, y_unit),
-    NUMBER(MapCell, y, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    VERDICT(MapCell),
-    NUMBER(MapCell, frame, CSV_OPTIONAL, 0, SCENE_MAX_FRAMES, VALUE_DIGITS),
-    NUMBER(MapCell, body, CSV_OPTIONAL, -1, SCENE_MAX_BODIES, VALUE_DIGITS),
-    NUMBER(MapCell, value, CSV_OPTIONAL, -LARGEST, LARGEST, 0),
-    NAME(MapCell, unit),
-};
-
-/* The columns that these tables begin with. */
-#define METHOD_COLUMNS(Row) NAME(Row, study), NAME(Row, method), TEXT(Row, setting, STABILITY_SETTING_SIZE)
-#define PARAMETER_COLUMNS(Row) METHOD_COLUMNS(Row), NAME(Row, parameter), NAME(Row, unit)
-
-static const CsvColumn border_columns[] = {
-    PARAMETER_COLUMNS(BorderRow),
-    NUMBER(BorderRow, holds_at, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
-    NUMBER(BorderRow, fails_at, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
-    VERDICT(BorderRow),
-};
-
-static const CsvColumn refusal_columns[] = {METHOD_COLUMNS(RefusalRow), TEXT(RefusalRow, reason, REASON_SIZE)};
-
-static const CsvColumn rest_columns[] = {
-    PARAMETER_COLUMNS(RunRow),
-    NUMBER(RunRow, value, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    VERDICT(RunRow),
-    COUNT(steps),
-    NUMBER(RunRow, drift, CSV_OPTIONAL, 0, LARGEST, REST_DIGITS),
-    NUMBER(RunRow, energy, CSV_OPTIONAL, -LARGEST, LARGEST, REST_DIGITS),
-};
-
-static const CsvColumn fallback_columns[] = {
-    PARAMETER_COLUMNS(RunRow),
-    NUMBER(RunRow, value, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    COUNT(steps),
-    COUNT(not_finite),
-    COUNT(outside_cone),
-    COUNT(beyond_training),
-};
-
-const CsvLayout map_layout = CSV_LAYOUT("maps", map_columns, MapCell, .max_rows = STABILITY_MAX_CELLS);
-const CsvLayout border_layout = CSV_LAYOUT("stability", border_columns, BorderRow, .max_rows = STABILITY_MAX_BORDERS);
-const CsvLayout refusal_layout = CSV_LAYOUT("refusals", refusal_columns, RefusalRow, .max_rows = STABILITY_MAX_RUNS);
-const CsvLayout rest_layout = CSV_LAYOUT("rest", rest_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
-const CsvLayout fallback_layout = CSV_LAYOUT("fallbacks", fallback_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
+enum { LEAST_NAME = 6 };
 
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
     snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
@@ -189,7 +121,7 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-/* "k=10, warm=off"; of "k=5,network=DIR/net.npz": "k=5, net.npz". */
+/* "k=10,warm=off" -> "k=10, warm=off"; "k=5,network=DIR/net.npz" -> "k=5, net.npz". */
 static size_t show_setting(char shown[2 * STABILITY_SETTING_SIZE], const char *setting) {
     size_t used = 0, item = 0;
     for (const char *c = setting; *c != '\0'; c++) {
@@ -206,17 +138,17 @@ static size_t show_setting(char shown[2 * STABILITY_SETTING_SIZE], const char *s
     return used;
 }
 
-/* What is too long loses the end of its name, as long as that leaves some: settings tell panels apart. */
+/* If too long, the method's name is cut first: settings distinguish the panels. */
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
     char name[CSV_NAME_SIZE], shown[2 * STABILITY_SETTING_SIZE];
     size_t used = show_setting(shown, setting);
     snprintf(name, sizeof name, "%s", method);
-    if (used > 0 && used + 2 + LEAST_NAME <= most) figure_cut(name, most - used - 2);
+    if (used > 0 && used + 2 + LEAST_NAME <= most) gnuplot_truncate(name, most - used - 2);
     snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", name, used > 0 ? ", " : "", shown);
-    figure_cut(text, most);
+    gnuplot_truncate(text, most);
 }
 
-/* An underline would be a subscript to gnuplot. */
+/* gnuplot would show an underscore as a subscript. */
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit) {
     snprintf(text, STABILITY_TEXT_SIZE, unit[0] != '\0' ? "%s (%s)" : "%s", parameter, unit);
     for (char *c = text; *c != '\0'; c++)

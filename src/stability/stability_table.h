@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of a stability study: their rows and layouts (common/csv_table.h), for the study that writes them, the figures
-   and the terminal. Names are plain (csv_is_plain); a setting is as it was given, and may be the path of a network. */
+/* The tables of a stability study: their rows and layouts (common/csv_table.h), used by the study, the figures and the
+   command line. Names are plain (csv_is_plain); a setting is stored as given and may contain the path of a network. */
 #pragma once
 #include "common/csv_table.h"
 #include "stability/verdict_look.h"
@@ -26,7 +26,7 @@ typedef struct MapCell {
 typedef struct BorderRow {
     const char *study, *method, *setting, *parameter, *unit;
     double holds_at; /* NAN: nothing holds */
-    double fails_at; /* NAN: nothing is sure to fail; with a failing verdict, the seed decides beyond holds_at */
+    double fails_at; /* NAN: no decided value fails; with a failing verdict, values beyond holds_at are undecided */
     int verdict;     /* how it fails; if it holds over the whole range, how it holds; or LOOK_NOT_APPLICABLE */
 } BorderRow;
 
@@ -73,19 +73,18 @@ void border_table_free(BorderTable *table);
 bool border_same_method(const BorderRow *a, const BorderRow *b);
 bool border_same_study(const BorderRow *a, const BorderRow *b);
 
-/* A cell's method as method_parse() takes it: "engine:k=10". */
+/* A cell's method as for method_parse(): "engine:k=10". */
 enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
 
-/* Where the clip of a cell goes, from the tables' folder, without an ending: "clips/MAP-METHOD-X_Y". */
+/* The path of a cell's clip, relative to the tables' folder and without extension: "clips/MAP-METHOD-X_Y". */
 enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
 void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 
-/* True where both cells are of the same method and setting. */
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine, k=10, warm=off", plain, of at most so many characters, of a path its last part alone; and "Height (boxes)",
-   for an axis. */
+/* For figures: "engine, k=10, warm=off", plain and cut to `most` characters, with the last part of a path only; and
+   "Height (boxes)" for an axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * STABILITY_SETTING_SIZE + 8 };
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);

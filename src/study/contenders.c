@@ -107,15 +107,10 @@ void contenders_free(ContenderList *list) {
     *list = (ContenderList){0};
 }
 
-static void add_name(ContenderNames *names, const char *name) {
-    const size_t used = strlen(names->text);
-    snprintf(names->text + used, sizeof names->text - used, "%s%s", used > 0 ? ", " : "", name);
-}
-
-ContenderNames contenders_left_out(ContenderStudy study) {
-    ContenderNames names = {""};
+NameList contenders_left_out(ContenderStudy study) {
+    NameList names = {0};
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
-        if (*default_runs(kind->description, study) == NULL) add_name(&names, kind->description->name);
+        if (*default_runs(kind->description, study) == NULL) name_list_add(&names, kind->description->name);
     return names;
 }
 
@@ -126,13 +121,9 @@ int contenders_for(const ContenderList *list, const Scene *scene, const Contende
     return count;
 }
 
-/* The runs of a method follow each other. */
-ContenderNames contenders_without_network(const ContenderList *list, const Scene *scene) {
-    ContenderNames names = {""};
-    for (int i = 0; i < list->count; i++) {
-        const Contender *contender = &list->items[i];
-        bool named = i > 0 && strcmp(contender[-1].name, contender->name) == 0;
-        if (!named && method_lacks_network(&contender->method, scene)) add_name(&names, contender->name);
-    }
+NameList contenders_without_network(const ContenderList *list, const Scene *scene) {
+    NameList names = {0};
+    for (int i = 0; i < list->count; i++)
+        if (method_lacks_network(&list->items[i].method, scene)) name_list_add(&names, list->items[i].name);
     return names;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The methods that a study compares, each with some settings. */
 #pragma once
+#include "common/names.h"
 #include "simulate/method.h"
 #include "study/chart_csv.h"
 
@@ -19,23 +20,18 @@ typedef struct ContenderList {
 typedef enum ContenderStudy { STUDY_CHART, STUDY_CHART_QUICK, STUDY_STABILITY } ContenderStudy;
 
 /* Fills the list from "NAME,NAME:KEY=VALUE,...". A name alone stands for all runs of the method in a chart, and for one
-   run without settings in the stability study. text NULL: all runs of every registered method. ERROR_INPUT for an unknown
-   name or setting, or a run given twice. */
+   run without settings in the stability study. text NULL: all runs of every registered method. ERROR_INPUT for an
+   unknown name or setting, or a run given twice. */
 bool contenders_parse(ContenderList *list, const char *text, ContenderStudy study, Error *error);
 
 void contenders_free(ContenderList *list);
 
-/* Names of methods, "relu-net, block"; cut off if there are too many. */
-typedef struct ContenderNames {
-    char text[256];
-} ContenderNames;
-
 /* The registered methods that the study leaves out by default. */
-ContenderNames contenders_left_out(ContenderStudy study);
+NameList contenders_left_out(ContenderStudy study);
 
-/* The contenders that can run in the scene: all but those that lack their network (method_lacks_network). fit[count of the
-   list] points to items of the list. Returns how many there are. */
+/* The contenders that can run in the scene: all but those that lack their network (method_lacks_network). fit[count of
+   the list] points to items of the list. Returns how many there are. */
 int contenders_for(const ContenderList *list, const Scene *scene, const Contender **fit);
 
 /* The others. */
-ContenderNames contenders_without_network(const ContenderList *list, const Scene *scene);
+NameList contenders_without_network(const ContenderList *list, const Scene *scene);

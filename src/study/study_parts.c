@@ -22,7 +22,7 @@ void study_parts_close(StudyParts *parts) {
     parts->text = NULL;
 }
 
-/* What a part tells of itself, as a share of all. */
+/* The progress of a part as a share of the whole. */
 typedef struct PartProgress {
     const StudyParts *parts;
     double weight;
@@ -36,7 +36,7 @@ static bool report(void *context, double done, double total) {
     return !part->stopped;
 }
 
-static bool keep_text(StudyParts *parts, const char *text, size_t size, Error *error) {
+static bool append_text(StudyParts *parts, const char *text, size_t size, Error *error) {
     if (!array_reserve((void **)&parts->text, &parts->capacity, parts->size + size + 1, 1))
         return error_memory(error, "study");
     memcpy(parts->text + parts->size, text, size);
@@ -45,7 +45,7 @@ static bool keep_text(StudyParts *parts, const char *text, size_t size, Error *e
     return true;
 }
 
-/* Does the part, and puts its file in place. */
+/* Does the part and writes its file. */
 static bool write_part(StudyParts *parts, const StudyPart *part, const char *path, Error *error) {
     PartProgress own = {parts, part->weight, false};
     const Progress progress = {report, &own};
@@ -56,8 +56,8 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
     bool ok = part->write(part->context, lines, &progress, error);
     if (ferror(lines) && ok) ok = error_memory(error, "study");
     if (fclose(lines) != 0 && ok) ok = error_memory(error, "study");
-    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; what was done before is kept");
-    ok = ok && file_write(path, text, size, error) && keep_text(parts, text, size, error);
+    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; finished parts are kept");
+    ok = ok && file_write(path, text, size, error) && append_text(parts, text, size, error);
     free(text);
     return ok;
 }
@@ -69,7 +69,7 @@ bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     if (access(path, F_OK) == 0) {
         size_t size;
         char *text = file_read(path, PART_MAX_SIZE, &size, error);
-        ok = text != NULL && keep_text(parts, text, size, error);
+        ok = text != NULL && append_text(parts, text, size, error);
         free(text);
     } else {
         ok = write_part(parts, part, path, error);

@@ -73,8 +73,8 @@ refused() {
 }
 refused "'stripes' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
     stripes engine.npz -o a.png
-refused "a.gif: error: a figure's name ends in .png, .svg or .pdf" strip engine.npz -o a.gif
-refused "error: a figure's name ends in" strip engine.npz -o ./png
+refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
+refused "error: the name of a figure must end in" strip engine.npz -o ./png
 refused "needed" strip engine.npz
 refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
 refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
@@ -84,24 +84,24 @@ refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
 refused "--width: error: '39'" strip engine.npz -o a.png --width 39
 refused "--dpi: error: '1201'" strip engine.npz -o a.png --dpi 1201
 refused "--font-size: error: '0'" strip engine.npz -o a.png --font-size 0
-refused "dots an inch are" strip engine.npz -o a.png --width 400 --dpi 1200
-refused "dots an inch are" strip engine.npz -o a.svg --width 400 --dpi 1200
+refused "dots per inch are" strip engine.npz -o a.png --width 400 --dpi 1200
+refused "dots per inch are" strip engine.npz -o a.svg --width 400 --dpi 1200
 refused "--at: error: '0.5,0.2' must rise" strip engine.npz -o a.png --at 0.5,0.2
 refused "--at: error: '0.5,' is not a list" strip engine.npz -o a.png --at 0.5,
 refused "--at: error: 'nan' is not a list" strip engine.npz -o a.png --at nan
 refused "--at: error: more than 60 moments" strip engine.npz -o a.png --at "$(seq -s, 0 0.01 0.7)"
 refused "--moments: error: '61'" strip engine.npz -o a.png --moments 61
 refused "--moments: error: cannot be combined with --at" strip engine.npz -o a.png --moments 3 --at 0.5
-refused "engine.npz: error: shows no moment at 2 s: it goes from 0 to 1 s" strip engine.npz -o a.png --at 2
+refused "engine.npz: error: has no moment at 2 s; its moments are 0 to 1 s" strip engine.npz -o a.png --at 2
 refused "--scene: error: does not apply to the kind strip" strip engine.npz -o a.png --scene "$scenes/stack.yaml"
 refused "--bodies: error: does not apply to the kind strobe" strobe engine.npz -o a.png --bodies 1,2
 refused "--bodies: error: '1' is not a pair" narrow-phase engine.npz -o a.png --bodies 1
 refused "--bodies: error: '1,1' is not a pair" narrow-phase engine.npz -o a.png --bodies 1,1
 refused "there is no body 99" narrow-phase engine.npz -o a.png --bodies 1,99
 refused "cannot be shown beside engine.npz: bodies: 12 and 3" strip engine.npz "$sources/golden/trajectories/single-engine.npz" -o a.png
-refused "never parts from engine.npz" divergence engine.npz engine.npz -o a.png
+refused "never diverges from engine.npz" divergence engine.npz engine.npz -o a.png
 refused "single.yaml: error: is not the scene" divergence engine.npz momentum.npz --scene "$scenes/single.yaml" -o a.png
-refused "engine.npz: error: holds no network" network engine.npz -o a.png
+refused "engine.npz: error: contains no network" network engine.npz -o a.png
 head -c 900 "$scenes/networks/pair-net.npz" >cut.npz
 refused "cut.npz: error:" network cut.npz -o a.png
 head -c 900 engine.npz >cut.npz
@@ -120,7 +120,7 @@ numpy.savez("far.npz", **{**run, "position": far})
 numpy.savez("wild.npz", **{**run, "contact_impulse": run["contact_impulse"] * numpy.float32("nan")})
 PYTHON
 refused "bare.npz: error: the run has no contacts" annotated bare.npz -o a.png
-refused "bare.npz: error: no two bodies that can move touch" narrow-phase bare.npz -o a.png
+refused "bare.npz: error: no two dynamic bodies touch" narrow-phase bare.npz -o a.png
 run 0 figure strip bare.npz -o bare.png
 run 0 figure strip far.npz --at 0.5 -o far.png
 run 0 figure strobe far.npz -o far.svg

@@ -98,9 +98,9 @@ cmp -s ten.hash three.hash && fail "k has no effect on single impulses"
 run 2 simulate unnamed.yaml --method contact-net
 complains "the scene names no network for it: use contact-net:network=FILE"
 run 2 simulate single.yaml --method contact-net:network=around-net.npz
-complains "around-net.npz: error: a network of the target net, which is pair-net's"
+complains "around-net.npz: error: the network has the target net, which is for pair-net"
 run 2 simulate single.yaml --method pair-net:network=points-net.npz
-complains "points-net.npz: error: a network of the target points, which are contact-net's"
+complains "points-net.npz: error: the network has the target points, which is for contact-net"
 
 run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
 equal "iterations printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 10 50 100 "

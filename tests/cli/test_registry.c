@@ -116,7 +116,7 @@ static void a_picture_has_its_title(void **state) {
     const RenderOptions options = draw_panels_defaults(".");
     char title[CAPTION_SIZE], note[CAPTION_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
-    assert_ok(picture_dress(&picture, &options, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
     caption_method(&picture, 0, title, note);
     assert_string_equal(title, "Solver of a test");
     assert_string_equal(note, "of-test");

@@ -23,7 +23,7 @@ complains "--smallest: error: is an option of scene-net, not of pair-net"
 run 2 train --kind pair-net nowhere.npz -o x.npz --width 16
 complains "--width: error: is an option of scene-net, not of pair-net"
 run 2 train --kind magic nowhere.npz -o x.npz
-complains "--kind: error: unknown kind 'magic'; known are pair-net, momentum-schedule, scene-net"
+complains "--kind: error: 'magic' is not a kind; known: pair-net, momentum-schedule, scene-net"
 run 2 train --kind momentum-schedule nowhere.yaml -o x.npz --seed 2 --iterations 1
 complains "nowhere.yaml"
 run 2 train one.npz two.npz -o x.npz

@@ -2,7 +2,6 @@
 #include "testing.h"
 
 #include "common/csv.h"
-#include "common/file.h"
 
 static const char *write_table(const char *text, size_t size) {
     return write_bytes(temporary_path("table.csv"), text, size);
@@ -44,22 +43,6 @@ static void errors_name_line_and_column_in_characters(void **state) {
     assert_false(csv_error(&csv, 1, 2, &error, "not %d", 7));
     assert_error(error, ERROR_INPUT, "table.csv:2:9: error: not 7");
     csv_free(&csv);
-}
-
-static void a_header_alone_is_bare(void **state) {
-    (void)state;
-    static const struct {
-        const char *text;
-        bool bare;
-    } cases[] = {{"a,b\n", true}, {"a,b\r\n", true}, {"", false},
-                 {"a,b", false},  {"a,b\n1", false}, {"a,b\n1,2\n", false}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
-        const char *path = temporary_path("bare.csv");
-        assert_ok(file_write_soon(path, cases[i].text, strlen(cases[i].text), &error), error);
-        assert_true(csv_is_bare(path) == cases[i].bare);
-    }
-    assert_false(csv_is_bare(temporary_path("none.csv")));
 }
 
 static void broken_tables_are_refused_with_their_place(void **state) {
@@ -129,7 +112,7 @@ static void what_is_put_is_read_again(void **state) {
 
 static void shown_text_is_short_and_prints(void **state) {
     (void)state;
-    assert_string_equal(csv_show("").text, "nothing");
+    assert_string_equal(csv_show("").text, "");
     assert_string_equal(csv_show("1e999").text, "1e999");
     assert_string_equal(csv_show("\xc3\xa4\x1b[2J").text, "???[2J");
     assert_string_equal(csv_show("01234567890123456789012345678901234567890123456").text,
@@ -142,7 +125,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fields_are_found_and_unquoted),
         cmocka_unit_test(errors_name_line_and_column_in_characters),
-        cmocka_unit_test(a_header_alone_is_bare),
         cmocka_unit_test(broken_tables_are_refused_with_their_place),
         cmocka_unit_test(large_and_missing_files_are_refused),
         cmocka_unit_test(what_is_put_is_read_again),

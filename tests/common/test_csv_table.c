@@ -105,7 +105,7 @@ static void other_headers_are_refused(void **state) {
                    "number, optional");
     expect_refused(&exact, "text,name,word,integer,single,number,optional,name\n1,2,3,4,5,6,7,8\n",
                    "rows.csv:1:47: error: the column 'name' appears twice");
-    expect_refused(&subset, "word,\n1,2\n", "rows.csv:1:6: error: unknown column 'nothing'; the columns are text");
+    expect_refused(&subset, "word,\n1,2\n", "rows.csv:1:6: error: unknown column ''; the columns are text");
     expect_refused(&subset, "Word\n1\n", "rows.csv:1:1: error: unknown column 'Word'");
     expect_refused(&subset, "word,text,word\n1,2,3\n", "rows.csv:1:11: error: the column 'word' appears twice");
 }

@@ -6,8 +6,9 @@
 
 - Every page can be reached from README.md. Every relative link, picture and anchor exists in a fresh clone.
 - README.md keeps its limits.
-- Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it.
-- Every option after `twinbox COMMAND` in a shell block is one of that command.
+- Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
+  FOLDER, COMMAND and WHAT stand for any text.
+- Every option after `twinbox COMMAND` in a shell block or a sentence is one of that command.
 - Marked blocks run, page by page from top to bottom, in a fresh copy of the sources with twinbox on PATH, as a user
   would type them. The marks are words after the language of a block and are invisible when rendered:
 
@@ -15,7 +16,7 @@
       ```sh quick status=1   its last command must end with this status
       ```python quick        is run by Python
       ```yaml file=NAME      is written to a file; so is any other language
-      ```text output         is the output of the block before; "..." stands for any lines, and times are not compared
+      ```text output         is the output of the block before; "..." stands for any text or lines, and times are not compared
 """
 import glob
 import os
@@ -28,6 +29,7 @@ import urllib.parse
 
 README_LINES, README_WORDS = 150, 1300
 NOT_IN_A_CLONE = {".git", "build", "out"}
+PLACEHOLDER = re.compile("NAME|FOLDER|COMMAND|WHAT")
 TIME = re.compile(r"\d[\d.]*(e[+-]?\d+)?( ?(ns|µs|us|ms|s|min)\b)")
 
 twinbox, root = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
@@ -51,9 +53,9 @@ def find_pages():
 
 
 class Block:
-    def __init__(self, line, info):
+    def __init__(self, line, fence, info):
         words = info.split()
-        self.line, self.language, self.marks = line, words[0] if words else "", words[1:]
+        self.line, self.fence, self.language, self.marks = line, fence, words[0] if words else "", words[1:]
         self.lines = []
 
     def text(self):
@@ -80,12 +82,12 @@ class Page:
         with open(os.path.join(root, path), encoding="utf-8") as file:
             self.lines = file.read().split("\n")
         for number, line in enumerate(self.lines, 1):
-            if line.lstrip().startswith("```"):
-                if block is None:
-                    block = Block(number, line.strip()[3:])
-                    self.blocks.append(block)
-                else:
-                    block = None
+            fence = re.match(r" *(```+)(.*)", line)
+            if fence and block is None:
+                block = Block(number, fence[1], fence[2])
+                self.blocks.append(block)
+            elif fence and fence[1] >= block.fence and not fence[2].strip():
+                block = None
             elif block is not None:
                 block.lines.append(line)
             else:
@@ -98,10 +100,16 @@ class Page:
     def find_links(self, prose):
         # Links may break over lines; code in a sentence is no link.
         text = "".join(f"{line}\n" for _, line in prose)
+        self.commands = [(prose[text.count("\n", 0, code.start())][0], code[1])
+                         for code in re.finditer(r"`(twinbox [^`]*)`", text)]
         text = re.sub(r"`[^`\n]*`", lambda code: " " * len(code[0]), text)
-        for link in re.finditer(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)|<(?:a|img)\s[^>]*(?:href|src)=\"([^\"]*)\"", text):
+        for link in re.finditer(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)|<(?:a|img)\s[^>]*>", text):
             number = prose[text.count("\n", 0, link.start())][0]
-            self.links.append((number, link[1] == "!", link[2], link[3] or link[4]))
+            if link[3]:
+                self.links.append((number, link[1] == "!", link[2], link[3]))
+                continue
+            values = dict(re.findall(r'(\w+)="([^"]*)"', link[0]))
+            self.links.append((number, "src" in values, values.get("alt", ""), values.get("src", values.get("href", ""))))
 
 
 pages = {path: Page(path) for path in find_pages()}
@@ -145,7 +153,7 @@ def check_paths(page):
     written = {block.value("file") for block in page.blocks}
     for number, line in enumerate(page.lines, 1):
         for path in re.findall(r"(?<![\w/.-])(?:src|tests|scenes|golden|shaders)/[\w./*-]*[\w*]", line):
-            known = path in written or glob.glob(os.path.join(root, path))
+            known = path in written or glob.glob(os.path.join(root, PLACEHOLDER.sub("*", path)))
             check(known, f"{page.path}:{number}", f"there is no {path}")
 
 
@@ -163,7 +171,7 @@ def options_of(command):
 def check_options(place, text):
     """Of commands, which may go on in the next line after a backslash."""
     for line in text.replace("\\\n", " ").split("\n"):
-        for call in re.finditer(r"(?:^|[/\s(])twinbox ([a-z]+)([^|;&]*)", line.split(" #")[0]):
+        for call in re.finditer(r"(?:^|[/\s(])twinbox ([a-z]+)\b([^|;&]*)", line.split(" #")[0]):
             known = options_of(call[1])
             check(known is not None, place, f"there is no command 'twinbox {call[1]}'")
             for option in re.findall(r"(?<=\s)--?[a-z][\w-]*", call[2]) if known else []:
@@ -171,12 +179,13 @@ def check_options(place, text):
 
 
 def is_output(shown, printed):
-    """Whether the lines are those printed, "..." standing for any lines."""
+    """Whether the lines are those printed; "..." stands for any text, alone in a line for any lines."""
     if not shown:
         return not printed
     if shown[0].strip() == "...":
         return any(is_output(shown[1:], printed[i:]) for i in range(len(printed) + 1))
-    return bool(printed) and shown[0] == printed[0] and is_output(shown[1:], printed[1:])
+    pattern = ".*".join(re.escape(part) for part in shown[0].split("..."))
+    return bool(printed) and re.fullmatch(pattern, printed[0]) is not None and is_output(shown[1:], printed[1:])
 
 
 def lines_without_times(text):
@@ -197,6 +206,8 @@ def run(place, block, folder):
 
 def run_blocks(page, folder):
     printed = None
+    for number, command in page.commands:
+        check_options(f"{page.path}:{number}", command.replace("\n", " "))
     for block in page.blocks:
         place = f"{page.path}:{block.line}"
         if block.language == "sh":

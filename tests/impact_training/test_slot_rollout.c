@@ -2,7 +2,7 @@
 /* Which steps of a scene's launches become samples. */
 #include "impacts.h"
 
-#include "solvers/gaps.h"
+#include "solvers/residuals.h"
 
 #include <omp.h>
 
@@ -91,7 +91,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
         assert_ok(world_step(world, solver, scene->dt, &error), error);
         const ContactProblem *problem = world_problem(world);
         if (since >= 0 || (problem->bomb >= 0 && bomb_touches(problem))) since++;
-        if (since < 0 || gap_of(problem) < (double)impact_gate) continue;
+        if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
         assert_int_equal(samples[found].since, since);
         assert_same_problem(&samples[found++].problem, problem);
     }

@@ -56,7 +56,7 @@ static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *probl
     warm_start(problem, start);
     assert_true(unrolled_problem_make(&rows, problem));
     assert_true(unrolled_run(unrolled, &rows, start, factors, sweeps));
-    momentum_solve_plain(problem, rows.visits, in_float, sweeps, &before, &expected);
+    momentum_solve_scalar(problem, rows.visits, in_float, sweeps, &before, &expected);
     assert_same_solution(problem, unrolled, &expected, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
     free_solution(&expected);

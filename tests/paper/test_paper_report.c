@@ -324,7 +324,7 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
     expect_refused("figures/laws.txt: error: cannot open");
     make_study();
     write_text_file("figures/rates.png", "\x89PNG and no more");
-    expect_refused("figures/rates.png: error: no PNG file, or a damaged one");
+    expect_refused("figures/rates.png: error: not a PNG file, or damaged");
     make_study();
     write_text_file("figures/loop.txt", "two\nlines\n");
     expect_refused("figures/loop.txt: error: byte 4: a caption must be one line of UTF-8 text");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Titles and captions come from the descriptions that the caller hands over, and else from the run itself. */
+/* Titles and captions come from the caller's method descriptions, otherwise from the run itself. */
 #include "testing.h"
 
 #include "picture/caption.h"

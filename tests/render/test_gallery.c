@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the pictures of golden/gallery again, one of every style, the dark ones by EGL: the pixels must be equal. A picture
-   that is not is written to actual_NAME.png in the working directory of the test. Given a folder like
-   golden/ the program writes the pictures into its gallery/, of the runs that are there: `golden/renew` does. */
+/* Redraws the pictures of golden/gallery, one of every style, the dark ones by EGL: the pixels must be equal. A
+   picture that differs is written to actual_NAME.png in the working directory of the test. Given a folder like
+   golden/, the program writes the pictures of its runs into its gallery/, as `golden/renew` does. */
 #include "testing.h"
 
 #include "image/png_encoder.h"
@@ -33,7 +33,7 @@ static const char *const one[] = {"trajectories/pyramid-engine", NULL};
 #define SLOW \
     { MOMENT_BETWEEN, 33, 0.5, 4 }
 
-/* Each in both themes, where it says so. */
+/* Each in both themes, unless one is given. */
 static const struct {
     const char *name;
     const char *const *runs;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the frames of golden/frames again, in both contexts, from golden/trajectories: SCENE_NNNNNN.png is
-   frame NNNNNN of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture
-   that is not is written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
+/* Redraws the frames of golden/frames in both contexts, from golden/trajectories: SCENE_NNNNNN.png is frame NNNNNN
+   of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture that differs is
+   written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
 #include "testing.h"
 
 #include "mesa.h"
@@ -70,7 +70,7 @@ static Image *draw(const Golden *golden, ContextChoice context) {
     return image;
 }
 
-/* Number of contexts in which the frame is another. */
+/* Number of contexts in which the frame differs. */
 static int compare(const Golden *golden) {
     int different = 0;
     for (size_t i = 0; i < sizeof contexts / sizeof contexts[0]; i++) {

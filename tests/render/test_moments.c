@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a video: laws of counts, order and parts. */
+/* The order of a video: counts, order and fractions. */
 #include "testing.h"
 
 #include "render/moments.h"
@@ -71,7 +71,7 @@ static void without_options_a_picture_is_a_frame(void **state) {
     }
 }
 
-/* The time of the run, in frames. */
+/* Simulated time, in frames. */
 static double time_of(Moment moment) { return moment.frame + moment.fraction; }
 
 static void slow_motion_adds_parts_around_the_impact(void **state) {
@@ -87,7 +87,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
             assert_int_equal(moment.kind, moment.fraction > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
             stored += moment.kind == MOMENT_STORED;
             if (i == 0) continue;
-            /* From each to the next passes what the one before says. */
+            /* The time between two moments is given by the earlier one. */
             Moment before = moments_at(&plan, i - 1);
             assert_near(time_of(moment) - time_of(before), 1.0 / before.slow, 1e-12);
         }
@@ -154,7 +154,7 @@ static void cards_and_hold_stand_around_the_run(void **state) {
 }
 
 /* A range of frames has its own cards and hold around the run's moments; its indices begin with the first frame. */
-static void a_part_is_a_sequence_of_its_own(void **state) {
+static void a_range_of_frames_is_a_complete_sequence(void **state) {
     (void)state;
     MomentPlan bare = plan_for((RenderOptions){.slow = 5});
     RenderOptions options = {.slow = 5, .hold = 0.5, .title_card = true, .end_card = true};
@@ -212,7 +212,7 @@ int main(void) {
         cmocka_unit_test(slow_motion_ends_where_the_run_does),
         cmocka_unit_test(the_first_impact_of_all_panels_counts),
         cmocka_unit_test(cards_and_hold_stand_around_the_run),
-        cmocka_unit_test(a_part_is_a_sequence_of_its_own),
+        cmocka_unit_test(a_range_of_frames_is_a_complete_sequence),
         cmocka_unit_test(what_is_out_of_range_is_refused),
     };
     return cmocka_run_group_tests(tests, make, destroy);

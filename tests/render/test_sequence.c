@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sequences: the same files from any number of processes, and every way to fail has a reason. */
+/* Sequences: the same files with any number of processes, and an error message for every failure. */
 #include "testing.h"
 
 #include "folders.h"
@@ -86,7 +86,7 @@ static void frames_tell_their_origin(void **state) {
     char hashes[64];
     snprintf(hashes, sizeof hashes, "%016llx | %016llx",
              (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
-             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last: it has ended */
+             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last frame: it has ended */
     assert_text(path, "Scene", "two_boxes");
     assert_text(path, "Method", "engine | pair-net:network=nets/small.npz");
     assert_text(path, "Frame", "10");
@@ -118,7 +118,7 @@ static void progress_counts_the_frames(void **state) {
     assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
 }
 
-/* No process stays, and no file is half there. */
+/* No process remains, and no file is incomplete. */
 static void a_sequence_can_be_stopped(void **state) {
     (void)state;
     Error error = {0};
@@ -137,7 +137,7 @@ static void a_sequence_can_be_stopped(void **state) {
     }
 }
 
-/* A limit on the size of files stands for a full disk: with its signal ignored, write() fails. */
+/* A file size limit simulates a full disk: with its signal ignored, write() fails. */
 static void limit_files(rlim_t bytes, void (*handler)(int)) {
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -151,7 +151,7 @@ static void a_full_disk_is_told(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
-    /* No room for the manifest, for a picture (of 3 kB), for what the manifest grows by. */
+    /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
     static const struct {
         rlim_t bytes;
         const char *text;
@@ -168,8 +168,8 @@ static void a_full_disk_is_told(void **state) {
     }
 }
 
-/* The same limit, unheeded, kills the process. */
-static void a_killed_process_is_told(void **state) {
+/* With its signal, the same limit kills the process. */
+static void a_killed_process_is_reported(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
@@ -228,7 +228,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(progress_counts_the_frames, make, destroy),
         cmocka_unit_test_setup_teardown(a_sequence_can_be_stopped, make, destroy),
         cmocka_unit_test_setup_teardown(a_full_disk_is_told, make, destroy),
-        cmocka_unit_test_setup_teardown(a_killed_process_is_told, make, destroy),
+        cmocka_unit_test_setup_teardown(a_killed_process_is_reported, make, destroy),
         cmocka_unit_test_setup_teardown(folders_that_cannot_be_written_are_refused, make, destroy),
         cmocka_unit_test_setup_teardown(wrong_options_are_refused, make, destroy),
     };

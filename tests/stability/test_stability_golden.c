@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every method still holds at the last value at which it held, and fails at the first at which it failed: both sides of
-   each border in golden/stability.csv, which golden/renew makes. */
+/* Both sides of every border in golden/stability.csv (made by golden/renew): each method still holds at holds_at and
+   fails at fails_at. */
 #include "testing.h"
 
 #include "common/parallel.h"
@@ -22,7 +22,7 @@ static bool method_of(const BorderRow *row, Method *method, Error *error) {
     return method_parse(method, text, error);
 }
 
-/* One side of a row; a side without a value expects nothing. The verdict is the worst: of the seeds that failed, or,
+/* One side of a row; a side without a value is not checked. The row's verdict is the worst: of the failing seeds or,
    without a border, of all values. */
 static bool check_side(Golden *golden, int i, const StabilityScan *scan, bool holds, Error *error) {
     const BorderRow *row = &golden->table.rows[i];
@@ -40,7 +40,6 @@ static bool check_side(Golden *golden, int i, const StabilityScan *scan, bool ho
                            reading.body, reading.value, reading.unit);
 }
 
-/* The studies of the scene must refuse it. */
 static bool check_refusal(const Golden *golden, int i, const StabilityScan *scan, Error *error) {
     Method method;
     Error reason = {0};

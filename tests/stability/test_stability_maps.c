@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of maps, from tables made up here. */
+/* The figures of maps, from synthetic tables. */
 #include "stability_drawn.h"
 
 /* One cell of each verdict, and one sample in the legend. */
@@ -20,9 +20,9 @@ static void each_verdict_has_its_tile(void **state) {
     run_python(program, temporary_folder);
 }
 
-/* Two edges: between two cells side by side, and between two one above the other with a row's gap in their values. A cell
-   without a row and one that is not applicable have none. */
-static void the_border_parts_holding_from_failing(void **state) {
+/* Two edges: between two cells side by side, and between two cells one above the other, with a gap in their values.
+   Missing and not applicable cells have no edges. */
+static void the_border_separates_holding_from_failing(void **state) {
     (void)state;
     start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,sways,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
                       "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
@@ -36,7 +36,7 @@ static void the_border_parts_holding_from_failing(void **state) {
                temporary_folder);
 }
 
-/* Every cell that was run has a link over its tile and nowhere else. */
+/* Every cell that was run has one link, over its tile. */
 static void cells_link_to_their_clips(void **state) {
     (void)state;
     start_afresh(
@@ -65,7 +65,7 @@ static void cells_link_to_their_clips(void **state) {
         temporary_folder);
 }
 
-/* 119 bytes of path, and characters that are nothing to SVG and gnuplot; 128 are too many. */
+/* A path of 119 bytes, and characters that are special in SVG and gnuplot; 128 bytes are too many. */
 static void settings_may_be_paths(void **state) {
     (void)state;
     char setting[200], maps[1024], borders[1024], program[2048];
@@ -85,7 +85,7 @@ static void settings_may_be_paths(void **state) {
     expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting: '");
 }
 
-/* Whatever the order of the rows and the distance of the values: rising, and each a tic. */
+/* For any order of the rows and any distances of the values: ascending, one tic each. */
 static void axes_name_their_values(void **state) {
     (void)state;
     start_afresh(MAPS "m,engine,,rate,Hz,480,b_c,,1,falls,,,,\nm,engine,,rate,Hz,20,b_c,,1,falls,,,,\n"
@@ -99,7 +99,7 @@ static void axes_name_their_values(void **state) {
                temporary_folder);
 }
 
-static void titles_are_cut_where_they_tell_the_least(void **state) {
+static void titles_are_cut_in_the_methods_name(void **state) {
     (void)state;
     static const struct {
         const char *method, *setting, *text;
@@ -139,7 +139,7 @@ static void many_methods_and_large_grids_are_drawn(void **state) {
 
 #define START "stack,engine,,a,,1,b,,"
 
-static void maps_out_of_order_are_refused_with_their_place(void **state) {
+static void invalid_maps_are_refused_with_their_place(void **state) {
     (void)state;
     static const struct {
         const char *rows, *message;
@@ -183,13 +183,13 @@ int main(void) {
     temporary_path(""); /* makes the folder */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_verdict_has_its_tile),
-        cmocka_unit_test(the_border_parts_holding_from_failing),
+        cmocka_unit_test(the_border_separates_holding_from_failing),
         cmocka_unit_test(cells_link_to_their_clips),
         cmocka_unit_test(settings_may_be_paths),
         cmocka_unit_test(axes_name_their_values),
-        cmocka_unit_test(titles_are_cut_where_they_tell_the_least),
+        cmocka_unit_test(titles_are_cut_in_the_methods_name),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
-        cmocka_unit_test(maps_out_of_order_are_refused_with_their_place),
+        cmocka_unit_test(invalid_maps_are_refused_with_their_place),
         cmocka_unit_test(maps_too_large_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

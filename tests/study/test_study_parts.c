@@ -4,7 +4,7 @@
 #include "common/file.h"
 #include "study/study_parts.h"
 
-/* A part that counts how often it is done. */
+/* A part that counts its runs. */
 typedef struct Counted {
     const char *lines;
     int done;
@@ -25,7 +25,7 @@ static void open_parts(StudyParts *parts, const char *folder) {
     assert_ok(study_parts_open(parts, folder, 0x1234, &error), error);
 }
 
-static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
+static void tables_have_the_order_of_the_parts(void **state) {
     (void)state;
     Error error = {0};
     char folder[300];
@@ -67,7 +67,7 @@ static void a_row_is_a_line_with_the_tables_name(void **state) {
     free(text);
 }
 
-static void what_is_done_is_not_done_again(void **state) {
+static void finished_parts_are_not_run_again(void **state) {
     (void)state;
     Error error = {0};
     const char *folder = temporary_path("again");
@@ -91,8 +91,8 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-/* The first part is worth a quarter; half of it was done. */
-static void a_part_cut_off_is_not_kept(void **state) {
+/* The first part has a weight of a quarter; half of it was run. */
+static void an_interrupted_part_is_not_saved(void **state) {
     (void)state;
     Error error = {0};
     const char *folder = temporary_path("cut");
@@ -122,9 +122,8 @@ static void a_part_cut_off_is_not_kept(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_put_together_in_the_order_of_the_parts),
-                                       cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
-                                       cmocka_unit_test(what_is_done_is_not_done_again),
-                                       cmocka_unit_test(a_part_cut_off_is_not_kept)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_have_the_order_of_the_parts), cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
+        cmocka_unit_test(finished_parts_are_not_run_again), cmocka_unit_test(an_interrupted_part_is_not_saved)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,7 +61,7 @@ static void draw_key(Sketch *sketch) {
         sketch_arrow(sketch, at, (Point){at.x + 10 * speed_scale, at.y}, HEAD_AT_END, colours[i], 2.6);
         sketch_text(sketch, (Point){at.x + 13, at.y}, &words, "%s", arrows[i]);
     }
-    sketch_bar(sketch, at, speed_scale, 10, "m/s", 7.5);
+    sketch_scale_bar(sketch, at, speed_scale, 10, "m/s", 7.5);
     at.y -= 3;
     for (int i = 0; i < 3; i++) sketch_text(sketch, (Point){at.x, at.y -= 5}, &words, "%s", letters[i]);
 }
@@ -115,7 +115,7 @@ static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char 
     SweepRow row;
     int rows;
     if (!sweep_draw(sketch, &view, scenes[SCENE_STACK], &row, &rows, error)) return false;
-    sketch_bar(sketch, (Point){3, 4}, view.scale, 2, "m", 7.5);
+    sketch_scale_bar(sketch, (Point){3, 4}, view.scale, 2, "m", 7.5);
     sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0, false}, "dot: first touch");
     draw_pair(sketch, &row);
     draw_key(sketch);

@@ -78,8 +78,8 @@ static void write_caption(char caption[CAPTION_SIZE], const Collision *c) {
 static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
     Collision collision;
     if (!find_collision(&collision, scenes[SCENE_PYRAMID], error)) return false;
-    put_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);
-    put_contact(sketch, (View){.low = {split, 1}, .high = {width - 1, height - 7}}, &collision);
+    draw_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);
+    draw_contact_closeup(sketch, (View){.low = {split, 1}, .high = {width - 1, height - 7}}, &collision);
     const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){1, height - 2.5}, &title, "Overlaps along the axes of both boxes");
     sketch_text(sketch, (Point){split, height - 2.5}, &title, "Contact points: separations along the normal");

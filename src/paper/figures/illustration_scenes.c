@@ -127,7 +127,7 @@ static bool draw_scene(Sketch *sketch, int i, const Scene *scene, int *step, Err
         draw_path(sketch, &view, run, scene->bomb.frame);
         draw_words(sketch, &view, titles[i], scene, run);
         sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
-        if (i == 0) sketch_bar(sketch, (Point){x + 2.5, low + 1.6}, view.scale, 5, "m", 7.5);
+        if (i == 0) sketch_scale_bar(sketch, (Point){x + 2.5, low + 1.6}, view.scale, 5, "m", 7.5);
     }
     *step = run->frames - 1;
     image_destroy(window);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A dot plot in two columns, one line per network, grouped by factor. */
-#include "chart/figure_axis.h"
+#include "chart/gnuplot_axis.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/study/aims.h"
 #include "paper/study/paper_tables.h"
@@ -57,19 +57,19 @@ static int split(const TrainedRow *rows, int count, double *span) {
 }
 
 typedef struct Factors {
-    FigurePage *page;
+    GnuplotPage *page;
     const TrainedRow *rows;
     int begin, end; /* of the half */
-    FigureAxis x;
+    GnuplotAxis x;
     double span; /* of the higher half, in rows */
 } Factors;
 
-static FigureLook guide_look(void) {
-    return (FigureLook){"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false, 0, false};
+static GnuplotLook guide_look(void) {
+    return (GnuplotLook){"", {.colour = "#C8C8C8", .ink = "#C8C8C8", .dashes = "solid"}, 0.6, false, 0, false};
 }
 
-static FigureLook aim_look(void) {
-    return (FigureLook){
+static GnuplotLook aim_look(void) {
+    return (GnuplotLook){
         "aim for the best", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, aim_width, true};
 }
 
@@ -80,46 +80,46 @@ static double next_place(const Factors *factors, int i, double place) {
 }
 
 static void draw_guides(const Factors *factors) {
-    FigureLook guide = guide_look(), constant = figure_dashed("");
+    GnuplotLook guide = guide_look(), constant = gnuplot_look_dashed("");
     double place = 0;
-    figure_series(factors->page);
+    gnuplot_series_begin(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         place = next_place(factors, i, place);
         if (isnan(factors->rows[i].ratio)) continue;
-        figure_segment(factors->page, factors->x.log.low, place, factors->x.log.high, place);
+        gnuplot_segment(factors->page, factors->x.log.low, place, factors->x.log.high, place);
     }
-    figure_draw(factors->page, &guide);
-    figure_series(factors->page);
-    figure_segment(factors->page, 1, 0, 1, factors->span);
-    figure_draw(factors->page, &constant);
+    gnuplot_series_end(factors->page, &guide);
+    gnuplot_series_begin(factors->page);
+    gnuplot_segment(factors->page, 1, 0, 1, factors->span);
+    gnuplot_series_end(factors->page, &constant);
 }
 
 static void draw_dots(const Factors *factors, int target) {
-    FigureLook dot = figure_marks(figure_look(target, ""));
+    GnuplotLook dot = gnuplot_look_marks(gnuplot_look(target, ""));
     double place = 0;
-    figure_series(factors->page);
+    gnuplot_series_begin(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
         if (row->target == target)
-            figure_point(factors->page, figure_on(factors->page, &factors->x, row->ratio), place);
+            gnuplot_point(factors->page, gnuplot_axis_clamp(factors->page, &factors->x, row->ratio), place);
     }
-    figure_draw(factors->page, &dot);
+    gnuplot_series_end(factors->page, &dot);
 }
 
 /* Higher than a dot, so that they can be seen behind it. */
 static void draw_aims(const Factors *factors) {
-    FigureLook look = aim_look();
+    GnuplotLook look = aim_look();
     double half = pow(factors->x.log.high / factors->x.log.low, aim_width / 2 / plot_width), place = 0;
-    figure_series(factors->page);
+    gnuplot_series_begin(factors->page);
     for (int i = factors->begin; i < factors->end; i++) {
         const TrainedRow *row = &factors->rows[i];
         place = next_place(factors, i, place);
         double aim = target_aims[row->target];
         if (strcmp(row->factor, "best") == 0 && aim > 0)
-            figure_bar(factors->page, aim / half, place - aim_height / 2, aim * half, place + aim_height / 2);
+            gnuplot_bar(factors->page, aim / half, place - aim_height / 2, aim * half, place + aim_height / 2);
     }
-    figure_draw(factors->page, &look);
+    gnuplot_series_end(factors->page, &look);
 }
 
 static void draw_names(const Factors *factors, double left) {
@@ -132,47 +132,47 @@ static void draw_names(const Factors *factors, double left) {
         bool alone = row->value[0] == '\0' || strcmp(row->factor, row->value) == 0;
         int length = snprintf(text, sizeof text, "%s%s%s", row->factor, alone ? "" : " = ", alone ? "" : row->value);
         if (length > LABEL_MAX) strcpy(text + LABEL_MAX - 3, "...");
-        figure_text(factors->page, left + plot_left - 1.5, y, "right", 6.5, text);
-        if (isnan(row->ratio)) figure_text(factors->page, left + plot_left + 1, y, "left", 6.5, "no result");
+        gnuplot_text(factors->page, left + plot_left - 1.5, y, "right", 6.5, text);
+        if (isnan(row->ratio)) gnuplot_text(factors->page, left + plot_left + 1, y, "left", 6.5, "no result");
         snprintf(text, sizeof text, "%.0f", row->parameters);
-        if (!isnan(row->parameters)) figure_text(factors->page, left + numbers_right, y, "right", 6.5, text);
+        if (!isnan(row->parameters)) gnuplot_text(factors->page, left + numbers_right, y, "right", 6.5, text);
     }
 }
 
 static void draw_half(Factors *factors, int half) {
-    FigurePage *page = factors->page;
+    GnuplotPage *page = factors->page;
     double left = half * half_width;
-    figure_panel(page, (FigureBox){left + plot_left, bottom, plot_width, factors->span * row_height}, "");
-    figure_log(page, 'x', &factors->x, "Test error / that of predicting the mean");
-    figure_linear(page, 'y', factors->span, 0, "", NULL);
-    figure_text(page, left + numbers_right, page->height - top / 2, "right", 6.5, "parameters");
+    gnuplot_panel_begin(page, (GnuplotBox){left + plot_left, bottom, plot_width, factors->span * row_height}, "");
+    gnuplot_log_axis(page, 'x', &factors->x, "Test error / that of predicting the mean");
+    gnuplot_linear_axis(page, 'y', factors->span, 0, "", NULL);
+    gnuplot_text(page, left + numbers_right, page->height - top / 2, "right", 6.5, "parameters");
     draw_names(factors, left);
     draw_guides(factors);
     draw_aims(factors);
     for (int target = 0; target < PAIR_TARGETS; target++) draw_dots(factors, target);
-    figure_panel_end(page);
+    gnuplot_panel_end(page);
 }
 
-static void draw_legend(FigurePage *page, const TrainedRow *rows, int count) {
+static void draw_legend(GnuplotPage *page, const TrainedRow *rows, int count) {
     static const char *const names[PAIR_TARGETS] = {"target pair", "target net", "target impulse", "target points"};
-    FigureLook looks[PAIR_TARGETS + 2];
+    GnuplotLook looks[PAIR_TARGETS + 2];
     int entries = 0;
     for (int target = 0; target < PAIR_TARGETS; target++) {
         bool used = false;
         for (int i = 0; i < count; i++) used |= rows[i].target == target;
-        if (used) looks[entries++] = figure_marks(figure_look(target, names[target]));
+        if (used) looks[entries++] = gnuplot_look_marks(gnuplot_look(target, names[target]));
     }
     looks[entries++] = aim_look();
-    looks[entries++] = figure_dashed("predicting the mean");
-    figure_legend(page, looks, entries, (entries + 1) / 2, plot_left, legend_top);
+    looks[entries++] = gnuplot_look_dashed("predicting the mean");
+    gnuplot_legend(page, looks, entries, (entries + 1) / 2, plot_left, legend_top);
 }
 
-static void draw(FigurePage *page, const TrainedRow *rows, int count) {
-    FigureRange range = {target_aims[TARGET_IMPULSE], 1};
-    for (int i = 0; i < count; i++) figure_widen(&range, rows[i].ratio);
-    Factors factors = {page, rows, 0, 0, figure_axis(range, least_ratio, most_ratio, false), 0};
+static void draw(GnuplotPage *page, const TrainedRow *rows, int count) {
+    GnuplotRange range = {target_aims[TARGET_IMPULSE], 1};
+    for (int i = 0; i < count; i++) gnuplot_range_include(&range, rows[i].ratio);
+    Factors factors = {page, rows, 0, 0, gnuplot_axis(range, least_ratio, most_ratio, false), 0};
     int middle = split(rows, count, &factors.span);
-    figure_begin(page, FIGURE_PAGE_WIDTH, bottom + factors.span * row_height + top);
+    gnuplot_page_begin(page, FIGURE_PAGE_WIDTH, bottom + factors.span * row_height + top);
     for (int half = 0; half < HALVES; half++) {
         factors.begin = half == 0 ? 0 : middle;
         factors.end = half == 0 ? middle : count;
@@ -183,10 +183,10 @@ static void draw(FigurePage *page, const TrainedRow *rows, int count) {
             "Test error of every network over that of the constant predictor (dashed: 1), by the factor in which it "
             "differs from the baseline. On the right: the number of parameters. Upright bars: the aims for the best "
             "networks, 0.4 for the targets pair and net and 0.1 for impulse.");
-    figure_end(page);
+    gnuplot_page_end(page);
 }
 
-bool plot_factors(const char *folder, FigurePage *page, Error *error) {
+bool plot_factors(const char *folder, GnuplotPage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_trained_layout, error)) return false;
     const int count = table.count;

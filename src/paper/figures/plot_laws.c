@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws in the loss: the test error on the left, the violation of each law on the right. */
-#include "chart/figure_axis.h"
-#include "chart/figure_seeds.h"
+#include "chart/gnuplot_axis.h"
+#include "chart/gnuplot_seeds.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
@@ -18,11 +18,11 @@ static const double height = 97, left = 13.5, error_width = 56, small_left = 84,
 static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
 
 typedef struct LawsFigure {
-    FigurePage *page;
+    GnuplotPage *page;
     const LawRow *rows;
     int count;
     SeedPoint *points; /* [count] room */
-    FigureAxis x;
+    GnuplotAxis x;
 } LawsFigure;
 
 /* The value in a panel: the violation of its law, or (LAW_SET_ALL) the error over the constant predictor's. */
@@ -31,14 +31,15 @@ static double measure(const LawRow *row, int panel) {
 }
 
 /* The points of a line: networks without laws, at weight 0, and those with the line's law. */
-static int gather(const LawsFigure *laws, int line, int panel, const FigureAxis *y) {
+static int gather(const LawsFigure *laws, int line, int panel, const GnuplotAxis *y) {
     int count = 0;
     for (int i = 0; i < laws->count; i++) {
         const LawRow *row = &laws->rows[i];
         double value = measure(row, panel), weight = row->laws == LAW_SET_NONE ? 0 : row->weight;
         if ((row->laws != line && row->laws != LAW_SET_NONE) || isnan(value) || isnan(weight)) continue;
-        laws->points[count++] = (SeedPoint){isnan(row->seed) ? 0 : row->seed, figure_on(laws->page, &laws->x, weight),
-                                            figure_on(laws->page, y, value)};
+        laws->points[count++] =
+            (SeedPoint){isnan(row->seed) ? 0 : row->seed, gnuplot_axis_clamp(laws->page, &laws->x, weight),
+                        gnuplot_axis_clamp(laws->page, y, value)};
     }
     return count;
 }
@@ -49,89 +50,89 @@ static bool is_used(const LawsFigure *laws, int line) {
     return false;
 }
 
-static FigureLook look_of(int line) {
+static GnuplotLook look_of(int line) {
     static const char *const names[] = {"momentum", "energy", "approach", "friction cone", "all four laws"};
-    return figure_look(line == LAW_SET_ALL ? 0 : line + 1, names[line]);
+    return gnuplot_look(line == LAW_SET_ALL ? 0 : line + 1, names[line]);
 }
 
 /* The panel of the error has a line for each law and for all; that of a law has its own line and the one for all. */
-static void draw_lines(const LawsFigure *laws, int panel, const FigureAxis *y) {
+static void draw_lines(const LawsFigure *laws, int panel, const GnuplotAxis *y) {
     for (int thick = 0; thick <= 1; thick++)
         for (int line = 0; line <= LAW_SET_ALL; line++) {
             if ((panel != LAW_SET_ALL && line != panel && line != LAW_SET_ALL) || !is_used(laws, line)) continue;
-            FigureLook look = look_of(line);
+            GnuplotLook look = look_of(line);
             int count = gather(laws, line, panel, y);
-            (thick ? figure_seed_median : figure_seed_lines)(laws->page, laws->points, count, &look);
+            (thick ? gnuplot_seed_median : gnuplot_seed_lines)(laws->page, laws->points, count, &look);
         }
 }
 
 /* The labels' own violation; in the error's panel the constant predictor, 1. */
-static void draw_dashed(const LawsFigure *laws, int panel, const FigureAxis *y) {
-    FigureLook look = figure_dashed("");
+static void draw_dashed(const LawsFigure *laws, int panel, const GnuplotAxis *y) {
+    GnuplotLook look = gnuplot_look_dashed("");
     double value = panel == LAW_SET_ALL ? 1 : NAN;
     for (int i = 0; i < laws->count; i++)
         if (panel != LAW_SET_ALL && laws->rows[i].laws == LAW_SET_ENGINE) value = laws->rows[i].violation[panel];
-    figure_series(laws->page);
-    value = figure_on(laws->page, y, value);
-    figure_segment(laws->page, laws->x.log.low, value, laws->x.log.high, value);
-    figure_draw(laws->page, &look);
+    gnuplot_series_begin(laws->page);
+    value = gnuplot_axis_clamp(laws->page, y, value);
+    gnuplot_segment(laws->page, laws->x.log.low, value, laws->x.log.high, value);
+    gnuplot_series_end(laws->page, &look);
 }
 
-static FigureAxis error_axis(FigureRange range) {
-    figure_widen(&range, 1);
-    return figure_axis(range, 1e-4, 1e3, false);
+static GnuplotAxis error_axis(GnuplotRange range) {
+    gnuplot_range_include(&range, 1);
+    return gnuplot_axis(range, 1e-4, 1e3, false);
 }
 
-static FigureAxis axis_of(const LawsFigure *laws, int panel) {
-    FigureRange range = figure_range();
+static GnuplotAxis axis_of(const LawsFigure *laws, int panel) {
+    GnuplotRange range = gnuplot_range();
     bool zero = false;
     for (int i = 0; i < laws->count; i++) {
         if (panel != LAW_SET_ALL && laws->rows[i].laws != panel && laws->rows[i].laws < LAW_SET_ALL) continue;
-        figure_widen(&range, measure(&laws->rows[i], panel));
+        gnuplot_range_include(&range, measure(&laws->rows[i], panel));
         zero |= measure(&laws->rows[i], panel) == 0;
     }
     if (panel == LAW_SET_ALL) return error_axis(range);
-    if (!(range.most > 0)) range = (FigureRange){0.1, 1};
+    if (!(range.most > 0)) range = (GnuplotRange){0.1, 1};
     double lowest = fmax(least_violation, fmin(range.most, most_violation) * share_shown);
-    FigureAxis axis = figure_axis(range, lowest, most_violation, zero);
+    GnuplotAxis axis = gnuplot_axis(range, lowest, most_violation, zero);
     axis.log.powers = true;
     return axis;
 }
 
 static void draw_panel(const LawsFigure *laws, int panel) {
-    FigurePage *page = laws->page;
-    FigureAxis y = axis_of(laws, panel);
+    GnuplotPage *page = laws->page;
+    GnuplotAxis y = axis_of(laws, panel);
     double small = (height - right_bottom - row_gap - top) / 2;
-    FigureBox box = {left, right_bottom, error_width, height - right_bottom - top};
+    GnuplotBox box = {left, right_bottom, error_width, height - right_bottom - top};
     if (panel != LAW_SET_ALL)
-        box = (FigureBox){small_left + (panel % 2) * (small_width + small_gap),
+        box = (GnuplotBox){small_left + (panel % 2) * (small_width + small_gap),
                           right_bottom + (panel < 2) * (small + row_gap), small_width, small};
-    figure_panel(page, box, panel == LAW_SET_ALL ? "Error" : titles[panel]);
-    figure_log(page, 'x', &laws->x, panel == LAW_SET_ALL || panel >= 2 ? "Weight in the loss" : NULL);
-    figure_log(page, 'y', &y,
+    gnuplot_panel_begin(page, box, panel == LAW_SET_ALL ? "Error" : titles[panel]);
+    gnuplot_log_axis(page, 'x', &laws->x, panel == LAW_SET_ALL || panel >= 2 ? "Weight in the loss" : NULL);
+    gnuplot_log_axis(page, 'y', &y,
                panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
                : panel % 2 == 0     ? "Mean violation"
                                     : "");
     draw_dashed(laws, panel, &y);
     draw_lines(laws, panel, &y);
-    figure_panel_end(page);
+    gnuplot_panel_end(page);
 }
 
 static void draw_legend(const LawsFigure *laws) {
-    FigureLook looks[LAW_SET_ALL + 2];
+    GnuplotLook looks[LAW_SET_ALL + 2];
     int count = 0;
     for (int line = 0; line <= LAW_SET_ALL; line++)
         if (is_used(laws, line)) looks[count++] = look_of(line);
-    looks[count++] = figure_dashed("predicting the mean / the engine");
-    figure_legend(laws->page, looks, count, 3, left, legend_top);
+    looks[count++] = gnuplot_look_dashed("predicting the mean / the engine");
+    gnuplot_legend(laws->page, looks, count, 3, left, legend_top);
 }
 
 static void draw(LawsFigure *laws) {
-    FigureRange weights = figure_range();
+    GnuplotRange weights = gnuplot_range();
     for (int i = 0; i < laws->count; i++)
-        if (laws->rows[i].laws <= LAW_SET_ALL) figure_widen(&weights, laws->rows[i].weight);
-    laws->x = figure_axis(weights, 1e-9, 1e9, true);
-    figure_begin(laws->page, FIGURE_PAGE_WIDTH, height);
+        if (laws->rows[i].laws <= LAW_SET_ALL) gnuplot_range_include(&weights, laws->rows[i].weight);
+    laws->x = gnuplot_axis(weights, 1e-9, 1e9, true);
+    gnuplot_page_begin(laws->page, FIGURE_PAGE_WIDTH, height);
     draw_panel(laws, LAW_SET_ALL);
     for (int law = 0; law < LAWS; law++) draw_panel(laws, law);
     draw_legend(laws);
@@ -140,10 +141,10 @@ static void draw(LawsFigure *laws) {
         "Laws of physics in the loss, over their weight (0: without). Left: test error over that of the constant "
         "predictor. Right: mean violation of each law on the test rows, with only that law and with all four; dashed: "
         "the engine's own solution. Thin: one seed each; thick: their median.");
-    figure_end(laws->page);
+    gnuplot_page_end(laws->page);
 }
 
-bool plot_laws(const char *folder, FigurePage *page, Error *error) {
+bool plot_laws(const char *folder, GnuplotPage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_law_layout, error)) return false;
     LawsFigure laws = {.page = page, .rows = table.rows, .count = table.count};

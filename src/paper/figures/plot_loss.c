@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three panels, one per target: the paper does not state which of them its Table 1 is about. */
-#include "chart/figure_axis.h"
+#include "chart/gnuplot_axis.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 #include "paper/study/published.h"
@@ -39,56 +39,56 @@ static int compare_rows(const void *first, const void *second) {
 }
 
 typedef struct Loss {
-    FigurePage *page;
+    GnuplotPage *page;
     const ScoreRow *rows;
     int count;
-    FigureAxis x, y;
+    GnuplotAxis x, y;
     bool used[PAPER_OPTIMIZERS];
 } Loss;
 
 static void choose_axes(Loss *loss) {
-    FigureRange x = figure_range(), y = figure_range();
+    GnuplotRange x = gnuplot_range(), y = gnuplot_range();
     for (int i = 0; i < PUBLISHED_SCORES; i++)
-        figure_widen(&x, published_scores[i].iteration), figure_widen(&y, published_scores[i].test);
+        gnuplot_range_include(&x, published_scores[i].iteration), gnuplot_range_include(&y, published_scores[i].test);
     for (int i = 0; i < loss->count; i++) {
-        figure_widen(&x, loss->rows[i].iteration);
-        figure_widen(&y, loss->rows[i].test);
-        figure_widen(&y, loss->rows[i].constant);
+        gnuplot_range_include(&x, loss->rows[i].iteration);
+        gnuplot_range_include(&y, loss->rows[i].test);
+        gnuplot_range_include(&y, loss->rows[i].constant);
         loss->used[loss->rows[i].optimizer] = true;
     }
-    loss->x = figure_axis(x, 1, 1e6, true);
-    loss->y = figure_axis(y, least_error, most_error, false);
+    loss->x = gnuplot_axis(x, 1, 1e6, true);
+    loss->y = gnuplot_axis(y, least_error, most_error, false);
 }
 
 static void draw_point(Loss *loss, double iteration, double error) {
-    figure_point(loss->page, figure_on(loss->page, &loss->x, iteration), figure_on(loss->page, &loss->y, error));
+    gnuplot_point(loss->page, gnuplot_axis_clamp(loss->page, &loss->x, iteration), gnuplot_axis_clamp(loss->page, &loss->y, error));
 }
 
 static void draw_constant(Loss *loss, int target) {
-    FigureLook look = figure_dashed("");
-    figure_series(loss->page);
+    GnuplotLook look = gnuplot_look_dashed("");
+    gnuplot_series_begin(loss->page);
     for (int i = 0; i < loss->count; i++) {
         const ScoreRow *row = &loss->rows[i];
         if (row->target != target || isnan(row->constant)) continue;
-        double y = figure_on(loss->page, &loss->y, row->constant);
-        figure_segment(loss->page, loss->x.log.low, y, loss->x.log.high, y);
+        double y = gnuplot_axis_clamp(loss->page, &loss->y, row->constant);
+        gnuplot_segment(loss->page, loss->x.log.low, y, loss->x.log.high, y);
         break;
     }
-    figure_draw(loss->page, &look);
+    gnuplot_series_end(loss->page, &look);
 }
 
-static FigureLook paper_look(void) {
-    FigureLook look = figure_look(7, "the paper's Table 1");
+static GnuplotLook paper_look(void) {
+    GnuplotLook look = gnuplot_look(7, "the paper's Table 1");
     look.style.colour = look.style.ink = "black";
     return look;
 }
 
 static void draw_paper(Loss *loss) {
-    FigureLook look = paper_look();
-    figure_series(loss->page);
+    GnuplotLook look = paper_look();
+    gnuplot_series_begin(loss->page);
     for (int i = 0; i < PUBLISHED_SCORES; i++)
         draw_point(loss, published_scores[i].iteration, published_scores[i].test);
-    figure_draw(loss->page, &look);
+    gnuplot_series_end(loss->page, &look);
 }
 
 /* Rows are sorted: those of one network and target follow each other. */
@@ -98,37 +98,37 @@ static void draw_networks(Loss *loss, int target) {
         for (end = i; end < loss->count && strcmp(loss->rows[end].network, row->network) == 0; end++)
             if (loss->rows[end].target != row->target) break;
         if (row->target != target) continue;
-        FigureLook look = figure_look(row->optimizer, "");
-        figure_series(loss->page);
+        GnuplotLook look = gnuplot_look(row->optimizer, "");
+        gnuplot_series_begin(loss->page);
         for (int k = i; k < end; k++) draw_point(loss, loss->rows[k].iteration, loss->rows[k].test);
-        figure_draw(loss->page, &look);
+        gnuplot_series_end(loss->page, &look);
     }
 }
 
 static void draw_panel(Loss *loss, int target) {
-    FigurePage *page = loss->page;
+    GnuplotPage *page = loss->page;
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (PANELS - 1)) / PANELS;
-    figure_panel(page, (FigureBox){left + target * (width + gap), bottom, width, height - top - bottom},
+    gnuplot_panel_begin(page, (GnuplotBox){left + target * (width + gap), bottom, width, height - top - bottom},
                  titles[target]);
-    figure_log(page, 'x', &loss->x, "Training iteration");
-    figure_log(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
+    gnuplot_log_axis(page, 'x', &loss->x, "Training iteration");
+    gnuplot_log_axis(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
     draw_constant(loss, target);
     draw_networks(loss, target);
     draw_paper(loss);
-    figure_panel_end(page);
+    gnuplot_panel_end(page);
 }
 
 static void draw_legend(Loss *loss) {
-    FigureLook looks[LINES];
+    GnuplotLook looks[LINES];
     int count = 0;
     for (int i = 0; i < PAPER_OPTIMIZERS; i++)
-        if (loss->used[i]) looks[count++] = figure_look(i, optimizer_names[i]);
+        if (loss->used[i]) looks[count++] = gnuplot_look(i, optimizer_names[i]);
     looks[count++] = paper_look();
-    looks[count++] = figure_dashed("predicting the mean");
-    figure_legend(loss->page, looks, count, 3, left, legend_top);
+    looks[count++] = gnuplot_look_dashed("predicting the mean");
+    gnuplot_legend(loss->page, looks, count, 3, left, legend_top);
 }
 
-bool plot_loss(const char *folder, FigurePage *page, Error *error) {
+bool plot_loss(const char *folder, GnuplotPage *page, Error *error) {
     Loss loss = {.page = page};
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_score_layout, error)) return false;
@@ -139,7 +139,7 @@ bool plot_loss(const char *folder, FigurePage *page, Error *error) {
         qsort(rows, (size_t)loss.count, sizeof *rows, compare_rows);
         loss.rows = rows;
         choose_axes(&loss);
-        figure_begin(page, FIGURE_PAGE_WIDTH, height);
+        gnuplot_page_begin(page, FIGURE_PAGE_WIDTH, height);
         for (int target = 0; target < PANELS; target++) draw_panel(&loss, target);
         draw_legend(&loss);
         fprintf(
@@ -147,7 +147,7 @@ bool plot_loss(const char *folder, FigurePage *page, Error *error) {
             "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
             "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors are in "
             "each panel, as the paper does not state which target they are for.");
-        figure_end(page);
+        gnuplot_page_end(page);
     }
     csv_table_free(&table);
     return true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three definitions of a right prediction side by side; impacts above, rest below. */
-#include "chart/figure_axis.h"
+#include "chart/gnuplot_axis.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
@@ -27,7 +27,7 @@ static const double paper_least = 60, paper_most = 91;
 static const double stem = 0.017, bar_width = 0.08, bar_height = 0.8;
 
 typedef struct Rates {
-    FigurePage *page;
+    GnuplotPage *page;
     const RateRow *rows;
     int count;
     bool used[NETWORKS];
@@ -48,104 +48,104 @@ static bool is_in(const RateRow *row, int definition, int phase) {
     return row->definition == definition && row->phase == shown_phases[phase];
 }
 
-static FigureLook stem_look(int network) {
-    FigureLook look = figure_look(network, networks[network]);
+static GnuplotLook stem_look(int network) {
+    GnuplotLook look = gnuplot_look(network, networks[network]);
     look.style.dashes = "solid";
     return look;
 }
 
-static FigureLook engine_look(int i) {
+static GnuplotLook engine_look(int i) {
     static const char *const names[SWEEPS] = {"engine, 1 sweep", "engine, 4 sweeps", "engine, 10 sweeps"};
-    FigureLook look = figure_marks(figure_look(12 + i, names[i]));
-    look.style.colour = FIGURE_GREY;
+    GnuplotLook look = gnuplot_look_marks(gnuplot_look(12 + i, names[i]));
+    look.style.colour = GNUPLOT_GREY;
     return look;
 }
 
-static FigureLook constant_look(void) {
-    return (FigureLook){
+static GnuplotLook constant_look(void) {
+    return (GnuplotLook){
         "predicting the mean", {.colour = "black", .ink = "black", .dashes = "solid"}, 0, false, 0.6, false};
 }
 
-static FigureLook band_look(void) {
-    return (FigureLook){
+static GnuplotLook band_look(void) {
+    return (GnuplotLook){
         "the paper's 60 to 91%", {.colour = "#E4E4E4", .ink = "#E4E4E4", .dashes = "solid"}, 0, false, 2.4, false};
 }
 
 static void draw_band(const Rates *rates) {
-    FigureLook look = band_look();
-    figure_series(rates->page);
-    figure_bar(rates->page, -0.5, paper_least, PAPER_SCENES - 0.5, paper_most);
-    figure_draw(rates->page, &look);
+    GnuplotLook look = band_look();
+    gnuplot_series_begin(rates->page);
+    gnuplot_bar(rates->page, -0.5, paper_least, PAPER_SCENES - 0.5, paper_most);
+    gnuplot_series_end(rates->page, &look);
 }
 
 static void draw_network(const Rates *rates, int network, int definition, int phase) {
-    FigureLook stems = stem_look(network), marks = figure_marks(stems);
+    GnuplotLook stems = stem_look(network), marks = gnuplot_look_marks(stems);
     stems.marks = false;
     for (int heads = 0; heads <= 1; heads++) {
-        figure_series(rates->page);
+        gnuplot_series_begin(rates->page);
         for (int i = 0; i < rates->count; i++) {
             const RateRow *row = &rates->rows[i];
             if (!is_in(row, definition, phase) || find_network(row->network) != network) continue;
             if (heads)
-                figure_point(rates->page, place(row), 100 * row->share[RATE_NETWORK]);
+                gnuplot_point(rates->page, place(row), 100 * row->share[RATE_NETWORK]);
             else
-                figure_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->share[RATE_NETWORK]);
+                gnuplot_bar(rates->page, place(row) - stem, 0, place(row) + stem, 100 * row->share[RATE_NETWORK]);
         }
-        figure_draw(rates->page, heads ? &marks : &stems);
+        gnuplot_series_end(rates->page, heads ? &marks : &stems);
     }
 }
 
 static void draw_constants(const Rates *rates, int definition, int phase) {
-    FigureLook look = constant_look();
-    figure_series(rates->page);
+    GnuplotLook look = constant_look();
+    gnuplot_series_begin(rates->page);
     for (int i = 0; i < rates->count; i++) {
         const RateRow *row = &rates->rows[i];
         if (!is_in(row, definition, phase)) continue;
-        figure_bar(rates->page, place(row) - bar_width, 100 * row->share[RATE_CONSTANT] - bar_height,
-                   place(row) + bar_width, 100 * row->share[RATE_CONSTANT] + bar_height);
+        gnuplot_bar(rates->page, place(row) - bar_width, 100 * row->share[RATE_CONSTANT] - bar_height,
+                    place(row) + bar_width, 100 * row->share[RATE_CONSTANT] + bar_height);
     }
-    figure_draw(rates->page, &look);
+    gnuplot_series_end(rates->page, &look);
 }
 
 static void draw_engines(const Rates *rates, int definition, int phase) {
     for (int k = 0; k < SWEEPS; k++) {
-        FigureLook look = engine_look(k);
-        figure_series(rates->page);
+        GnuplotLook look = engine_look(k);
+        gnuplot_series_begin(rates->page);
         for (int i = 0; i < rates->count; i++)
             if (is_in(&rates->rows[i], definition, phase))
-                figure_point(rates->page, place(&rates->rows[i]), 100 * rates->rows[i].share[RATE_ENGINE1 + k]);
-        figure_draw(rates->page, &look);
+                gnuplot_point(rates->page, place(&rates->rows[i]), 100 * rates->rows[i].share[RATE_ENGINE1 + k]);
+        gnuplot_series_end(rates->page, &look);
     }
 }
 
 static void draw_panel(const Rates *rates, int definition, int phase) {
-    FigurePage *page = rates->page;
+    GnuplotPage *page = rates->page;
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (DEFINITIONS - 1)) / DEFINITIONS;
     double up = bottom + (SHOWN_PHASES - 1 - phase) * (panel_height + row_gap);
-    figure_panel(page, (FigureBox){left + definition * (width + gap), up, width, panel_height},
+    gnuplot_panel_begin(page, (GnuplotBox){left + definition * (width + gap), up, width, panel_height},
                  phase == 0 ? titles[definition] : "");
-    figure_linear(page, 'x', -0.5, PAPER_SCENES - 0.5,
+    gnuplot_linear_axis(page, 'x', -0.5, PAPER_SCENES - 0.5,
                   phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
                              : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
                   NULL);
-    figure_linear(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
+    gnuplot_linear_axis(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
                   definition == 0 ? labels[phase] : NULL);
     draw_band(rates);
     for (int i = 0; i < NETWORKS; i++) draw_network(rates, i, definition, phase);
     draw_constants(rates, definition, phase);
     draw_engines(rates, definition, phase);
-    figure_panel_end(page);
+    gnuplot_panel_end(page);
 }
 
 static void draw_legend(const Rates *rates) {
-    FigureLook looks[NETWORKS + SWEEPS + 2];
+    GnuplotLook looks[NETWORKS + SWEEPS + 2];
     int count = 0;
     for (int i = 0; i < NETWORKS; i++)
         if (rates->used[i]) looks[count++] = stem_look(i);
     for (int k = 0; k < SWEEPS; k++) looks[count++] = engine_look(k);
     looks[count++] = constant_look();
     looks[count++] = band_look();
-    figure_legend(rates->page, looks, count, NETWORKS, left, legend_top + FIGURE_LEGEND_ROW);
+    gnuplot_legend(rates->page, looks, count, NETWORKS, left, legend_top + GNUPLOT_LEGEND_ROW);
 }
 
 static void keep_shown(Rates *rates, RateRow *rows, int count) {
@@ -158,13 +158,13 @@ static void keep_shown(Rates *rates, RateRow *rows, int count) {
     }
 }
 
-bool plot_rates(const char *folder, FigurePage *page, Error *error) {
+bool plot_rates(const char *folder, GnuplotPage *page, Error *error) {
     Rates rates = {.page = page};
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_rate_layout, error)) return false;
     keep_shown(&rates, table.rows, table.count);
     if (rates.count > 0) {
-        figure_begin(page, FIGURE_PAGE_WIDTH, bottom + 2 * panel_height + row_gap + top);
+        gnuplot_page_begin(page, FIGURE_PAGE_WIDTH, bottom + 2 * panel_height + row_gap + top);
         for (int phase = 0; phase < SHOWN_PHASES; phase++)
             for (int definition = 0; definition < DEFINITIONS; definition++) draw_panel(&rates, definition, phase);
         draw_legend(&rates);
@@ -172,7 +172,7 @@ bool plot_rates(const char *folder, FigurePage *page, Error *error) {
                 "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each "
                 "network: the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: "
                 "the paper's 60 to 91%%.");
-        figure_end(page);
+        gnuplot_page_end(page);
     }
     csv_table_free(&table);
     return true;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One column wide: the error from scratch beside that after training on smaller scenes. */
-#include "chart/figure_axis.h"
-#include "chart/figure_seeds.h"
+#include "chart/gnuplot_axis.h"
+#include "chart/gnuplot_seeds.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/study/paper_tables.h"
 
@@ -18,15 +18,15 @@ static const double height = 64, left = 13, right = 2, bottom = 17.8, top = 3, l
 static const double most_labels = 8, least_error = 1e-6;
 
 typedef struct Transfer {
-    FigurePage *page;
+    GnuplotPage *page;
     const TransferRow *rows;
     int count;
     SeedPoint *points; /* [count] room */
 } Transfer;
 
-static FigureLook look_of(int start) {
+static GnuplotLook look_of(int start) {
     static const char *const names[STARTS] = {"from scratch", "after single and stack"};
-    return figure_look(start, names[start]);
+    return gnuplot_look(start, names[start]);
 }
 
 /* Points of the errors of a start; STARTS: of the constant predictor. */
@@ -42,7 +42,7 @@ static int gather(const Transfer *transfer, int start) {
 }
 
 /* Ticks at powers of two, as many as fit. */
-static void draw_launches(FigurePage *page, double low, double high) {
+static void draw_launches(GnuplotPage *page, double low, double high) {
     int step = (int)(log2(high / low) / most_labels) + 1;
     const char *separator = "";
     fprintf(page->script, "set logscale x 2\nset xrange [%.8g:%.8g]\nset xtics scale 0.6,0.35 (", low, high);
@@ -52,7 +52,7 @@ static void draw_launches(FigurePage *page, double low, double high) {
         separator = ", ";
     }
     fprintf(page->script, ")\n");
-    figure_axis_label(page, 'x', "Launches of the pyramid");
+    gnuplot_axis_label(page, 'x', "Launches of the pyramid");
 }
 
 static void draw_axes(const Transfer *transfer) {
@@ -65,31 +65,31 @@ static void draw_axes(const Transfer *transfer) {
     }
     double margin = most > 4 * least ? 1.3 : 2;
     draw_launches(transfer->page, least / margin, most * margin);
-    figure_linear(transfer->page, 'y', 0, error * 1.08, NULL, "RMS velocity error (m/s)");
+    gnuplot_linear_axis(transfer->page, 'y', 0, error * 1.08, NULL, "RMS velocity error (m/s)");
 }
 
 static void draw(Transfer *transfer) {
-    FigurePage *page = transfer->page;
-    FigureLook looks[STARTS + 1] = {look_of(0), look_of(1), figure_dashed("predicting the mean")};
-    figure_begin(page, FIGURE_COLUMN_WIDTH, height);
-    figure_panel(page, (FigureBox){left, bottom, page->width - left - right, height - bottom - top}, "");
+    GnuplotPage *page = transfer->page;
+    GnuplotLook looks[STARTS + 1] = {look_of(0), look_of(1), gnuplot_look_dashed("predicting the mean")};
+    gnuplot_page_begin(page, FIGURE_COLUMN_WIDTH, height);
+    gnuplot_panel_begin(page, (GnuplotBox){left, bottom, page->width - left - right, height - bottom - top}, "");
     draw_axes(transfer);
-    figure_seed_median(page, transfer->points, gather(transfer, STARTS), &looks[STARTS]);
+    gnuplot_seed_median(page, transfer->points, gather(transfer, STARTS), &looks[STARTS]);
     for (int start = 0; start < STARTS; start++)
-        figure_seed_lines(page, transfer->points, gather(transfer, start), &looks[start]);
+        gnuplot_seed_lines(page, transfer->points, gather(transfer, start), &looks[start]);
     for (int start = 0; start < STARTS; start++)
-        figure_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
-    figure_panel_end(page);
-    figure_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
+        gnuplot_seed_median(page, transfer->points, gather(transfer, start), &looks[start]);
+    gnuplot_panel_end(page);
+    gnuplot_legend(page, looks, STARTS + 1, 2, legend_left, legend_top);
     fprintf(
         page->caption,
         "Error on held-out launches of the pyramid, over the number of launches that a network was trained on: from "
         "scratch, and after the single box and the stack. Thin: one seed each; thick: their median. Dashed: the "
         "constant predictor.");
-    figure_end(page);
+    gnuplot_page_end(page);
 }
 
-bool plot_transfer(const char *folder, FigurePage *page, Error *error) {
+bool plot_transfer(const char *folder, GnuplotPage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, &paper_transfer_layout, error)) return false;
     Transfer transfer = {page, table.rows, table.count, malloc((size_t)table.count * sizeof(SeedPoint))};

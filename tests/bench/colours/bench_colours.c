@@ -63,7 +63,7 @@ static void solver_begin(Solver *solver, int order, const ImpactProblem *items, 
         if ((size_t)problem->contact_count > contacts) contacts = (size_t)problem->contact_count;
     }
     *solver = (Solver){.order = order};
-    for (int s = 0; s < SWEEPS; s++) solver->factors[s] = momentum_factor_by_hand(s, SWEEPS);
+    for (int s = 0; s < SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, SWEEPS);
     solver->solution.velocities = malloc(bodies * sizeof *solver->solution.velocities);
     solver->solution.impulses = malloc(contacts * sizeof *solver->solution.impulses);
     if (solver->solution.velocities == NULL || solver->solution.impulses == NULL) give_up("out of memory");

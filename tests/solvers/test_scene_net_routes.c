@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which sweeps the method scene-net makes of a step: after its network, and where a step is calm. */
-#include "gaps.h"
+/* The sweeps of scene-net: after its network, and in calm steps. */
+#include "residuals.h"
 #include "known.h"
 
-#include "solvers/impact_gap.h"
+#include "solvers/residual.h"
 
 #include <math.h>
 
@@ -31,12 +31,12 @@ static void calm(RandomProblem *random, float factor) {
     }
 }
 
-/* One run of up to `most` sweeps, looked at every 8, while the gap is `near` or more. Returns how many times 8. */
+/* One run of up to `most` sweeps, looked at every 8, while the residual is `near` or more. Returns how many times 8. */
 static int go_on(Sweeps *sweeps, const ContactProblem *problem, float near, int most) {
     float factors[MORE];
-    for (int s = 0; s < MORE; s++) factors[s] = momentum_factor_by_hand(s, MORE);
+    for (int s = 0; s < MORE; s++) factors[s] = momentum_factor_tuned(s, MORE);
     int times = 0;
-    for (; 8 * times < most && impact_gap_reaches(sweeps, problem->contact_count, near); times++)
+    for (; 8 * times < most && residual_reaches(sweeps, problem->contact_count, near); times++)
         assert_true(times == 0 ? sweeps_run_momentum(sweeps, factors, 8)
                                : sweeps_continue_momentum(sweeps, factors + 8 * times, 8));
     return times;
@@ -47,7 +47,7 @@ static int sweep_from_the_warm_start(Known *known) {
     const SlotNetwork *network = known->network;
     Sweeps sweeps = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
-    assert_true(impact_gap_reaches(&sweeps, problem->contact_count, network->gate));
+    assert_true(residual_reaches(&sweeps, problem->contact_count, network->gate));
     assert_true(network->factors[1] > 0 ? sweeps_run_momentum(&sweeps, network->factors, AFTER)
                                         : sweeps_run(&sweeps, AFTER));
     const int times = go_on(&sweeps, problem, near_aim, MORE);
@@ -65,12 +65,12 @@ static void assert_same_velocities(const Known *known) {
     }
 }
 
-/* 10 sweeps, and 8, 16 or 24 more while the gap is 0.0075 m/s or more. */
+/* 10 sweeps, and 8, 16 or 24 more while the residual is 0.0075 m/s or more. */
 static int sweep_calmly(Known *known) {
     const ContactProblem *problem = &known->random.problem;
     Sweeps sweeps = {0};
     float factors[REST / 2];
-    for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_by_hand(s, REST / 2);
+    for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_tuned(s, REST / 2);
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(&sweeps, factors, REST / 2));
     const int times = go_on(&sweeps, problem, near_aim * 0.15f, CALM_MORE);
@@ -115,7 +115,7 @@ static void a_network_that_says_nothing_changes_nothing(void **state) {
         slot_network_pack(network);
         calm(&known.random, run % 4 == 0 ? 0.01f : run % 4 == 1 ? 0.1f : 1);
         put_warm_impulses_into_the_cone(&known.random);
-        network->gate = 0.7f * (float)gap_of(&known.random.problem);
+        network->gate = 0.7f * (float)residual_of(&known.random.problem);
         const int times = sweep_from_the_warm_start(&known);
         more += times > 0;
         twice += times > 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 
 #include "common/names.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "chart/figure_seeds.h"
+#include "chart/gnuplot_seeds.h"
 
 #include <stdlib.h>
 
@@ -18,23 +18,23 @@ static int by_value(const void *first, const void *second) {
     return order != 0 ? order : compare(a->y, b->y);
 }
 
-void figure_seed_lines(FigurePage *page, SeedPoint *points, int count, const FigureLook *look) {
-    FigureLook thin = figure_thin(*look);
+void gnuplot_seed_lines(GnuplotPage *page, SeedPoint *points, int count, const GnuplotLook *look) {
+    GnuplotLook thin = gnuplot_look_thin(*look);
     qsort(points, (size_t)count, sizeof *points, by_seed);
-    figure_series(page);
+    gnuplot_series_begin(page);
     for (int i = 0; i < count; i++) {
-        if (i > 0 && points[i].seed != points[i - 1].seed) figure_gap(page);
-        figure_point(page, points[i].x, points[i].y);
+        if (i > 0 && points[i].seed != points[i - 1].seed) gnuplot_gap(page);
+        gnuplot_point(page, points[i].x, points[i].y);
     }
-    figure_draw(page, &thin);
+    gnuplot_series_end(page, &thin);
 }
 
-void figure_seed_median(FigurePage *page, SeedPoint *points, int count, const FigureLook *look) {
+void gnuplot_seed_median(GnuplotPage *page, SeedPoint *points, int count, const GnuplotLook *look) {
     qsort(points, (size_t)count, sizeof *points, by_value);
-    figure_series(page);
+    gnuplot_series_begin(page);
     for (int i = 0, end; i < count; i = end) {
         for (end = i; end < count && points[end].x == points[i].x;) end++;
-        figure_point(page, points[i].x, (points[(i + end - 1) / 2].y + points[(i + end) / 2].y) / 2);
+        gnuplot_point(page, points[i].x, (points[(i + end - 1) / 2].y + points[(i + end) / 2].y) / 2);
     }
-    figure_draw(page, look);
+    gnuplot_series_end(page, look);
 }

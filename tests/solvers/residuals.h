@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The gap of solvers/impact_gap.h, written anew. */
+/* The residual of solvers/residual.h, computed independently. */
 #pragma once
 #include "solvers/kernels.h"
 
-/* m/s; from the plain text of the warm start. */
-static inline double gap_of(const ContactProblem *problem) {
+/* m/s; from the scalar warm start. */
+static inline double residual_of(const ContactProblem *problem) {
     ContactSolution warm = make_solution(problem);
     sequential_impulses_begin(problem, &engine_options, &warm);
     double sum = 0;

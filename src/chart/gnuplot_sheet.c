@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "chart/figure_sheet.h"
+#include "chart/gnuplot_sheet.h"
 
 #include "chart/gnuplot.h"
 #include "common/file.h"
@@ -7,7 +7,7 @@
 #include <limits.h>
 #include <stdlib.h>
 
-bool figure_sheet_open(FigureSheet *sheet, const char *what, Error *error) {
+bool gnuplot_sheet_open(GnuplotSheet *sheet, const char *what, Error *error) {
     sheet->page.script = open_memstream(&sheet->script, &sheet->script_size);
     sheet->page.caption = open_memstream(&sheet->caption, &sheet->caption_size);
     sheet->page.links = open_memstream(&sheet->links, &sheet->links_size);
@@ -15,38 +15,38 @@ bool figure_sheet_open(FigureSheet *sheet, const char *what, Error *error) {
     return open || error_memory(error, what);
 }
 
-static void close_file(FigurePage *page, FILE **file) {
+static void close_file(GnuplotPage *page, FILE **file) {
     if (*file == NULL) return;
     if (ferror(*file)) page->no_memory = true;
     if (fclose(*file) != 0) page->no_memory = true;
     *file = NULL;
 }
 
-bool figure_sheet_close(FigureSheet *sheet, const char *what, Error *error) {
+bool gnuplot_sheet_close(GnuplotSheet *sheet, const char *what, Error *error) {
     close_file(&sheet->page, &sheet->page.script);
     close_file(&sheet->page, &sheet->page.caption);
     close_file(&sheet->page, &sheet->page.links);
     return !sheet->page.no_memory || error_memory(error, what);
 }
 
-bool figure_sheet_draw(const FigureSheet *sheet, const char *folder, const char *prefix, const char *name,
-                       Error *error) {
+bool gnuplot_sheet_draw(const GnuplotSheet *sheet, const char *folder, const char *prefix, const char *name,
+                        Error *error) {
     char stem[PATH_MAX], caption[PATH_MAX + 4];
     if (sheet->page.width <= 0) return true;
     if (!file_path(stem, sizeof stem, error, "%s/%s%s", folder, prefix, name)) return false;
     snprintf(caption, sizeof caption, "%s.txt", stem);
     const GnuplotDrawing drawing = {sheet->page.width,   sheet->page.height,
                                     sheet->script,       sheet->script_size,
-                                    .without_pdf = true, .over = sheet->links_size > 0 ? sheet->links : NULL};
+                                    .without_pdf = true, .overlay = sheet->links_size > 0 ? sheet->links : NULL};
     return gnuplot_draw(&drawing, stem, error) && file_write(caption, sheet->caption, sheet->caption_size, error);
 }
 
-void figure_sheet_free(FigureSheet *sheet) {
+void gnuplot_sheet_free(GnuplotSheet *sheet) {
     close_file(&sheet->page, &sheet->page.script);
     close_file(&sheet->page, &sheet->page.caption);
     close_file(&sheet->page, &sheet->page.links);
     free(sheet->script);
     free(sheet->caption);
     free(sheet->links);
-    *sheet = (FigureSheet){0};
+    *sheet = (GnuplotSheet){0};
 }
