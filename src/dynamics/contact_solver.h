@@ -8,11 +8,11 @@
 
 typedef struct ContactSolverKind {
     const char *name, *summary;
-    const SettingSpec *settings; /* the keys that create() reads, ended by a NULL key */
-    /* Returns the solver's own state, NULL with error set where a setting is refused. */
+    const SettingSpec *settings; /* the keys that create() reads; ends with a NULL key */
+    /* Returns the solver's state, NULL with error set if a setting is invalid. */
     void *(*create)(const Settings *settings, Error *error);
-    /* Fills the solution. False with error set only when memory is short or the problem cannot be solved at
-       all. Allocates nothing once it has seen a problem of that size. */
+    /* Fills the solution. False with error set only when memory is short or the problem cannot be solved at all.
+       Allocates nothing once it has solved a problem of that size. */
     bool (*solve)(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
     void (*destroy)(void *state);
 } ContactSolverKind;

@@ -27,7 +27,7 @@ ContactSolution pair_moment_solution(const PairMoment *moment) {
     return (ContactSolution){moment->velocities, moment->impulses, 0, {0}};
 }
 
-/* Adds `sign` times what the contact's own push does to a body. */
+/* Adds `sign` times the change of a body's velocity by the contact's Jacobi impulse. */
 static void add_push(BodyVelocity *velocity, const ContactProblem *problem, const ContactPoint *contact,
                      ContactImpulse push, int body, float sign) {
     const ProblemBody *pushed = &problem->bodies[body];
@@ -41,7 +41,7 @@ static void add_push(BodyVelocity *velocity, const ContactProblem *problem, cons
 
 static float clamp(float value, float low, float high) { return value < low ? low : value > high ? high : value; }
 
-/* The accumulated impulses that would stop the approach and the sliding here, less those so far. */
+/* The impulses of one visit of this contact, less those so far. */
 static ContactImpulse push_alone(const PairMoment *moment, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const ContactImpulse so_far = moment->impulses[i];
@@ -54,7 +54,7 @@ static ContactImpulse push_alone(const PairMoment *moment, const ContactProblem 
     return (ContactImpulse){normal - so_far.normal, tangent - so_far.tangent};
 }
 
-void pair_moment_look(PairMoment *moment, const ContactProblem *problem) {
+void pair_moment_jacobi(PairMoment *moment, const ContactProblem *problem) {
     memset(moment->pushes, 0, (size_t)problem->body_count * sizeof *moment->pushes);
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sweep of the reference, four pairs at a time: operation by operation the text of reference_sweep.c, without fused
-   multiply-add, which would round once where that text rounds twice. */
+/* A sweep of the reference, four pairs at a time: the operations of reference_sweep.c, without fused multiply-add,
+   which rounds once where that file rounds twice. */
 #include "reference/reference_units.h"
 
 #ifdef __x86_64__
@@ -17,7 +17,7 @@ typedef struct Side {
     Lanes x, y, spin;
 } Side;
 
-/* What ReferenceSweep holds, lane by lane. */
+/* ReferenceSweep, lane by lane. */
 typedef struct LaneSweep {
     Lanes squared, along, change;
 } LaneSweep;
@@ -27,7 +27,7 @@ INLINE Lanes subtract(Lanes x, Lanes y) { return _mm256_sub_pd(x, y); }
 INLINE Lanes multiply(Lanes x, Lanes y) { return _mm256_mul_pd(x, y); }
 INLINE Lanes magnitude(Lanes x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
 INLINE Lanes negative(Lanes x) { return _mm256_xor_pd(_mm256_set1_pd(-0.0), x); }
-/* x > y ? x : y and x < y ? x : y, zeros of either sign included. */
+/* x > y ? x : y and x < y ? x : y, also for zeros of either sign. */
 INLINE Lanes larger(Lanes x, Lanes y) { return _mm256_max_pd(x, y); }
 INLINE Lanes smaller(Lanes x, Lanes y) { return _mm256_min_pd(x, y); }
 
@@ -75,7 +75,7 @@ INLINE Lanes go_on(Lanes value, Lanes step, double *direction, Lanes beta) {
     return add(value, carried);
 }
 
-/* The impulses of the pairs, in `sums`, and their changes: reference_sweep.c. */
+/* The impulses of the pairs, in `sums`, and their changes, as in reference_sweep.c. */
 INLINE void solve_pairs(const ReferenceGroup *group, const Lanes *before, const Lanes *wanted, Lanes *sums,
                         Lanes *steps) {
     Lanes limit = _mm256_setzero_pd();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sweep of the reference, pair by pair: for every processor. */
+/* A sweep of the reference, pair by pair: the scalar reference implementation. */
 #include "reference/reference_units.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ static double sum_four(const double *x) { return (x[0] + x[1]) + (x[2] + x[3]); 
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* From a pair's impulses before the visit, and those that each row alone would want by the velocities that the visit
-   meets, the impulses after it and their changes. */
+/* From a pair's impulses before the visit, and those that solve each row alone at the velocities before the visit: the
+   impulses after it and their changes. */
 static void solve_pair(const ReferenceGroup *group, int lane, const double *before, const double *wanted, double *sums,
                        double *steps) {
     double limit = 0;
@@ -78,7 +78,7 @@ static ReferenceSweep visit(Reference *r, int i, int lane, double beta) {
     return (ReferenceSweep){sum_four(squares), sum_four(products), change};
 }
 
-ReferenceSweep reference_sweep_plain(Reference *r, double beta) {
+ReferenceSweep reference_sweep_scalar(Reference *r, double beta) {
     for (int i = 0; i < r->body_count; i++)
         go_on_momentum(&r->momenta[i], &r->momenta_before[i], &r->momenta_direction[i], beta);
     double squared[REFERENCE_LANES] = {0}, along[REFERENCE_LANES] = {0}, change = 0;

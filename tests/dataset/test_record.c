@@ -233,7 +233,7 @@ static void refuse(DatasetOptions options, const char *text) {
 
 static void what_cannot_be_recorded_is_refused(void **state) {
     (void)state;
-    refuse((DatasetOptions){.random = 4}, "4 launches a scene; at least 5");
+    refuse((DatasetOptions){.random = 4}, "4 launches per scene; expected at least 5");
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
     refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
            "the reference has none");

@@ -132,8 +132,8 @@ static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
     fail_step(world, &(FakeSolver){.impulse = 99, .fails = true}, "told to fail");
-    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = INFINITY}, "body 1 left the finite numbers");
-    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "body 1 left the finite numbers");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = INFINITY}, "the state of body 1 is NaN or infinite");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "the state of body 1 is NaN or infinite");
     step(world, &fake);
     assert_near(world_problem(world)->contacts[0].warm_normal, 7, 0);
     world_destroy(world);

@@ -176,7 +176,7 @@ static void the_best_is_the_first(void **state) {
     row_kernels_list(list);
     while (list[count] != NULL) count++;
     assert_in_range(count, 1, ROW_KERNELS_MAX);
-    assert_ptr_equal(list[count - 1], &row_kernels_plain);
+    assert_ptr_equal(list[count - 1], &row_kernels_scalar);
     assert_ptr_equal(row_kernels_best(), list[0]);
 }
 
