@@ -68,7 +68,7 @@ static SceneParameter *find(Parameters *parameters, const char *name) {
 
 static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int value, Error *error) {
     if (parameters->count == SCENE_MAX_PARAMETERS)
-        return yaml_error(tree, key, error, "a scene may have at most %d parameters", SCENE_MAX_PARAMETERS);
+        return yaml_error(tree, key, error, "a scene must have at most %d parameters", SCENE_MAX_PARAMETERS);
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
     if (!copy_name(tree, key, parameter.name, error)) return false;

@@ -108,7 +108,7 @@ static void other_files_are_refused(void **state) {
     write_member(path, ".npy", "text", 4, ZIP_CM_STORE);
     expect_refused(path, "a member that is not a named .npy array");
     write_member(path, "a.npy", "text", 4, ZIP_CM_STORE);
-    expect_refused(path, "'a' is no .npy array");
+    expect_refused(path, "'a' is not a .npy array");
     write_member(path, "a.npy", "\x93NUMPY\3\0      ", 14, ZIP_CM_STORE);
     expect_refused(path, "'a' is in version 3.0 of .npy");
     write_member(path, "a.npy", "\x93NUMPY\1\0\xff\xff     ", 15, ZIP_CM_STORE);

@@ -156,19 +156,19 @@ static void bad_contacts_are_refused(void **state) {
     REFUSE(contacts[1].a, -1, "step 2, contact 1: bodies -1 and 1 are not an existing pair");
     REFUSE(contacts[1].a, 1, "bodies 1 and 1 are not an existing pair");
     REFUSE(contacts[1].b, 3, "bodies 0 and 3 are not an existing pair");
-    REFUSE(contacts[0].point.x, NAN, "step 2, contact 0: not finite");
-    REFUSE(contacts[0].normal.y, INFINITY, "not finite");
-    REFUSE(contacts[0].normal_impulse, NAN, "not finite");
-    REFUSE(contacts[0].tangent_impulse, NAN, "not finite");
-    REFUSE(contact_start[0], 1, "contact_start does not rise");
-    REFUSE(contact_start[1], 1, "contact_start does not rise");
-    REFUSE(contact_start[2], -1, "contact_start does not rise");
-    REFUSE(contact_start[3], 3, "contact_start does not rise");
-    REFUSE(contact_start[3], INT64_MAX, "contact_start does not rise");
+    REFUSE(contacts[0].point.x, NAN, "step 2, contact 0: a number is NaN or infinite");
+    REFUSE(contacts[0].normal.y, INFINITY, "a number is NaN or infinite");
+    REFUSE(contacts[0].normal_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contacts[0].tangent_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contact_start[0], 1, "contact_start must rise");
+    REFUSE(contact_start[1], 1, "contact_start must rise");
+    REFUSE(contact_start[2], -1, "contact_start must rise");
+    REFUSE(contact_start[3], 3, "contact_start must rise");
+    REFUSE(contact_start[3], INT64_MAX, "contact_start must rise");
     /* Rising, but with a contact in step 0. */
     Trajectory *t = example_trajectory();
     t->contact_start[1] = t->contact_start[2] = 1;
-    expect_refused(t, "contact_start does not rise");
+    expect_refused(t, "contact_start must rise");
     trajectory_destroy(t);
 }
 
