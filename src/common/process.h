@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs another program and writes to its standard input, without a shell. */
+/* Runs another program and writes to its standard input, without a shell. Own code: popen() needs a shell, and a
+   program that stops reading would end this one by SIGPIPE (tests/common/test_process.c). */
 #pragma once
 #include "common/error.h"
 

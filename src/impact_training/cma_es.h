@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CMA-ES: minimises a function of some dozen numbers from its values alone. Source: Hansen, "The CMA Evolution
-   Strategy: A Tutorial" (2016), with its default parameters, without negative weights. */
+   Strategy: A Tutorial" (2016), with its default parameters, without negative weights. Own code on GSL's matrices and
+   eigenvalues: of minimisers without derivatives GSL has the Nelder-Mead simplex only. */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"

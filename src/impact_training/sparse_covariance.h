@@ -4,7 +4,9 @@
        C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of A Q - 1 mean^T Q)^T / n
 
    C is never formed. The mean is taken from the products with the directions; taken from the rows it would fill them.
-   The last term is 0 but for rounding; without it a large mean would cost digits. */
+   The last term is 0 but for rounding; without it a large mean would cost digits. Own code: GSL's sparse matrices are
+   in double, multiply a single vector at a time and use one thread; here the bits are the same for any number of
+   threads (tests/impact_training/test_principal.c). */
 #pragma once
 #include "common/error.h"
 

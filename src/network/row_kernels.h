@@ -19,7 +19,7 @@ typedef struct RowKernels {
     /* rows[index[i]] += numbers[i] * vector[width] */
     void (*spread)(float *rows, int width, const int32_t *index, const float *numbers, const float *vector, int count);
     /* numbers[i] = tanh(numbers[i]), as in activation.h */
-    void (*bend)(float *numbers, int count);
+    void (*apply_tanh)(float *numbers, int count);
 } RowKernels;
 
 extern const RowKernels row_kernels_scalar, row_kernels_avx2, row_kernels_avx512;

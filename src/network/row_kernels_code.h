@@ -101,8 +101,8 @@ static void spread(float *rows, int width, const int32_t *index, const float *nu
     }
 }
 
-static void bend(float *numbers, int count) {
+static void apply_tanh(float *numbers, int count) {
     for (int i = 0; i < count; i++) numbers[i] = tanh_float(numbers[i]);
 }
 
-const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, multiply, spread, bend};
+const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, multiply, spread, apply_tanh};

@@ -155,7 +155,7 @@ void slot_network_look(const SlotNetwork *network, const SlotView *view, float *
 static void run_layer(const RowKernels *kernels, const SlotLayer *layer, const float *in, float *out) {
     memcpy(out, layer->biases, (size_t)layer->to * sizeof *out);
     kernels->add(out, &layer->packed, NULL, in, layer->from);
-    kernels->bend(out, layer->to);
+    kernels->apply_tanh(out, layer->to);
 }
 
 void slot_network_predict(const SlotNetwork *network, const float *inputs, const SlotView *view, float *first,

@@ -56,7 +56,7 @@ bool reference_solve(Reference *reference, const ContactProblem *problem, double
     if (!reference_load(reference, problem)) return error_memory(error, "reference");
     reference_start(reference, problem, start);
     iterate(reference, tolerance, problem->contact_count > 0 ? max_visits / problem->contact_count : 0);
-    reference_hand_out(reference, problem);
+    reference_store(reference, problem);
     return true;
 }
 

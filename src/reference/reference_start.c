@@ -54,7 +54,7 @@ static void start_point(Reference *r, const ContactProblem *problem, int i, int 
     }
 }
 
-static void hand_out_point(Reference *r, const ContactProblem *problem, int i, int k) {
+static void store_point(Reference *r, const ContactProblem *problem, int i, int k) {
     for (int lane = 0; lane < REFERENCE_LANES; lane++) {
         int contact = r->groups[i].contacts[k][lane];
         if (contact < 0) continue;
@@ -86,8 +86,8 @@ void reference_start(Reference *r, const ContactProblem *problem, const ContactI
     r->sweeps = 0;
 }
 
-void reference_hand_out(Reference *r, const ContactProblem *problem) {
+void reference_store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < r->group_count; i++)
-        for (int k = 0; k < REFERENCE_POINTS; k++) hand_out_point(r, problem, i, k);
+        for (int k = 0; k < REFERENCE_POINTS; k++) store_point(r, problem, i, k);
     apply_impulses(r, problem);
 }

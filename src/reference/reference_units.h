@@ -61,7 +61,7 @@ void reference_start(Reference *reference, const ContactProblem *problem, const 
 
 /* Computes the result's velocities from the impulses of the workspace, which avoids the rounding errors of many
    sweeps. */
-void reference_hand_out(Reference *reference, const ContactProblem *problem);
+void reference_store(Reference *reference, const ContactProblem *problem);
 
 /* The results of one sweep: |g|^2; -g d, with the direction of the previous sweeps; and the largest change of a
    contact's relative velocity, m/s. The first two are energies, so bodies of different mass have equal weight. Each is

@@ -15,9 +15,9 @@ typedef struct Builder {
     YamlTree *tree;
     size_t node_capacity, text_size, text_capacity;
     int depth, documents;
-    int open[YAML_MAX_DEPTH];             /* open lists and mappings, outermost first */
-    Place place;                          /* of the last event that had one */
-    size_t handed_out, handed_out_before; /* bytes that libfyaml has read, now and at the last event */
+    int open[YAML_MAX_DEPTH]; /* open lists and mappings, outermost first */
+    Place place;              /* of the last event that had one */
+    size_t fed, fed_before;   /* bytes that libfyaml has read, now and at the last event */
     bool gap_too_long;
 } Builder;
 
@@ -89,7 +89,7 @@ static bool refuse_extras(const Builder *builder, const struct fy_token *anchor,
 }
 
 /* `dt:` without a value; `dt: ""` has one. */
-static bool is_left_out(struct fy_event *event) {
+static bool is_missing_value(struct fy_event *event) {
     if (event->type != FYET_SCALAR) return false;
     struct fy_token *value = event->scalar.value;
     return value == NULL || (fy_token_scalar_style(value) == FYSS_PLAIN && fy_token_get_text_length(value) == 0);
@@ -98,8 +98,8 @@ static bool is_left_out(struct fy_event *event) {
 static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     const struct fy_mark *mark = fy_event_start_mark(event);
     /* A missing value is shown at its key; not all versions of libfyaml give it a mark. */
-    if (mark != NULL && !is_left_out(event)) builder->place = (Place){mark->line, mark->column};
-    builder->handed_out_before = builder->handed_out;
+    if (mark != NULL && !is_missing_value(event)) builder->place = (Place){mark->line, mark->column};
+    builder->fed_before = builder->fed;
     switch (event->type) {
     case FYET_DOCUMENT_START:
         return ++builder->documents == 1 || fail(builder, error, "a scene file must hold one document only");
@@ -153,15 +153,15 @@ static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_di
 
 /* Feeds the text in pieces, which limits how far libfyaml reads ahead of its events: a million brackets would cost it a
    second and half a gigabyte before the first event. */
-static ssize_t hand_out(void *user, void *buffer, size_t size) {
+static ssize_t feed(void *user, void *buffer, size_t size) {
     Builder *builder = user;
     const Source *source = &builder->tree->source;
-    builder->gap_too_long = builder->handed_out - builder->handed_out_before > YAML_MAX_GAP;
+    builder->gap_too_long = builder->fed - builder->fed_before > YAML_MAX_GAP;
     if (builder->gap_too_long) return 0;
-    size_t left = source->size - builder->handed_out;
+    size_t left = source->size - builder->fed;
     if (size > left) size = left;
-    memcpy(buffer, source->text + builder->handed_out, size);
-    builder->handed_out += size;
+    memcpy(buffer, source->text + builder->fed, size);
+    builder->fed += size;
     return (ssize_t)size;
 }
 
@@ -171,7 +171,7 @@ static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
     struct fy_parser *parser = fy_parser_create(&settings);
     if (parser == NULL) return error_memory(error, tree->source.path);
     Builder builder = {.tree = tree};
-    bool done = fy_parser_set_input_callback(parser, &builder, hand_out) == 0
+    bool done = fy_parser_set_input_callback(parser, &builder, feed) == 0
                     ? take_events(&builder, parser, diagnosis, error)
                     : error_memory(error, tree->source.path);
     fy_parser_destroy(parser);

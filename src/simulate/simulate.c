@@ -26,13 +26,13 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
 }
 
 /* The bomb comes, and a body goes, after the step that the scene says. */
-static bool come_and_go(const Scene *scene, World *world, int frame, Error *error) {
+static bool add_and_remove_bodies(const Scene *scene, World *world, int frame, Error *error) {
     if (frame == scene->last_body_until) world_remove_last_body(world);
     return !scene->bomb.present || scene->bomb.frame != frame || scene_add_bomb(scene, world, error);
 }
 
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    if (stepper_step(stepper, world, step, error)) return come_and_go(step->scene, world, step->frame, error);
+    if (stepper_step(stepper, world, step, error)) return add_and_remove_bodies(step->scene, world, step->frame, error);
     size_t length = strlen(error->message);
     snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", step->frame,
              step->scene->name);
