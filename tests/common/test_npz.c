@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files
-   are refused (test_npz_hostile.c: files made for harm). test_numpy.c asks NumPy itself. */
+/* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files are refused
+   (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
 #include "testing.h"
 
 #include "common/file.h"

@@ -73,7 +73,7 @@ static void files_keep_every_bit(void **state) {
     dataset_destroy(read);
 }
 
-/* Rows are as wide as their view and their target say. */
+/* View and target define the width of rows. */
 static void widths_are_those_of_view_and_target(void **state) {
     (void)state;
     Error error = {0};

@@ -95,7 +95,7 @@ static void net_is_pair_where_there_is_one_pair(void **state) {
     dataset_destroy(net);
 }
 
-/* At rest the engine has converged: the reference says the same; at impacts it does not. */
+/* At rest the engine has converged and equals the reference; at impacts it does not. */
 static void the_reference_labels_what_the_engine_met(void **state) {
     (void)state;
     Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});

@@ -192,7 +192,7 @@ static void damaged_files_are_read_or_refused_with_their_place(void **state) {
         *(scene == NULL ? &refused : &read) += 1;
         scene_destroy(scene);
     }
-    /* Damage within a comment is none; most of the rest is found out. */
+    /* Damage within a comment has no effect; most other damage is detected. */
     assert_true(read > 100);
     assert_true(refused > 1000);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scene file may not say, and the message that each mistake gets. */
+/* Invalid scene files, and the message for each mistake. */
 #include "scene_text.h"
 
 #include "scene/source.h"

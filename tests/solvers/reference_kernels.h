@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference by the vectors of this processor, beside its plain text. */
+/* The reference's vectorised sweeps against the scalar ones. */
 #pragma once
 #include "testing.h"
 
 #include "reference/reference.h"
 
-/* Used again from call to call, so that what a problem before left behind is met too. plain.scalar is to be set. */
+/* Reused from call to call, to test data that earlier problems leave. plain.scalar must be set. */
 typedef struct ReferenceKernels {
     Reference lanes, plain;
 } ReferenceKernels;
