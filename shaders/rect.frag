@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One colour: most of a picture is background, and cheap.
+// A plain colour: most of a picture is background, painted with the cheapest shader.
 #version 330 core
 
 flat in vec4 fill;

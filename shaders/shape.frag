@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rounded box by its signed distance. All lengths are integers in 1/65536 pixel, and so is all arithmetic: no
-// rounding, no fused multiply-add, no library function can change a bit of the result on any machine.
+// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel, and all arithmetic is on integers: no
+// rounding, fused multiply-add or library function can change a bit of the result on any machine.
 #version 330 core
 
-flat in ivec2 corner;      // the pixel from which the positions below count
-flat in ivec4 shape_axis;  // direction of the local x axis (x, y; y down); local position of the corner's centre
-flat in ivec4 shape_form;  // half width, half height, corner radius, width of the outline
-flat in ivec4 shape_paint; // fill, outline, band along the local top, as 0xRRGGBB; thickness of the band;
-                           // bit 24 of the fill: the outline alone
+flat in ivec2 corner;        // the pixel that the positions below are relative to
+flat in ivec4 shape_axis;    // direction of the local x axis (x, y; y down); local position of that pixel's centre
+flat in ivec4 shape_extents; // half width, half height, corner radius, outline width
+flat in ivec4 shape_paint;   // fill, outline, band colour, as 0xRRGGBB; band thickness along the local top;
+                             // bit 24 of the fill: outline only
 
 out vec4 color;
 
 const int PIXEL = 65536;
-const int LEVELS = 51; // of coverage; 255 / 51 is whole, so that alpha is exact in eight bits
+const int LEVELS = 51; // of coverage; 255 / 51 is an integer, so alpha is exact in eight bits
 
-// Length of v, of which no component is above `limit`.
+// Length of v, whose components are at most `limit`.
 int length_of(ivec2 v, int limit) {
-    int shift = limit < 64 * PIXEL ? 8 : 12; // so that the squares fit
+    int shift = limit < 64 * PIXEL ? 8 : 12; // so that the squares do not overflow
     ivec2 w = v >> shift;
     int square = w.x * w.x + w.y * w.y;
     int root = int(sqrt(float(square)));
-    // Whatever sqrt rounds to, these two lines make it the whole root.
+    // Correct the root to the exact integer root, however sqrt rounds.
     if (root * root > square) root--;
     if ((root + 1) * (root + 1) <= square) root++;
     return root << shift;
 }
 
-// Distance to the outline of the box, negative inside.
+// Signed distance to the outline of the box, negative inside.
 int box_distance(ivec2 at, ivec2 half_size, int radius) {
     ivec2 q = abs(at) - half_size + radius;
     if (q.x <= 0 || q.y <= 0) return max(q.x, q.y) - radius;
@@ -34,7 +34,7 @@ int box_distance(ivec2 at, ivec2 half_size, int radius) {
     return length_of(q, radius + 2 * PIXEL) - radius;
 }
 
-// How much of a pixel lies inside, of LEVELS, where its centre is at this distance.
+// Coverage of a pixel, 0 to LEVELS, from the distance of its centre.
 int coverage(int distance) {
     int inside = clamp(PIXEL / 2 - distance, 0, PIXEL);
     return (inside * LEVELS + PIXEL / 2) >> 16;
@@ -50,9 +50,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner;
     ivec2 axis = shape_axis.xy;
     ivec2 at = shape_axis.zw + ivec2(axis.x * pixel.x + axis.y * pixel.y, axis.y * pixel.x - axis.x * pixel.y);
-    int distance = box_distance(at, shape_form.xy, shape_form.z);
-    ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_form.y - shape_paint.w - at.y));
-    int inside = coverage(distance + shape_form.w);
+    int distance = box_distance(at, shape_extents.xy, shape_extents.z);
+    ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_extents.y - shape_paint.w - at.y));
+    int inside = coverage(distance + shape_extents.w);
     ivec3 painted = blend(unpack(shape_paint.y), inner, inside);
     int level = coverage(distance) - (shape_paint.x >> 24) * inside;
     color = vec4(vec3(painted), float(level * (255 / LEVELS))) / 255.0;

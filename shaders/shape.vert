@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A quad over the whole pixels that a shape can touch. Everything else is handed on flat, in integers: what is
-// interpolated differs in its last bits from one CPU to the next.
+// A quad over the whole pixels that a shape can touch. All other attributes are passed flat, as integers: interpolated
+// values differ in their last bits between CPUs.
 #version 330 core
 
 uniform ivec2 size; // of the picture, in pixels
 
 layout(location = 0) in ivec4 bounds;
 layout(location = 1) in ivec4 axis;
-layout(location = 2) in ivec4 form;
+layout(location = 2) in ivec4 extents;
 layout(location = 3) in ivec4 paint;
 
 flat out ivec2 corner;
 flat out ivec4 shape_axis;
-flat out ivec4 shape_form;
+flat out ivec4 shape_extents;
 flat out ivec4 shape_paint;
 
 void main() {
@@ -20,6 +20,6 @@ void main() {
     gl_Position = vec4(2.0 * vec2(at) / vec2(size) - 1.0, 0.0, 1.0);
     corner = bounds.xy;
     shape_axis = axis;
-    shape_form = form;
+    shape_extents = extents;
     shape_paint = paint;
 }

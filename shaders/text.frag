@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A glyph at whole pixels: one texel a pixel, never filtered.
+// A glyph at whole pixels: one texel per pixel, unfiltered.
 #version 330 core
 
-uniform usamplerBuffer bitmaps; // all glyphs one after the other, row by row; alpha 0..255
+uniform usamplerBuffer bitmaps; // all glyphs, one after another, row by row; alpha 0..255
 
 flat in ivec4 glyph_box;
 flat in ivec2 glyph_look;

@@ -5,7 +5,7 @@
 uniform ivec2 size; // of the picture, in pixels
 
 layout(location = 0) in ivec4 box;   // left, top, width, height, in pixels
-layout(location = 1) in ivec2 glyph; // where its bitmap begins, its colour as 0xRRGGBB
+layout(location = 1) in ivec2 glyph; // first texel of the bitmap, colour as 0xRRGGBB
 
 flat out ivec4 glyph_box;
 flat out ivec2 glyph_look;

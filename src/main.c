@@ -13,7 +13,7 @@ static void print_help(FILE *file) {
     for (const Command *command = commands; command->name != NULL; command++)
         fprintf(file, "  %-10s %s\n", command->name, command->summary);
     fputs("\nEach command has its own help and an example: twinbox COMMAND --help\n"
-          "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 the system failed.\n\n"
+          "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
     }
     const Command *command = find_command(argv[1]);
     if (command == NULL) {
-        fprintf(stderr, "twinbox: error: no command '%s'; twinbox --help lists them\n", argv[1]);
+        fprintf(stderr, "twinbox: error: no command '%s'; twinbox --help lists all\n", argv[1]);
         return ERROR_INPUT;
     }
     char name[64];
@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
     argv[1] = name;
     Error error = {0};
     int status = command->run(argc - 1, argv + 1, &error);
-    /* Output that did not reach its place is a failure of the system, not success. */
+    /* Output that could not be written is a failure of the system, not success. */
     if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
         error_system(&error, "standard output", "cannot write");
     if (error.kind != ERROR_NONE) {

@@ -2,19 +2,17 @@
 #include "chart/chart_data.h"
 
 #include "common/parse.h"
-#include "study/front.h"
+#include "simulate/method.h"
+#include "study/pareto.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double lost_drift = 0.5; /* m: half a box */
+static const double lost_drift = 0.5; /* m, half a box */
 
-char chart_plain_letter(char letter) {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
-    return strchr(plain, letter) != NULL ? letter : '?';
-}
+char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;
@@ -24,7 +22,7 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     strcpy(out + length, cut ? "..." : "");
 }
 
-/* Distributes "k=20,warm=off" to numbers "k=20" and words ", warm=off". */
+/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off". */
 static void split_setting(const char *setting, char *numbers, char *words) {
     numbers[0] = words[0] = '\0';
     while (*setting != '\0') {
@@ -59,7 +57,7 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         name_row(&table->rows[i], key, label);
         if (find_line(chart, key) < chart->line_count) continue;
         if (chart->line_count == CHART_MAX_LINES)
-            return error_input(error, path, "more than %d methods: too many for a chart", CHART_MAX_LINES);
+            return error_input(error, path, "a chart can show at most %d methods", CHART_MAX_LINES);
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
@@ -67,13 +65,13 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
     return true;
 }
 
-/* A row's panel, or -1. */
+/* The panel of a row, or -1. */
 static int panel_of(const ChartRow *row, const char *scene) {
     if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
     return row->phase == PHASE_IMPACT ? 0 : 1;
 }
 
-/* True where the boxes were elsewhere before the bomb came. */
+/* Whether the boxes had drifted before the bomb came. */
 static bool is_lost(const ChartTable *table, const ChartRow *row) {
     for (int i = 0; i < table->count; i++) {
         const ChartRow *rest = &table->rows[i];
@@ -95,14 +93,19 @@ static void widen(Chart *chart, const ChartMark *mark) {
     chart->error_most = fmax(chart->error_most, mark->error);
 }
 
+static bool is_shipped(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    return method != NULL && method->shipped != NULL && strcmp(method->shipped, row->setting) == 0;
+}
+
 static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
     ChartMark mark = {.us = row->us_solver, .us_q1 = row->us_solver_q1, .us_q3 = row->us_solver_q3};
     char key[CHART_KEY_SIZE];
     name_row(row, key, mark.label);
     mark.line = find_line(chart, key);
-    mark.error = fmax(row->error_mean, FRONT_RESOLUTION);
+    mark.error = fmax(row->error_mean, PARETO_RESOLUTION);
     mark.on_front = on_front;
-    mark.shipped = strcmp(row->method, "engine") == 0 && strcmp(row->setting, "k=10") == 0;
+    mark.shipped = is_shipped(row);
     ChartLine *line = &chart->lines[mark.line];
     chart->launches = row->launches > chart->launches ? row->launches : chart->launches;
     if (!can_be_drawn(row)) {
@@ -110,7 +113,7 @@ static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel
         return;
     }
     line->marks[panel]++;
-    chart->floored += row->error_mean < FRONT_RESOLUTION;
+    chart->floored += row->error_mean < PARETO_RESOLUTION;
     widen(chart, &mark);
     chart->panels[panel].marks[chart->panels[panel].count++] = mark;
 }
@@ -122,7 +125,7 @@ static int compare_marks(const void *left, const void *right) {
     return (a->error > b->error) - (a->error < b->error);
 }
 
-/* The rows of a scene in closed loop that count: those of a scene that a method lost are counted only. */
+/* Adds a scene's closed-loop rows. Rows of a method that lost the scene are only counted. */
 static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
     int count = 0;
     for (int i = 0; i < table->count; i++) {
@@ -134,7 +137,7 @@ static void add_rows(Chart *chart, const ChartTable *table, const char *scene, C
         else
             rows[count++] = table->rows[i];
     }
-    front_mark(rows, count, on_front);
+    pareto_mark(rows, count, on_front);
     for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
 }
 

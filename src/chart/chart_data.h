@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a chart shows of a scene: marks joined to lines, in two panels. */
+/* The data of a chart of one scene: marks joined to lines, in two panels. */
 #pragma once
 #include "study/chart_csv.h"
 
@@ -12,47 +12,47 @@ enum {
     CHART_KEY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE
 };
 
-/* A method, with those of its settings that are words ("engine, warm=off"). */
+/* A method with its non-numeric settings ("engine, warm=off"). */
 typedef struct ChartLine {
-    char key[CHART_KEY_SIZE];          /* whole, as the table has it: what tells lines apart */
-    char name[CHART_TEXT_SIZE];        /* plain, and cut to fit */
-    int marks[CHART_PANELS], left_out; /* how many */
-    int lost;                          /* marks of a scene that was another before the bomb came (chart_gather) */
+    char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
+    char name[CHART_TEXT_SIZE];        /* safe for gnuplot, truncated */
+    int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
+    int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
 } ChartLine;
 
 typedef struct ChartMark {
     int line;
-    double us, us_q1, us_q3; /* time in the solver per step: median and quartiles, microseconds */
-    double error;            /* mean, m/s */
+    double us, us_q1, us_q3; /* solver time per step: median and quartiles, microseconds */
+    double error;            /* mean velocity error, m/s */
     bool on_front;
-    bool shipped;                /* the engine as shipped: 10 iterations */
-    char label[CHART_TEXT_SIZE]; /* those of the settings that are numbers ("k=20"); or empty */
+    bool shipped;                /* the setting that the method's description calls shipped */
+    char label[CHART_TEXT_SIZE]; /* numeric settings ("k=20"); or empty */
 } ChartMark;
 
 typedef struct ChartPanel {
     int count;
-    ChartMark *marks; /* [count], by line, then by time */
+    ChartMark *marks; /* [count], sorted by line, then by time */
 } ChartPanel;
 
 typedef struct Chart {
     int line_count, launches;
-    int floored; /* marks drawn at FRONT_RESOLUTION */
+    int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
-    ChartPanel panels[CHART_PANELS];                   /* impact frames, frames after; closed loop */
-    double us_least, us_most, error_least, error_most; /* of the marks */
+    ChartPanel panels[CHART_PANELS];                   /* impact frames and the frames after; closed loop */
+    double us_least, us_most, error_least, error_most; /* ranges of all marks */
 } Chart;
 
-/* Gathers a scene's rows. Lines keep the order, and so the looks, in which the whole table first names them. Texts
-   are plain: letters, digits, spaces and -_.,:=+/()*[], anything else is '?', so no text can be more than a text to
-   gnuplot. Left out and counted: rows without a time or an error, and those of a method which let the
-   boxes drift half a metre before the bomb came: what it was scored on then is another scene. Errors that the
-   reference cannot tell from 0 are drawn at FRONT_RESOLUTION (study/front.h). False with error set where nothing is
-   left, or more than CHART_MAX_LINES lines. */
+/* Gathers a scene's rows. Lines keep their order in the table, and thereby their style. Texts are restricted to
+   letters, digits, spaces and -_.,:=+/()*[]; other characters become '?', so that gnuplot cannot interpret them.
+   Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
+   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h), the
+   reference's own error, are drawn there. False with error set if nothing remains, or for more than CHART_MAX_LINES
+   lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
-/* The letter, or '?' in place of one that is not plain. */
+/* The letter, or '?' if it is not safe for gnuplot. */
 char chart_plain_letter(char letter);
 
-/* Copies a text, made plain and cut to fit. */
+/* Copies a text, made safe for gnuplot and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a chart's parts lie on the page, in mm from its lower left corner. */
+/* The layout of a chart, in mm from the page's lower left corner. */
 #pragma once
 #include "chart/chart_data.h"
 #include "sketch/log_axis.h"
@@ -18,13 +18,13 @@ typedef struct ChartLayout {
     LogAxis x[CHART_PANELS], y;
     int columns, rows;   /* of the legend */
     double column_width; /* mm */
-    double legend_top;   /* mm from the page's bottom, to the middle of the first row */
+    double legend_top;   /* mm, middle of the first row */
     int left_out, lost;
     FILE *script;
 } ChartLayout;
 
-/* Columns and rows of the legend, and how many rows of the table could not be drawn. */
+/* Computes columns and rows of the legend, and counts the table's rows that are not drawn. */
 void chart_lay_out_legend(ChartLayout *layout);
 
-/* Writes the plot of the legend and the note below it, over the whole page. */
-void chart_put_legend(const ChartLayout *layout);
+/* Writes the legend and the note below it, as a plot over the whole page. */
+void chart_write_legend(const ChartLayout *layout);

@@ -4,7 +4,7 @@
 #include "chart/chart_labels.h"
 #include "chart/chart_script.h"
 #include "chart/chart_style.h"
-#include "study/front.h"
+#include "study/pareto.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -28,13 +28,13 @@ void chart_lay_out_legend(ChartLayout *layout) {
     layout->columns = (int)(room / (13 + 1.35 * (double)longest));
     if (layout->columns < 1) layout->columns = 1;
     layout->rows = (entries + layout->columns - 1) / layout->columns;
-    /* As few columns as so many rows need: the legend then fills its width. */
+    /* The fewest columns for this number of rows: the legend fills its width. */
     layout->columns = (entries + layout->rows - 1) / layout->rows;
     layout->column_width = room / layout->columns;
 }
 
-/* A sample of 8 mm from `left`, and the text behind it. */
-static void put_entry(const ChartLayout *layout, int entry, const char *text) {
+/* A sample of 8 mm from `left`, then the text. */
+static void write_entry(const ChartLayout *layout, int entry, const char *text) {
     double left = LEFT_MARGIN + (entry % layout->columns) * layout->column_width;
     double y = layout->legend_top - LEGEND_ROW * (entry / layout->columns);
     FILE *script = layout->script;
@@ -43,8 +43,8 @@ static void put_entry(const ChartLayout *layout, int entry, const char *text) {
     fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + 4, y);
 }
 
-/* Names the lines that have a count, `offset` into them, as far as there is room. */
-static void put_counts(const ChartLayout *layout, const char *why, size_t offset) {
+/* Lists the lines with a nonzero counter (at `offset` in ChartLine), as far as there is room. */
+static void write_counts(const ChartLayout *layout, const char *why, size_t offset) {
     enum { ROOM = 52 };
     const char *separator = why;
     size_t length = 0;
@@ -64,18 +64,18 @@ static void put_counts(const ChartLayout *layout, const char *why, size_t offset
     if (separator != why) fprintf(layout->script, ". ");
 }
 
-static void put_foot(const ChartLayout *layout) {
+static void write_note(const ChartLayout *layout) {
     if (layout->left_out + layout->lost + layout->chart->floored == 0) return;
     fprintf(layout->script, "set label '");
-    put_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
-    put_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
+    write_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
+    write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
     if (layout->chart->floored > 0)
-        fprintf(layout->script, "Below %g m/s the reference is no better.", FRONT_RESOLUTION);
+        fprintf(layout->script, "Below %g m/s the reference is no better.", PARETO_RESOLUTION);
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 
-/* A third plot over the whole page, its axes in mm. */
-void chart_put_legend(const ChartLayout *layout) {
+/* A third plot over the whole page, with axes in mm. */
+void chart_write_legend(const ChartLayout *layout) {
     FILE *script = layout->script;
     int entry = 0, styles[CHART_MAX_LINES];
     fprintf(script, "unset label\nunset arrow\nunset logscale\nunset xlabel\nunset ylabel\nunset tics\nunset border\n");
@@ -84,16 +84,16 @@ void chart_put_legend(const ChartLayout *layout) {
     for (int i = 0; i < layout->chart->line_count; i++) {
         if (!is_drawn(&layout->chart->lines[i])) continue;
         styles[entry] = i;
-        put_entry(layout, entry++, layout->chart->lines[i].name);
+        write_entry(layout, entry++, layout->chart->lines[i].name);
     }
-    put_entry(layout, entry, front_name);
-    put_foot(layout);
-    fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, FRONT_COLOUR);
+    write_entry(layout, entry, front_name);
+    write_note(layout);
+    fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, PARETO_COLOUR);
     for (int i = 0; i < entry; i++) {
         ChartStyle style = chart_style(styles[i]);
         if (layout->chart->lines[styles[i]].marks[0] > 1 || layout->chart->lines[styles[i]].marks[1] > 1)
-            chart_put_line(script, 'l', i, &style);
-        chart_put_marks(script, 'm', i, &style);
+            chart_write_line(script, 'l', i, &style);
+        chart_write_marks(script, 'm', i, &style);
     }
     fprintf(script, "\n");
 }

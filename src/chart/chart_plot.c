@@ -25,10 +25,10 @@ static bool draw(const Chart *chart, const char *scene, const char *stem, Error 
     return drawn;
 }
 
-/* A table from elsewhere must not write outside the folder. */
+/* A table from another source must not make us write outside the folder. */
 static bool check_name(const char *csv_path, const char *scene, Error *error) {
     return (scene[0] != '\0' && strchr(scene, '/') == NULL) ||
-           error_input(error, csv_path, "'%s' cannot be the name of a scene", scene);
+           error_input(error, csv_path, "'%s' is not a valid scene name", scene);
 }
 
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A chart in gnuplot's words. */
+/* Writes charts as gnuplot scripts. */
 #pragma once
 #include "chart/chart_data.h"
 #include "sketch/page_width.h"
@@ -10,5 +10,5 @@
 #define CHART_WIDTH FIGURE_PAGE_WIDTH
 #define CHART_HEIGHT 85.0 /* mm */
 
-/* Writes the script that draws the chart; title is plain text (chart_plain). False when memory is short. */
+/* Writes the script of a chart; `title` must be safe (chart_plain). False if out of memory. */
 bool chart_script(const Chart *chart, const char *title, FILE *script);

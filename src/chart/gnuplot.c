@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gnuplot works in a folder of its own below /tmp, so that no path of the user's gets into a script. */
+/* gnuplot works in a temporary folder, so that the script contains no path of the user. */
 #include "chart/gnuplot.h"
 
 #include "common/file.h"
@@ -20,13 +20,12 @@ static const char *const endings[FORMATS] = {"png", "svg", "pdf"};
 
 static const double dots_per_mm = 300 / 25.4, pixels_per_mm = 96 / 25.4;
 
-/* The PDF is the last. */
+/* The PDF is last. */
 static int format_count(const GnuplotDrawing *drawing) { return drawing->without_pdf ? FORMATS - 1 : FORMATS; }
 
-/* A point of type, a line width of 1 and a point size of 1 are as large in one format as in another: pngcairo and
-   pdfcairo take type for 96 and SVG for 72 dots an inch, and each has a scale of its own for the rest (gnuplot 5.4,
-   measured on its output). */
-static void put_terminal(FILE *script, int format, const GnuplotDrawing *drawing) {
+/* Scale factors that make text, lines and points equally large in all formats: text is scaled for 96 dots per inch
+   by pngcairo and pdfcairo and for 72 by svg; line widths and point sizes differ as well (measured on gnuplot 5.4). */
+static void write_terminal(FILE *script, int format, const GnuplotDrawing *drawing) {
     double w = drawing->width, h = drawing->height;
     switch (format) {
     case 0:
@@ -47,14 +46,14 @@ static void put_terminal(FILE *script, int format, const GnuplotDrawing *drawing
     }
 }
 
-/* What a script may have left set would reach the next format. */
+/* Each format starts with `reset`: settings of the script would persist. */
 static char *whole_script(const GnuplotDrawing *drawing, const char *folder, size_t *size) {
     char *text = NULL;
     FILE *script = open_memstream(&text, size);
     if (script == NULL) return NULL;
     for (int format = 0; format < format_count(drawing); format++) {
         fprintf(script, "reset\nset encoding utf8\n");
-        put_terminal(script, format, drawing);
+        write_terminal(script, format, drawing);
         fprintf(script, "set output '%s/plot.%s'\n", folder, endings[format]);
         fwrite(drawing->script, 1, drawing->script_size, script);
         fprintf(script, "unset output\n");
@@ -65,17 +64,16 @@ static char *whole_script(const GnuplotDrawing *drawing, const char *folder, siz
     return NULL;
 }
 
-static bool is_there(Error *error) {
+static bool is_installed(Error *error) {
     Process process;
     char text[256];
     if (process_start(&process, (const char *const[]){"gnuplot", "--version", NULL}, &(Error){0}))
         return process_finish(&process, text, sizeof text, error);
-    return error_system(error, "gnuplot",
-                        "cannot be run; it draws the charts: is its package installed (gnuplot-nox)?");
+    return error_system(error, "gnuplot", "cannot be run; install the Debian package gnuplot-nox to draw charts");
 }
 
-/* fontconfig finds the font by a configuration of our own, which names this folder alone. */
-static bool put_font(const char *folder, Error *error) {
+/* A private fontconfig configuration, so that only the embedded font is found. */
+static bool install_font(const char *folder, Error *error) {
     char path[PATH_SIZE], configuration[256];
     snprintf(path, sizeof path, "%s/Inter.otf", folder);
     if (!file_write_soon(path, font_inter_regular_subset_otf, font_inter_regular_subset_otf_size, error)) return false;
@@ -89,7 +87,7 @@ static bool run(const char *folder, const char *script, size_t size, Error *erro
     char fonts[PATH_SIZE + 16], text[1024];
     snprintf(fonts, sizeof fonts, "FONTCONFIG_FILE=%s/fonts.conf", folder);
     Process process;
-    /* -d: whatever the user's own .gnuplot says is not for us. */
+    /* -d: ignore the user's .gnuplot */
     const char *const argv[] = {"env", fonts, "gnuplot", "-d", "-", NULL};
     if (!process_start(&process, argv, error)) return false;
     process.name = "gnuplot";
@@ -97,14 +95,15 @@ static bool run(const char *folder, const char *script, size_t size, Error *erro
     return process_finish(&process, text, sizeof text, error);
 }
 
-/* Puts what goes over the rest before the end of an SVG, which it takes the place of. */
-static bool put_over(char **svg, size_t *size, const char *over) {
+/* Inserts the overlay before the SVG's end tag. */
+static bool insert_overlay(char **svg, size_t *size, const char *overlay) {
     static const char end[] = "</svg>";
     char *last = NULL, *text = NULL;
     for (char *at = *svg; (at = strstr(at, end)) != NULL; at++) last = at;
     FILE *out = last != NULL ? open_memstream(&text, size) : NULL;
     if (out == NULL) return false;
-    fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, over, last);
+    fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, overlay,
+            last);
     bool whole = !ferror(out);
     if (fclose(out) != 0 || !whole) {
         free(text);
@@ -123,9 +122,10 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, const cha
     for (int i = 0; done && i < formats; i++) {
         snprintf(path, sizeof path, "%s/plot.%s", folder, endings[i]);
         data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
-        done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "has drawn no %s", endings[i]);
+        done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]);
     }
-    if (done && drawing->over != NULL && !put_over(&data[1], &size[1], drawing->over)) done = error_memory(error, stem);
+    if (done && drawing->overlay != NULL && !insert_overlay(&data[1], &size[1], drawing->overlay))
+        done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {
         done =
             file_path(path, sizeof path, error, "%s.%s", stem, endings[i]) && file_write(path, data[i], size[i], error);
@@ -138,7 +138,8 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     size_t size;
     char *script = whole_script(drawing, folder, &size);
     if (script == NULL) return error_memory(error, stem);
-    bool done = put_font(folder, error) && run(folder, script, size, error) && collect(folder, drawing, stem, error);
+    bool done =
+        install_font(folder, error) && run(folder, script, size, error) && collect(folder, drawing, stem, error);
     free(script);
     return done;
 }
@@ -149,9 +150,9 @@ static int remove_entry(const char *path, const struct stat *status, int flag, s
 }
 
 bool gnuplot_draw(const GnuplotDrawing *drawing, const char *stem, Error *error) {
-    if (!is_there(error)) return false;
+    if (!is_installed(error)) return false;
     char folder[FOLDER_SIZE] = "/tmp/twinbox-plot-XXXXXX";
-    if (mkdtemp(folder) == NULL) return error_system(error, folder, "cannot make the directory: %s", strerror(errno));
+    if (mkdtemp(folder) == NULL) return error_system(error, folder, "cannot create the directory: %s", strerror(errno));
     bool done = draw_in(folder, drawing, stem, error);
     nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     return done;

@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawings by gnuplot, another program. */
+/* Runs the program gnuplot. */
 #pragma once
 #include "common/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* One drawing to be printed. */
+/* One drawing. */
 typedef struct GnuplotDrawing {
     double width, height; /* mm */
-    const char *script;   /* what to plot, without terminal and output; trusted: gnuplot can run programs */
+    const char *script;   /* plot commands without terminal and output; trusted, as gnuplot can run programs */
     size_t script_size;
     bool without_pdf;
-    const char *over; /* elements that go over those of the SVG, in mm from its upper left corner; NULL: none */
+    const char *overlay; /* SVG elements on top of the drawing, in mm from its upper left corner; NULL: none */
 } GnuplotDrawing;
 
-/* Draws stem.png (300 dots an inch), stem.svg and, unless told not to, stem.pdf, with 8 pt Inter as the default font
-   (the SVG: whatever sans-serif the reader has). The files are put in place whole, and only when all are drawn. The
-   same script gives the same PNG and SVG with the same gnuplot and cairo; a PDF holds its date. ERROR_SYSTEM where
-   gnuplot is missing or fails. */
+/* Draws stem.png (300 dots per inch), stem.svg and, unless without_pdf, stem.pdf. The default font is 8 pt Inter
+   (SVG: the viewer's sans-serif). The files appear when all are complete. PNG and SVG depend only on the script and
+   the versions of gnuplot and cairo; a PDF contains its date. ERROR_SYSTEM if gnuplot is missing or fails. */
 bool gnuplot_draw(const GnuplotDrawing *drawing, const char *stem, Error *error);

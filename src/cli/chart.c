@@ -12,12 +12,14 @@
 enum { METHODS = 256, LAUNCHES, QUICK };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where chart.csv and the charts go", 0},
+    {"output", 'o', "DIR", 0, "Folder for chart.csv and the charts", 0},
     {"methods", METHODS, "LIST", 0,
-     "Methods, separated by commas; a name alone stands for all settings that the study has for it (default: all)", 0},
+     "Methods, separated by commas; a name alone stands for all settings that the chart has for it (default: all; "
+     "methods left out are reported)",
+     0},
     {"launches", LAUNCHES, "FILE.csv", 0,
-     "Launches to score on, with any of the columns x,rotation,spin,mass,frame (default: x between the places of the "
-     "training grid)",
+     "Launches to score on, a table with any of the columns x,rotation,spin,mass,frame (default: x halfway between the "
+     "places of the training grid)",
      0},
     {"quick", QUICK, NULL, 0, "Fewer launches, settings and repetitions: under a minute", 0},
     {0}};
@@ -51,15 +53,15 @@ static const struct argp argp = {
     option_table,
     parse,
     "SCENE...",
-    "Chart speed against accuracy: every method in every scene, on launches that nothing was trained on, as chart.csv "
-    "and one chart a scene (PNG, SVG, PDF). A run that is cut off goes on where it stopped.\v"
+    "Measure speed against accuracy: every method in every scene, on held-out launches. Writes chart.csv and a chart "
+    "for each scene (PNG, SVG, PDF). An interrupted run continues where it stopped.\v"
     "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
     "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick",
     NULL,
     NULL,
     NULL};
 
-/* One bar after the other. */
+/* Progress bars, one after the other. */
 typedef struct Stages {
     ProgressBar bar;
     char what[192];
@@ -81,18 +83,23 @@ static const Progress *begin_stage(void *context, const char *what) {
 }
 
 static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
-    char csv[STUDY_PATH_SIZE];
-    if (!file_path(csv, sizeof csv, error, "%s/chart.csv", options->folder)) return false;
+    char csv[CSV_PATH_SIZE];
+    if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < options->scene_count; i++) {
         if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
         printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
                scenes[i].contenders, scenes[i].launches, options->folder, scenes[i].name);
-        /* Nothing was solved where an earlier run had it all. */
+        const char *without = scenes[i].without_network.text;
+        if (without[0] != '\0') printf("    left out, as no network is named for them: %s\n", without);
+        /* Nothing was solved if an earlier run had scored everything. */
         if (scenes[i].solves == 0) continue;
         printf(
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
+    const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
+    if (options->methods == NULL && left_out.text[0] != '\0')
+        printf("left out unless named in --methods: %s\n", left_out.text);
     return true;
 }
 

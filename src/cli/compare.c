@@ -15,15 +15,14 @@ enum { FUZZY = 256, MASK, MAX_PIXELS, REPORT, REPORT_SIZE };
 
 static const struct argp_option option_table[] = {
     {"fuzzy", FUZZY, "MAX,SHARE", 0,
-     "Pass frames in which no channel differs by more than MAX (0 to 255), and at most this SHARE (0 to 1) of the "
-     "pixels",
+     "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
+     "pixels differs",
      0},
     {"mask", MASK, "FILE.png|X,Y,W,H", 0,
-     "Pixels that do not count: where the picture is neither black nor transparent, or a rectangle (may be repeated)",
-     0},
-    {"max-pixels", MAX_PIXELS, "N", 0, "Refuse larger pictures before they are unpacked (default: 100000000)", 0},
-    {"report", REPORT, "DIR", 0, "Write report.html, junit.xml and results.json there", 0},
-    {"report-size", REPORT_SIZE, "MB", 0, "What the pictures in the report may take (default: 64)", 0},
+     "Pixels to ignore: where this picture is neither black nor transparent, or a rectangle (may be repeated)", 0},
+    {"max-pixels", MAX_PIXELS, "N", 0, "Refuse larger pictures before decoding them (default: 100000000)", 0},
+    {"report", REPORT, "DIR", 0, "Folder for report.html, junit.xml and results.json", 0},
+    {"report-size", REPORT_SIZE, "MB", 0, "Most that the pictures in the report may take (default: 64)", 0},
     {0}};
 
 typedef struct Options {
@@ -43,11 +42,11 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case REPORT: options->report = value; break;
     case REPORT_SIZE: options->report_size = value; break;
     case ARGP_KEY_ARG:
-        if (options->count == 2) argp_error(state, "two things are compared, not more ('%s')", value);
+        if (options->count == 2) argp_error(state, "only two inputs can be compared (third: '%s')", value);
         options->paths[options->count++] = value;
         break;
     case ARGP_KEY_END:
-        if (options->count < 2) argp_error(state, "two things to compare are needed");
+        if (options->count < 2) argp_error(state, "two inputs are needed");
         break;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -58,13 +57,13 @@ static const struct argp argp = {
     option_table,
     parse,
     "EXPECTED ACTUAL",
-    "Tell where two trajectories (.npz) or two PNG sequences (folders, or single files) part. Trajectories are equal "
-    "when "
-    "every bit of every pose and velocity is; pictures when every decoded pixel is, frame by frame of the same stem "
-    "and "
-    "number. Whether the renderer changed or the physics is told by the trajectories that lie in both folders, and by "
-    "the states that our pictures name. Exit status 0: equal, 1: different, 2: what cannot be compared.\v"
-    "Example: twinbox compare golden/frames out/golden/frames --report out/report",
+    "Compare two trajectories (.npz) or two PNG sequences (folders or single files). Trajectories are equal if every "
+    "bit of every pose and velocity is equal; pictures are equal if every decoded pixel is. Frames are matched by the "
+    "stem and the number of their names. Trajectories that are in both folders, and the states named in twinbox's own "
+    "pictures, tell whether the physics or the renderer changed. Exit status 0: equal, 1: different, 2: not "
+    "comparable.\v"
+    "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"
+    "         twinbox compare expected.npz actual.npz",
     NULL,
     NULL,
     NULL};
@@ -83,7 +82,7 @@ static void print_trajectory_difference(const Trajectory *a, const TrajectoryDif
     if (difference->frame < 0) return;
     printf("first difference: frame %d, body %d: %g m apart, %g rad, %g m/s\n", difference->frame, difference->body,
            difference->distance, difference->angle, difference->speed);
-    printf("farthest: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
+    printf("largest distance: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
            difference->max_distance);
 }
 
@@ -189,10 +188,10 @@ int command_compare(int argc, char **argv, Error *error) {
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     bool first = is_trajectory(options.paths[0]), second = is_trajectory(options.paths[1]);
     if (first != second)
-        error_input(error, options.paths[first ? 1 : 0], "is no trajectory (.npz), but %s is",
+        error_input(error, options.paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is",
                     options.paths[first ? 0 : 1]);
     else if (first && (options.report != NULL || options.fuzzy != NULL || options.mask_count > 0))
-        error_input(error, options.paths[0], "--report, --fuzzy and --mask are for pictures");
+        error_input(error, options.paths[0], "--report, --fuzzy and --mask apply to pictures only");
     if (error->kind != ERROR_NONE) return STATUS_DIFFERENT;
     return first ? compare_trajectories(options.paths, error) : compare_sequences(&options, error);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a comparison of pictures found, on standard output. */
+/* Prints the result of a comparison of pictures. */
 #pragma once
 #include "report/regression.h"
 

@@ -11,26 +11,26 @@
 enum { BOMB_X = 256, RANDOM, INPUTS, TARGET, LABELS, CONTEXT, SEED };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DATA.npz", 0, "Where the dataset goes", 0},
+    {"output", 'o', "DATA.npz", 0, "Dataset to write", 0},
     {"bomb-x", BOMB_X, "A:B:STEP", 0,
-     "Launches of each scene swept over x, m (default: -5:5:0.05, the paper's; none with --random alone)", 0},
+     "Launches of each scene: x from A to B in steps of STEP, m (default: -5:5:0.05, as in the paper; none with only "
+     "--random)",
+     0},
     {"random", RANDOM, "N", 0,
-     "Further launches of each scene, drawn: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)", 0},
+     "Further, random launches of each scene: x within +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)", 0},
     {"inputs", INPUTS, "NAME", 0,
-     "How a pair is seen: relative (default); raw; raw-unturned, without rotations; contact, in the frame of its "
-     "contact "
-     "after the warm start; neighbours, the same with what the contacts around would do next",
+     "Inputs of a pair: relative (default); raw; raw-unturned, without rotations; contact, in the frame of its contact "
+     "after the warm start; neighbours, the same and the next impulses of neighbouring contacts",
      0},
     {"target", TARGET, "NAME", 0,
-     "What is recorded: pair (default), what a pair's own impulses changed in the step; net, what all impulses changed "
-     "of its bodies; impulse, what one visit of the pair in one sweep changed; points, with contact or neighbours, how "
-     "far "
-     "the impulses at its points went beyond the warm start",
+     "What to record: pair (default), velocity changes by the pair's own impulses in the step; net, by all impulses on "
+     "its bodies; impulse, by one visit of the pair in one sweep; points (with contact or neighbours), impulses at its "
+     "points beyond the warm start",
      0},
-    {"labels", LABELS, "NAME", 0, "By whom: engine (default), or the converged reference", 0},
-    {"context", CONTEXT, NULL, 0, "Record masses, normals, friction and arms too: what train --laws needs", 0},
+    {"labels", LABELS, "NAME", 0, "Solver that is recorded: engine (default) or the converged reference", 0},
+    {"context", CONTEXT, NULL, 0, "Also record masses, normals, friction and lever arms, which train --laws needs", 0},
     {"seed", SEED, "N", 0,
-     "Draws the launches of --random, and the fifth of all that is held out for testing (default: 1)", 0},
+     "Seed of the launches of --random and of the fifth of all launches that is held out (default: 1)", 0},
     {0}};
 
 typedef struct Options {
@@ -68,8 +68,8 @@ static const struct argp argp = {
     option_table,
     parse,
     "SCENE...",
-    "Record, for every touching pair in every step of every launch, positions, velocities, angular velocities and "
-    "rotations before the solve, and the change that it made.\v"
+    "Record a dataset to train on: for every touching pair in every step of every launch, positions, rotations and "
+    "velocities before the solve, and what the solve changed.\v"
     "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
     "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse",
     NULL,

@@ -11,14 +11,15 @@ enum { TOLERANCE = 256, SCENE, CSV };
 
 static const struct argp_option option_table[] = {
     {"tolerance", TOLERANCE, "M", 0,
-     "Runs part where a body's centre is more than M metres from that of the other run (default: 0, any bit of pose or "
+     "Runs diverge where the centres of a body are more than M metres apart (default: 0, any bit of pose or "
      "velocity)",
      0},
     {"scene", SCENE, "FILE", 0,
-     "The scene of the first run: to run it once more by that run's method, with one body shifted by 1e-6 m (the bomb; "
-     "where it has not hit yet, the first that parts; without a bomb the last), and set the growth against this",
+     "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
+     "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
+     "last body",
      0},
-    {"csv", CSV, "FILE", 0, "Write frame,time,distance,shifted_distance: the largest of all bodies, s and m", 0},
+    {"csv", CSV, "FILE", 0, "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m", 0},
     {0}};
 
 typedef struct Options {
@@ -34,7 +35,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case SCENE: options->scene = value; break;
     case CSV: options->csv = value; break;
     case ARGP_KEY_ARG:
-        if (options->count == 2) argp_error(state, "two runs part, not more ('%s')", value);
+        if (options->count == 2) argp_error(state, "only two runs can be compared (third: '%s')", value);
         options->paths[options->count++] = value;
         break;
     case ARGP_KEY_END:
@@ -49,22 +50,22 @@ static const struct argp argp = {
     option_table,
     parse,
     "RUN RUN",
-    "Tell why two runs part: the first frame, body and contact, whether the solver did it or what came before, and how "
-    "fast their distance grows from there. Of runs of unequal length the frames are compared that both have. Exit "
-    "status 0: they do not part beyond the tolerance, 1: they do.\v"
+    "Find why two runs diverge: the first frame, body and contact that differ, whether the solver or an earlier step "
+    "is the cause, and how fast the distance grows from there. Of runs of different lengths, the frames of the "
+    "shorter one are compared. Exit status 0: the runs do not diverge beyond the tolerance, 1: they do.\v"
     "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv",
     NULL,
     NULL,
     NULL};
 
-/* Two runs and what was found of them. */
+/* Two runs and the result. */
 typedef struct Divergence {
     Trajectory *runs[2];
     float tolerance;
     TrajectoryParting parting;
     double *distance; /* [frames of both] */
     Growth growth, shifted;
-    Chaos chaos; /* distance NULL: no scene was given */
+    Chaos chaos; /* distance NULL: no scene given */
 } Divergence;
 
 static bool read_runs(Divergence *d, const Options *options, Error *error) {
@@ -84,11 +85,11 @@ static bool measure(Divergence *d, Error *error) {
     return growth_measure(d->distance, 0, frames, (double)d->runs[0]->dt, &d->growth, error);
 }
 
-/* The window is that of the two runs. */
+/* Over the same frames as the growth of the two runs. */
 static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
     ProgressBar bar;
     int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
-    if (body < 0) return error_input(error, scene, "nothing in it can move, and so nothing be shifted");
+    if (body < 0) return error_input(error, scene, "has no body that can move, so none can be shifted");
     progress_bar_begin(&bar, d->runs[0]->scene);
     bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, &bar.progress, error);
     progress_bar_end(&bar);
@@ -116,7 +117,7 @@ static void print(const Divergence *d, const Options *options) {
     if (d->chaos.distance != NULL)
         diverge_print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
     else
-        printf("by itself: --scene FILE is needed to tell how a shift of 1e-6 m grows\n");
+        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
 }
 
 int command_diverge(int argc, char **argv, Error *error) {

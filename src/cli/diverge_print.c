@@ -11,11 +11,11 @@ void diverge_print_runs(const char *const paths[2], const Trajectory *a, const T
         printf("run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, runs[i]->scene, runs[i]->method,
                runs[i]->frames, runs[i]->bodies, paths[i]);
     if (a->scene_hash != b->scene_hash)
-        printf("other scenes: the hashes are %016" PRIx64 " and %016" PRIx64
-               "; what differs in them may be the cause, too\n",
-               a->scene_hash, b->scene_hash);
+        printf("different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n", a->scene_hash,
+               b->scene_hash);
     if (a->frames != b->frames)
-        printf("other lengths: compared are the first %d frames\n", a->frames < b->frames ? a->frames : b->frames);
+        printf("different lengths: only the first %d frames are compared\n",
+               a->frames < b->frames ? a->frames : b->frames);
 }
 
 static void print_body(const Trajectory *a, const PartedBody *parted) {
@@ -24,12 +24,12 @@ static void print_body(const Trajectory *a, const PartedBody *parted) {
     if (by->in_a && by->in_b)
         printf("%.3g m apart, %.3g rad, %.3g m/s, %.3g rad/s", by->distance, by->angle, by->speed, by->spin);
     else
-        printf("only run %d has it", by->in_a ? 1 : 2);
+        printf("only in run %d", by->in_a ? 1 : 2);
     if (parted->bodies > 1) printf("; %d bodies in all", parted->bodies);
     printf("\n");
 }
 
-/* The first that one run only has, or the one whose impulses differ most. */
+/* The first contact that only one run has, or the one whose impulses differ most. */
 static void print_contact(const ContactDifference *contacts) {
     bool only = contacts->only_a + contacts->only_b > 0;
     if (!only && contacts->changed == 0) return;
@@ -40,13 +40,13 @@ static void print_contact(const ContactDifference *contacts) {
         printf("only in run %d\n  normal %.9g N s, tangent %.9g N s\n", contacts->only_first_a ? 1 : 2,
                (double)a->normal_impulse, (double)a->tangent_impulse);
     else
-        printf("other impulses\n  normal %.9g and %.9g N s, tangent %.9g and %.9g N s\n", (double)a->normal_impulse,
+        printf("different impulses\n  normal %.9g and %.9g N s, tangent %.9g and %.9g N s\n", (double)a->normal_impulse,
                (double)b->normal_impulse, (double)a->tangent_impulse, (double)b->tangent_impulse);
 }
 
 static void print_hidden(const TrajectoryParting *parting) {
     const ContactDifference *contacts = &parting->contacts;
-    printf("contacts of step %d differ: %d in impulse, %d in place, %d in one run only\n", parting->step,
+    printf("contacts of step %d differ: %d in impulse, %d in position, %d in one run only\n", parting->step,
            contacts->changed, contacts->moved, contacts->only_a + contacts->only_b);
 }
 
@@ -56,28 +56,26 @@ static void print_cause(const TrajectoryParting *parting) {
     int frame = parting->first.frame;
     switch (parting->cause) {
     case PART_NONE: return;
-    case PART_START: printf("cause: the start, before any step\n"); return;
+    case PART_START: printf("cause: the initial state\n"); return;
     case PART_LAUNCH: printf("cause: the launch\n  all states of frame %d are equal\n", frame - 1); return;
     case PART_HIDDEN:
-        printf("cause: what no state shows, the warm start\n  all states of frame %d are equal, but ", frame - 1);
+        printf("cause: the warm start, which no state shows\n  all states of frame %d are equal, but ", frame - 1);
         print_hidden(parting);
         break;
     case PART_CONTACTS:
-        printf(
-            "cause: collision detection\n  all states of frame %d are equal, but of the contacts of step %d %d are in "
-            "run 1 only, %d in run 2, and %d in another place\n",
-            frame - 1, frame, contacts->only_a, contacts->only_b, contacts->moved);
+        printf("cause: collision detection\n  all states of frame %d are equal, but of the contacts of step %d, %d are "
+               "only in run 1, %d only in run 2, and %d have another position\n",
+               frame - 1, frame, contacts->only_a, contacts->only_b, contacts->moved);
         break;
     case PART_SOLVER:
-        printf(
-            "cause: the solver\n  all states of frame %d are equal, and so are the %d contacts of step %d, but not the "
-            "impulses of %d\n",
-            frame - 1, contacts->count_a, frame, contacts->changed);
+        printf("cause: the solver\n  all states of frame %d are equal, and so are the %d contacts of step %d, but the "
+               "impulses of %d differ\n",
+               frame - 1, contacts->count_a, frame, contacts->changed);
         break;
     case PART_ELSEWHERE:
         printf(
             "cause: not the contacts\n  all states of frame %d are equal, and so are the %d contacts of step %d with "
-            "their impulses: the bodies\n  were moved in another way (a step of another kind, or another scene)\n",
+            "their impulses:\n  the bodies were moved differently (another kind of step, or another scene)\n",
             frame - 1, contacts->count_a, frame);
         return;
     }
@@ -86,16 +84,17 @@ static void print_cause(const TrajectoryParting *parting) {
 
 static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
     if (parting->beyond.frame < 0) {
-        printf("centres within %g m: %d frames of %d bodies\n", tolerance, parting->frames, a->bodies);
+        printf("centres at most %g m apart: %d frames of %d bodies\n", tolerance, parting->frames, a->bodies);
         return;
     }
-    printf("centres beyond %g m: ", tolerance);
+    printf("centres more than %g m apart: ", tolerance);
     print_body(a, &parting->beyond);
     if (parting->beyond.frame == 0) return;
     if (parting->beyond.frame == parting->first.frame)
         printf("  all states before that step are equal: the cause above\n");
     else
-        printf("  the states before that step differ since frame %d: the past did it\n", parting->first.frame);
+        printf("  the states before that step differ since frame %d: an earlier step is the cause\n",
+               parting->first.frame);
     print_contact(&parting->beyond_contacts);
 }
 
@@ -103,13 +102,13 @@ void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting
     if (parting->first.frame < 0) {
         printf("equal: %d frames of %d bodies, every bit of pose and velocity\n", parting->frames, a->bodies);
         if (parting->step >= 0) {
-            printf("no state shows it, but ");
+            printf("the states do not show it, but ");
             print_hidden(parting);
             print_contact(&parting->contacts);
         }
         return;
     }
-    printf("first bit: ");
+    printf("first difference: ");
     print_body(a, &parting->first);
     print_cause(parting);
     if (tolerance > 0) print_beyond(a, parting, tolerance);
@@ -117,13 +116,13 @@ void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting
 
 static void print_rate(const Growth *growth, double dt) {
     if (growth->count == 0) {
-        printf("%s\n", growth->saturated ? "past 0.1 m at once" : "there are no frames with a distance");
+        printf("%s\n", growth->saturated ? "above 0.1 m at once" : "there are no frames with a distance");
         return;
     }
     printf("from %.2g m in frame %d to %.2g m in frame %d%s", growth->from, growth->first, growth->to, growth->last,
-           growth->saturated ? ", then past 0.1 m" : "");
+           growth->saturated ? ", then above 0.1 m" : "");
     if (growth->count < GROWTH_MIN_FRAMES) {
-        printf("\n  too few frames for a rate: %d, not %d\n", growth->count, GROWTH_MIN_FRAMES);
+        printf("\n  too few frames for a rate: %d of at least %d\n", growth->count, GROWTH_MIN_FRAMES);
         return;
     }
     double doubling = growth_doubling(growth, dt);
@@ -142,16 +141,17 @@ void diverge_print_growth(const Growth *growth, double dt) {
 
 void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
     static const char *const verdicts[] = {
-        [GROWTH_UNKNOWN] = "none: one of the two has no rate",
-        [GROWTH_NEITHER] = "neither doubles even once in these frames",
-        [GROWTH_SAME] = "grows like chaos, as a tiny shift does by itself",
-        [GROWTH_FASTER] = "faster than a tiny shift by itself",
-        [GROWTH_SLOWER] = "slower than a tiny shift by itself",
+        [GROWTH_UNKNOWN] = "unknown, one of the two has no rate",
+        [GROWTH_NEITHER] = "neither distance doubles in these frames",
+        [GROWTH_SAME] = "chaos: grows as fast as a tiny shift",
+        [GROWTH_FASTER] = "grows faster than a tiny shift",
+        [GROWTH_SLOWER] = "grows more slowly than a tiny shift",
     };
-    if (chaos->other >= 0)
-        printf("note: the scene run again is not run 1 from frame %d on: another network, or another program\n",
-               chaos->other);
-    printf("by itself (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
+    if (chaos->rerun_differs >= 0)
+        printf(
+            "note: running the scene again gives another run 1 from frame %d on: another network, or another program\n",
+            chaos->rerun_differs);
+    printf("shifted run (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What twinbox diverge found, in words, to the standard output. */
+/* Prints the result of twinbox diverge. */
 #pragma once
 #include "study/chaos.h"
 #include "trajectory/growth.h"
@@ -7,7 +7,7 @@
 
 void diverge_print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b);
 
-/* The first bit, its cause, and what passes the tolerance; a for the bomb's number and dt. */
+/* The first difference, its cause, and the first one beyond the tolerance. `a` tells the bomb's index and dt. */
 void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance);
 
 void diverge_print_growth(const Growth *growth, double dt);

@@ -4,6 +4,7 @@
 #include "cli/progress_bar.h"
 #include "render/sink.h"
 #include "render/video.h"
+#include "simulate/method.h"
 
 #include <limits.h>
 #include <signal.h>
@@ -20,7 +21,8 @@ RenderOptions draw_panels_defaults(const char *directory) {
                            .jobs = cores < 1                 ? 1
                                    : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
                                                              : (int)cores,
-                           .directory = directory};
+                           .directory = directory,
+                           .describe = method_describe};
 }
 
 int panels_last_frame(const Panels *panels) {
@@ -62,7 +64,7 @@ static bool draw(const Panels *panels, const RenderOptions *render, RenderResult
     return ok;
 }
 
-/* A reader that has gone is an error to tell, not the end of the program. */
+/* A closed pipe is reported as an error; without this, SIGPIPE would end the program. */
 static bool write_output(VideoOptions *video, const Progress *progress, Error *error) {
     video->path = "standard output";
     void (*before)(int) = signal(SIGPIPE, SIG_IGN);
@@ -86,7 +88,7 @@ static bool encode(const char *path, const Panels *panels, const RenderOptions *
     return ok;
 }
 
-/* Frames of an earlier, longer run would pass for this one's. */
+/* Frames of an earlier, longer run would look like frames of this one. */
 static void remove_stale_frames(const RenderOptions *render, int last) {
     char path[PATH_MAX];
     for (int frame = last + 1; sink_frame_path(path, sizeof path, render->directory, frame); frame++)

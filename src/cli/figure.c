@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "figure/run_figures.h"
+#include "figure/figure.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,16 +10,15 @@
 enum { AT = 256, MOMENTS, WIDTH, DPI, FONT_SIZE, TRANSPARENT, SCENE, BODIES };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "Where it goes: .png, .svg or .pdf", 0},
-    {"at", AT, "T,T,...", 0, "Moments to show, in seconds from the run's start, rising", 0},
-    {"moments", MOMENTS, "N", 0, "So many moments instead, as far from each other, from the first to the last", 0},
-    {"scene", SCENE, "FILE", 0, "divergence: the first run's scene, for the band of chaos", 0},
-    {"bodies", BODIES, "A,B", 0, "narrow-phase: the pair (default: of the bomb's first touch, or the first to touch)",
-     0},
-    {"width", WIDTH, "column|page|MM", 0, "85 mm, 174 mm (default) or 40 to 400", 1},
-    {"dpi", DPI, "N", 0, "Dots an inch, of scenes and of PNG (default: 300; 50 to 1200)", 1},
-    {"font-size", FONT_SIZE, "PT", 0, "Points of type (default: 8; 5 to 14)", 1},
-    {"transparent", TRANSPARENT, NULL, 0, "No white page below", 1},
+    {"output", 'o', "FILE", 0, "Figure to write: .png, .svg or .pdf", 0},
+    {"at", AT, "T,T,...", 0, "Moments to show, seconds from the start of the run, rising", 0},
+    {"moments", MOMENTS, "N", 0, "Number of moments instead, evenly spaced from the first to the last", 0},
+    {"scene", SCENE, "FILE", 0, "divergence: scene of the first run, for the band of chaos", 0},
+    {"bodies", BODIES, "A,B", 0, "narrow-phase: the pair (default: the bomb's first, else the first to touch)", 0},
+    {"width", WIDTH, "column|page|MM", 0, "Width: 85 mm, 174 mm (default) or 40 to 400 mm", 1},
+    {"dpi", DPI, "N", 0, "Dots per inch of scenes and of PNG (default: 300; 50 to 1200)", 1},
+    {"font-size", FONT_SIZE, "PT", 0, "Font size in points (default: 8; 5 to 14)", 1},
+    {"transparent", TRANSPARENT, NULL, 0, "Transparent background instead of white", 1},
     {0}};
 
 typedef struct Options {
@@ -60,13 +59,13 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 
 enum { HELP_SIZE = 4096 };
 
-/* All kinds, and how each is asked for. */
+/* All kinds, each with an example. */
 static void write_help(char help[HELP_SIZE]) {
     const FigureKind *const *kinds = figure_kinds();
     int used =
         snprintf(help, HELP_SIZE,
-                 "Draw a figure for a paper from stored runs (.npz): scenes as pixels, words and lines as vectors in "
-                 "SVG and PDF. The same runs give the same bytes.\n");
+                 "Draw a figure for a paper from stored runs (.npz). In SVG and PDF, scenes are pixels, text and lines "
+                 "are vectors. The same runs give the same bytes.\n");
     for (int i = 0; kinds[i] != NULL; i++)
         used += snprintf(help + used, (size_t)(HELP_SIZE - used), "\n  %-13s %s", kinds[i]->name, kinds[i]->summary);
     for (int i = 0; kinds[i] != NULL; i++)
@@ -81,7 +80,7 @@ static bool read_width(const char *text, double *width, Error *error) {
         *width = FIGURE_COLUMN_WIDTH;
     else if (strcmp(text, "page") == 0)
         *width = FIGURE_PAGE_WIDTH;
-    else if (option_float("--width", text, (float)FIGURE_LEAST_WIDTH, (float)FIGURE_LARGEST_WIDTH, &number, error))
+    else if (option_float("--width", text, (float)FIGURE_WIDTH_MIN, (float)FIGURE_WIDTH_MAX, &number, error))
         *width = (double)number;
     else
         return false;
@@ -104,8 +103,8 @@ static bool read_times(const char *text, FigureSpec *spec, Error *error) {
             return error_input(error, "--at", "more than %d moments", FIGURE_MOMENTS_MAX);
         double *time = &spec->times[spec->time_count];
         if (!parse_leading_double(rest, time, &rest) || (*rest != '\0' && *rest != ','))
-            return error_input(error, "--at", "'%s' is no list of seconds, as 0.5,0.75,1 is", text);
-        if (spec->time_count > 0 && *time <= time[-1]) return error_input(error, "--at", "'%s' does not rise", text);
+            return error_input(error, "--at", "'%s' is not a list of seconds such as 0.5,0.75,1", text);
+        if (spec->time_count > 0 && *time <= time[-1]) return error_input(error, "--at", "'%s' must rise", text);
         spec->time_count++;
         if (*rest == '\0') return true;
     }
@@ -120,22 +119,22 @@ static bool read_bodies(const char *text, FigureSpec *spec, Error *error) {
         (snprintf(first, sizeof first, "%.*s", (int)(comma - text), text),
          !parse_int(first, 0, INT32_MAX, &bodies[0])) ||
         !parse_int(comma + 1, 0, INT32_MAX, &bodies[1]) || bodies[0] == bodies[1])
-        return error_input(error, "--bodies", "'%s' is no pair of bodies, as 3,11 is", text);
+        return error_input(error, "--bodies", "'%s' is not a pair of bodies such as 3,11", text);
     for (int i = 0; i < 2; i++) spec->bodies[i] = (int)bodies[i];
     return true;
 }
 
 static bool refuse(const char *option, const FigureKind *kind, Error *error) {
-    return error_input(error, option, "is not for the kind %s", kind->name);
+    return error_input(error, option, "does not apply to the kind %s", kind->name);
 }
 
 static bool check_inputs(const FigureKind *kind, const Options *options, Error *error) {
-    int least = kind->most_runs == 0 ? 1 : kind->least_runs, most = kind->most_runs == 0 ? 1 : kind->most_runs;
+    int least = kind->max_runs == 0 ? 1 : kind->min_runs, most = kind->max_runs == 0 ? 1 : kind->max_runs;
     if (options->input_count >= least && options->input_count <= most) return true;
     return error_input(error, "figure", "%s needs %s%d%s, not %d", kind->name, least < most ? "at least " : "", least,
-                       kind->most_runs == 0 ? " network (.npz)"
-                       : most == 1          ? " run (.npz)"
-                                            : " runs (.npz)",
+                       kind->max_runs == 0 ? " network (.npz)"
+                       : most == 1         ? " run (.npz)"
+                                           : " runs (.npz)",
                        options->input_count);
 }
 
@@ -151,11 +150,10 @@ static bool read_options(const Options *options, const FigureKind *kind, FigureS
     if (options->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
     if (options->bodies != NULL && !kind->takes_bodies) return refuse("--bodies", kind, error);
     if (options->at != NULL && options->moments != NULL)
-        return error_input(error, "--moments", "--at says already which moments");
+        return error_input(error, "--moments", "cannot be combined with --at");
     if ((options->width != NULL && !read_width(options->width, &spec->width, error)) ||
-        !read_number("--dpi", options->dpi, SKETCH_LEAST_DPI, SKETCH_LARGEST_DPI, &spec->dpi, error) ||
-        !read_number("--font-size", options->points, FIGURE_LEAST_POINTS, FIGURE_LARGEST_POINTS, &spec->points,
-                     error) ||
+        !read_number("--dpi", options->dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX, &spec->dpi, error) ||
+        !read_number("--font-size", options->points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX, &spec->points, error) ||
         (options->at != NULL && !read_times(options->at, spec, error)) ||
         (options->bodies != NULL && !read_bodies(options->bodies, spec, error)))
         return false;
@@ -189,8 +187,8 @@ int command_figure(int argc, char **argv, Error *error) {
     if (kind == NULL || !read_options(&options, kind, &spec, &output, error)) return STATUS_DIFFERENT;
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
     bool ok = true;
-    if (kind->most_runs == 0) spec.network = options.inputs[0];
-    for (int i = 0; ok && kind->most_runs > 0 && i < options.input_count; i++) {
+    if (kind->max_runs == 0) spec.network = options.inputs[0];
+    for (int i = 0; ok && kind->max_runs > 0 && i < options.input_count; i++) {
         runs[i] = trajectory_read(options.inputs[i], error);
         spec.runs[i] = runs[i], spec.paths[i] = options.inputs[i];
         spec.run_count++;

@@ -42,7 +42,7 @@ static bool read_setting(const char *text, SceneSetting *setting, Error *error) 
     const char *value = strchr(text, '=');
     size_t length = value == NULL ? 0 : (size_t)(value - text);
     if (length == 0 || length >= sizeof setting->name || !parse_double(value + 1, &setting->value))
-        return error_input(error, "--set", "'%s' is not NAME=VALUE with a number behind the '='", text);
+        return error_input(error, "--set", "'%s' is not NAME=VALUE with a number after '='", text);
     memcpy(setting->name, text, length);
     setting->name[length] = '\0';
     return true;
@@ -63,7 +63,7 @@ bool option_range(const char *option, const char *text, FloatRange *range, Error
     return true;
 }
 
-/* Splits text at the first `separator` into two whole numbers; an empty part leaves its number as it is. */
+/* Splits text at the first `separator` into two whole numbers. An empty part leaves its number unchanged. */
 static bool parse_two(const char *text, char separator, int64_t minimum, int64_t maximum, int64_t *first,
                       int64_t *second) {
     const char *middle = strchr(text, separator);

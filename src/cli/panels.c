@@ -46,8 +46,7 @@ static bool is_stored(const char *input) {
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error) {
     int scenes = 0;
     for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
-    if (set->count > 0 && scenes != 1)
-        return error_input(error, "--set", "is for one scene (here there are %d)", scenes);
+    if (set->count > 0 && scenes != 1) return error_input(error, "--set", "needs exactly one scene (got %d)", scenes);
     for (int i = 0; i < input_count; i++) {
         bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
                                        : add_scene(panels, inputs[i], set, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs that a picture shows: read from .npz, or made from a scene by the engine and the scene's networks. */
+/* The runs in a picture: read from .npz, or simulated from a scene with the engine and with pair-net. */
 #pragma once
 #include "cli/options.h"
 #include "common/error.h"
@@ -12,13 +12,12 @@ typedef struct Panels {
     Trajectory *runs[RENDER_PANELS_MAX];
 } Panels;
 
-/* Settings are for one scene: refused where there is none, or a second. What has been loaded before an error is freed by
-   panels_free, too. */
+/* Settings need exactly one scene among the inputs. After an error, panels_free frees what was loaded before it. */
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error);
 void panels_free(Panels *panels);
 
-/* Adds the run of a scene by a method, with a bar of progress; `input` is what it came from, for errors. */
+/* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
 
-/* Writes each run as directory/SCENE-METHOD.npz; a second one of that name gets -2 and so on. */
+/* Writes each run as directory/SCENE-METHOD.npz; a second run of that name gets -2, and so on. */
 bool panels_store(const Panels *panels, const char *directory, Error *error);

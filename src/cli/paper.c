@@ -3,8 +3,8 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
-#include "paper/figures/engine_figures.h"
-#include "paper/figures/result_figures.h"
+#include "paper/figures/illustrations.h"
+#include "paper/figures/plots.h"
 #include "paper/report/paper_report.h"
 #include "paper/study/paper.h"
 
@@ -13,11 +13,11 @@
 enum { SCENES = 256, QUICK, SEED };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where tables, figures, networks and the report go", 0},
+    {"output", 'o', "DIR", 0, "Folder for tables, figures, networks and the report", 0},
     {"scenes", SCENES, "DIR", 0,
-     "Folder of single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes)", 0},
+     "Folder with single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes)", 0},
     {"quick", QUICK, NULL, 0, "Fewer networks, launches and iterations: under a minute", 0},
-    {"seed", SEED, "N", 0, "Of launches, splits and first weights (default: 1)", 0},
+    {"seed", SEED, "N", 0, "Seed of launches, splits and initial weights (default: 1)", 0},
     {0}};
 
 typedef struct Options {
@@ -46,9 +46,9 @@ static const struct argp argp = {
     parse,
     "",
     "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every reading, "
-    "one factor at a time, rate them, put them in the solver's place, and try what it leaves to future work. Writes "
-    "report.md, report.html, every table as CSV, every figure as PNG and SVG. Takes some ten minutes on two cores; "
-    "what is cut off goes on where it stopped.\v"
+    "one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future work. "
+    "Writes report.md, report.html, every table as CSV, and every figure as PNG and SVG. Takes about ten minutes on "
+    "two cores. An interrupted run continues where it stopped.\v"
     "Example: twinbox paper -o out/paper\n"
     "         twinbox paper -o out/paper-quick --quick",
     NULL,
@@ -59,8 +59,8 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
     enum { PATH_SIZE = 4096 };
     char figures[PATH_SIZE];
     if (!file_path(figures, sizeof figures, error, "%s/figures", study->folder)) return false;
-    if (!file_make_directory(figures, error) || !engine_figures_draw(study->scenes, figures, error) ||
-        !result_figures_draw(study->folder, error) || !paper_report_write(study->folder, error))
+    if (!file_make_directory(figures, error) || !illustrations_draw(study->scenes, figures, error) ||
+        !plots_draw(study->folder, error) || !paper_report_write(study->folder, error))
         return false;
     printf("tables, figures, networks -> %s\nreport -> %s/report.md, %s/report.html\n", study->folder, study->folder,
            study->folder);

@@ -9,10 +9,10 @@
 enum { FRAME = 256, BOMB_X };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "P.npz", 0, "Where the contact problem goes", 0},
-    {"frame", FRAME, "N", 0, "Number of the step, from 1: the one that leads to frame N of a run", 0},
-    {"bomb-x", BOMB_X, "X", 0, "Where the bomb is launched, m (default: as the scene says)", 0},
-    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Runs the scene up to there (default: engine)", 0},
+    {"output", 'o', "P.npz", 0, "Contact problem to write", 0},
+    {"frame", FRAME, "N", 0, "Number of the step, from 1: the step that leads to frame N of a run", 0},
+    {"bomb-x", BOMB_X, "X", 0, "Where the bomb is launched, m (default: the scene's x)", 0},
+    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Method that runs the scene up to this step (default: engine)", 0},
     {0}};
 
 typedef struct Options {
@@ -27,7 +27,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case FRAME: options->frame = value; break;
     case BOMB_X: options->bomb_x = value; break;
     case ARGP_KEY_ARG:
-        if (options->scene != NULL) argp_error(state, "one scene at a time ('%s' is a second)", value);
+        if (options->scene != NULL) argp_error(state, "only one scene can be given (second: '%s')", value);
         options->scene = value;
         break;
     case ARGP_KEY_END:
@@ -44,8 +44,8 @@ static const struct argp argp = {
     option_table,
     parse,
     "SCENE",
-    "Write the contact problem of one step: bodies with their velocities before any impulse, and contacts. What "
-    "twinbox solve reads.\v"
+    "Write the contact problem of one step: bodies with their velocities before any impulse, and contacts. twinbox "
+    "solve reads it.\v"
     "Example: twinbox problem scenes/stack.yaml --frame 41 -o impact.npz\n"
     "In Python: problem = numpy.load('impact.npz'); problem['velocity'] has shape (bodies, 2).",
     NULL,

@@ -58,7 +58,7 @@ static bool report(void *context, double done, double total) {
 }
 
 void progress_bar_begin(ProgressBar *bar, const char *what) {
-    /* Once only: a second Ctrl-C ends the program at once. */
+    /* SA_RESETHAND: a second Ctrl-C ends the program at once. */
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     if (!progress_interrupted()) {

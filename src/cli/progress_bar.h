@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A progress bar with the time left on a terminal, plain lines elsewhere; and Ctrl-C, which asks work to stop.
-   Work of under a second shows nothing. */
+/* A progress bar with the time left on a terminal, lines of text elsewhere. Ctrl-C requests the work to stop. Work of
+   less than a second shows nothing. */
 #pragma once
 #include "common/progress.h"
 
@@ -13,9 +13,9 @@ typedef struct ProgressBar {
 
 void progress_bar_begin(ProgressBar *bar, const char *what);
 
-/* Takes the bar off the terminal, so that a line can be printed in its place; it comes back by itself. */
+/* Removes the bar from the terminal so that a line can be printed; the next report shows it again. */
 void progress_bar_clear(ProgressBar *bar);
 void progress_bar_end(ProgressBar *bar);
 
-/* True once Ctrl-C (or a request to terminate) came since the first bar began. */
+/* True after Ctrl-C or SIGTERM since the first bar began. */
 bool progress_interrupted(void);

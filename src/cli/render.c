@@ -11,22 +11,22 @@
 enum { SIZE = 256, FRAMES, SLOW, HOLD, TITLE, END, VIDEO, RESUME, PNG, JOBS, CONTEXT, SET };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where frame_000000.png ... and each panel's .npz go", 0},
+    {"output", 'o', "DIR", 0, "Folder for frame_000000.png ..., manifest.json and the runs (.npz)", 0},
     {"size", SIZE, "WxH", 0, "Size of a frame in pixels (default: 1920x1080)", 0},
-    {"frames", FRAMES, "A:B", 0, "Draw these frames of the run only (default: all)", 0},
-    {"slow", SLOW, "K", 0,
-     "K times slower around the bomb's impact, 2 to 16: pictures between two frames show bodies between them", 0},
-    {"hold", HOLD, "SECONDS", 0, "How long the last frame stays", 0},
-    {"title", TITLE, "TEXT", 0, "Begin with a card, two seconds long, that says so", 0},
-    {"end", END, "TEXT", 0, "End with such a card", 0},
-    {"video", VIDEO, "FILE", 0,
-     "Encode the frames too, as FILE.mp4 (H.264), .webm (VP9) or .gif; - is standard output, as y4m in 4:4:4 and "
-     "BT.709 (may be repeated)",
+    {"frames", FRAMES, "A:B", 0, "Draw only these frames of the run (default: all)", 0},
+    {"slow", SLOW, "K", 0, "K times slower around the bomb's impact, 2 to 16, with poses interpolated between frames",
      0},
-    {"resume", RESUME, NULL, 0, "Draw only what the manifest in DIR does not know, or what is not as it says", 0},
-    {"png", PNG, "fast|small", 0, "How hard to compress (default: fast); the pictures are the same", 0},
-    {"jobs", JOBS, "N", 0, "Processes that draw (default: one a core); the frames are the same", 0},
-    {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: what is there); the frames are the same", 0},
+    {"hold", HOLD, "SECONDS", 0, "Hold the last frame for this long", 0},
+    {"title", TITLE, "TEXT", 0, "Begin with a title card of two seconds", 0},
+    {"end", END, "TEXT", 0, "End with a card of two seconds", 0},
+    {"video", VIDEO, "FILE", 0,
+     "Also encode a video: FILE.mp4 (H.264), .webm (VP9) or .gif; - writes y4m in 4:4:4 and BT.709 to standard output "
+     "(may be repeated)",
+     0},
+    {"resume", RESUME, NULL, 0, "Redraw only frames that are missing or altered, compared with the manifest in DIR", 0},
+    {"png", PNG, "fast|small", 0, "Compression (default: fast); the pixels are the same", 0},
+    {"jobs", JOBS, "N", 0, "Number of processes (default: one per core); the frames are the same", 0},
+    {"context", CONTEXT, "NAME", 0, "osmesa or egl (default: the first that works); the frames are the same", 0},
     OPTION_SET(SET, 0),
     {0}};
 
@@ -79,8 +79,8 @@ static const struct argp argp = {
     option_table,
     parse,
     "RUN_OR_SCENE...",
-    "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz); a scene (.yaml) is "
-    "run by the engine and by the pair-net that it names.\v"
+    "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz). A scene (.yaml) is "
+    "simulated with the engine and with the pair-net that it names.\v"
     "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4",
     children,
     NULL,
@@ -122,7 +122,7 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
     return render_look_read(&options->look, &render->look, error) &&
            choose_context(options->context, &render->context, error) &&
            choose_png(options->png, &render->small, error) &&
-           (options->size == NULL || option_size("--size", options->size, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE,
+           (options->size == NULL || option_size("--size", options->size, RENDER_SIDE_MIN, RENDER_SIDE_MAX,
                                                  &render->width, &render->height, error)) &&
            (options->frames == NULL ||
             option_frames("--frames", options->frames, &render->first, &render->last, error)) &&
@@ -131,13 +131,13 @@ static bool read_options(const Options *options, RenderOptions *render, Error *e
            draw_videos_check(&options->videos, render->width, render->height, error);
 }
 
-/* Words go to standard error where standard output is the video. */
+/* Messages go to standard error if standard output is the video. */
 static void print_result(const Options *options, const RenderOptions *render, const RenderResult *result) {
     FILE *out = draw_videos_use_output(&options->videos) ? stderr : stdout;
     if (render->resume && result->why[0] != '\0') fprintf(out, "nothing to resume: %s\n", result->why);
     fprintf(out, "%d frames -> %s/frame_%06d.png ... frame_%06d.png", result->last - result->first + 1,
             render->directory, result->first, result->last);
-    if (render->resume) fprintf(out, ", %d of them there already", result->kept);
+    if (render->resume) fprintf(out, ", %d of them kept", result->kept);
     fprintf(out, "\nmanifest -> %s/manifest.json\n", render->directory);
     for (int i = 0; i < options->videos.count; i++) fprintf(out, "video -> %s\n", options->videos.paths[i]);
 }
@@ -146,7 +146,7 @@ static bool render_panels(Options *options, const Panels *panels, RenderOptions 
     int last = panels_last_frame(panels);
     RenderResult result;
     if (render->first > last || render->last > last)
-        return error_input(error, "--frames", "'%s' reaches beyond the last frame, %d", options->frames, last);
+        return error_input(error, "--frames", "'%s' is beyond the last frame, %d", options->frames, last);
     if (!render_look_apply(&options->look, &render->look, panels, error) ||
         !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, &options->videos, &result, error))

@@ -12,20 +12,19 @@
 enum { COMPARE = 512, SHOW, CAMERA, THEME, COSTS };
 
 static const struct argp_option option_table[] = {
-    {NULL, 0, NULL, 0, "What the pictures show:", 2},
+    {NULL, 0, NULL, 0, "Look:", 2},
     {"compare", COMPARE, "KIND", 0,
-     "split: a panel for each run (default); overlay: all in one, all but the first as outlines; difference: coloured "
-     "by "
-     "the distance from the first run",
+     "split: a panel for each run (default); overlay: one panel, all runs but the first as outlines; difference: boxes "
+     "coloured by their distance from the first run's",
      0},
     {"show", SHOW, "LIST", 0,
-     "Of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
-     "timeline (distance from the first run over time), parted by commas",
+     "Any of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
+     "timeline (distance from the first run over time), separated by commas",
      0},
     {"camera", CAMERA, "KIND", 0,
-     "fit: at rest (default); bomb: follows it; divergence: goes near where a body is first 1 mm apart", 0},
-    {"theme", THEME, "light|dark", 0, "Colours of the page (default: light)", 0},
-    {"costs", COSTS, "FILE.csv", 0, "Add what a step costs to the captions: a chart.csv of 'twinbox chart'", 0},
+     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where a body is first 1 mm apart", 0},
+    {"theme", THEME, "light|dark", 0, "Colours (default: light)", 0},
+    {"costs", COSTS, "FILE.csv", 0, "Add the time per step to the captions, from a chart.csv of 'twinbox chart'", 0},
     {0}};
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -43,7 +42,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
 
 const struct argp render_look_argp = {option_table, parse, NULL, NULL, NULL, NULL, NULL};
 
-/* The place of a name of `length` characters in a list; -1 where it is not there. */
+/* The index of a name of `length` characters in a list, or -1. */
 static int find(const char *const *names, const char *name, size_t length) {
     for (int i = 0; names[i] != NULL; i++)
         if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0) return i;
@@ -58,7 +57,7 @@ static bool unknown(const char *option, const char *name, size_t length, const c
     return error_unknown(error, option, shown, "a valid value", &known);
 }
 
-/* NULL leaves *index as it is. */
+/* NULL leaves *index unchanged. */
 static bool read_name(const char *option, const char *name, const char *const *names, int *index, Error *error) {
     if (name == NULL) return true;
     *index = find(names, name, strlen(name));
@@ -89,7 +88,7 @@ bool render_look_read(const RenderLookOptions *options, RenderLook *look, Error 
     return true;
 }
 
-/* "momentum:k=20" is method "momentum" with setting "k=20". The network is no setting of the chart's. */
+/* "momentum:k=20" is method "momentum" with setting "k=20". The chart has no setting for the network. */
 static const char *settings_of(const Trajectory *run) {
     const char *colon = strchr(run->method, ':');
     return colon == NULL || strncmp(colon + 1, "network=", 8) == 0 ? "" : colon + 1;
@@ -100,8 +99,8 @@ static bool is_of(const ChartRow *row, const Trajectory *run) {
     return strncmp(row->method, run->method, length) == 0 && row->method[length] == '\0';
 }
 
-/* The row of these settings. A run without any has the scene's, which a trajectory does not tell: if no row is without,
-   that of any setting, if there is but one. NULL where there is none. */
+/* The row with these settings. A run without settings uses the scene's, which a trajectory does not store; if no row has
+   none, the only row of the method counts. NULL if there is no row. */
 static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run) {
     const ChartRow *found = NULL;
     const char *settings = settings_of(run);
@@ -133,7 +132,7 @@ static bool read_costs(RenderLookOptions *options, RenderLook *look, const Panel
     }
     chart_csv_free(&table);
     return found > 0 ||
-           error_input(error, options->costs, "has no time of any of these runs in closed loop at the impact");
+           error_input(error, options->costs, "has no closed-loop time at the impact for any of these runs");
 }
 
 bool render_look_apply(RenderLookOptions *options, RenderLook *look, const Panels *panels, Error *error) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Options of what pictures show beside the bodies, as a child of a command's own. */
+/* The options of render for the look of its pictures, an argp child. */
 #pragma once
 #include "cli/options.h"
 #include "cli/panels.h"
@@ -11,10 +11,10 @@ typedef struct RenderLookOptions {
 
 extern const struct argp render_look_argp; /* its input: RenderLookOptions */
 
-/* From the texts of the options to a look; its costs stay empty. */
+/* Parses the options into a look. Costs stay empty. */
 bool render_look_read(const RenderLookOptions *options, RenderLook *look, Error *error);
 
-/* Refuses what look_check() does, and takes the costs of the panels from the CSV that the options name: of their scene, in
-   closed loop, at the impact. A run that it does not have stays without; a file that has none of them is refused. What
-   the look then points to lives in `options`. */
+/* Refuses what look_check() refuses. Takes the costs of the panels from the CSV that the options name: the same scene,
+   closed loop, at the impact. A run without a row has no cost; a file without any row for the runs is refused. The look
+   then points into `options`. */
 bool render_look_apply(RenderLookOptions *options, RenderLook *look, const Panels *panels, Error *error);

@@ -11,25 +11,25 @@
 enum { NO_BOMB = 256, BOMB_X, BOMB_FRAME, FRAMES, DT, ITERATIONS, NO_WARM, NO_ACCUMULATE, NO_CORRECTION, HASH, SET };
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "RUN", 0, "Store the trajectory: RUN.npz, or RUN.csv for poses as text", 0},
-    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "How contacts are solved (default: engine); see twinbox methods", 0},
-    {"hash", HASH, "FILE", 0, "Write frame,hash for every frame", 0},
-    {NULL, 0, NULL, 0, "Instead of what the scene says:", 1},
+    {"output", 'o', "RUN", 0, "Trajectory to write: RUN.npz, or RUN.csv for poses as text", 0},
+    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Method (default: engine); see twinbox methods", 0},
+    {"hash", HASH, "FILE", 0, "Write frame,hash of every frame as CSV", 0},
+    {NULL, 0, NULL, 0, "Override the scene:", 1},
     OPTION_SET(SET, 1),
     {"bomb-x", BOMB_X, "X", 0, "Where the bomb is launched, m", 1},
-    {"bomb-frame", BOMB_FRAME, "N", 0, "Step after which the bomb is put in", 1},
-    {"no-bomb", NO_BOMB, NULL, 0, "Launch none", 1},
-    {"frames", FRAMES, "N", 0, "Steps to run", 1},
+    {"bomb-frame", BOMB_FRAME, "N", 0, "Step after which the bomb is added", 1},
+    {"no-bomb", NO_BOMB, NULL, 0, "No bomb", 1},
+    {"frames", FRAMES, "N", 0, "Number of steps", 1},
     {"dt", DT, "S", 0, "Time step, s: a number or a fraction such as 1/60", 1},
-    {"iterations", ITERATIONS, "N", 0, "Sweeps of the engine a step", 1},
-    {"no-warm-starting", NO_WARM, NULL, 0, "Forget the impulses of the step before", 1},
-    {"no-accumulate", NO_ACCUMULATE, NULL, 0, "Clamp each impulse, not their sum", 1},
-    {"no-position-correction", NO_CORRECTION, NULL, 0, "Leave overlaps as they are", 1},
+    {"iterations", ITERATIONS, "N", 0, "Sweeps per step", 1},
+    {"no-warm-starting", NO_WARM, NULL, 0, "Start every step with impulses of 0", 1},
+    {"no-accumulate", NO_ACCUMULATE, NULL, 0, "Clamp each impulse instead of their sum", 1},
+    {"no-position-correction", NO_CORRECTION, NULL, 0, "Do not correct overlaps", 1},
     {0}};
 
 typedef struct SimulateOptions {
     const char *scene, *output, *method, *hashes;
-    const char *bomb_x, *bomb_frame, *frames, *dt, *iterations; /* NULL: as the scene has it */
+    const char *bomb_x, *bomb_frame, *frames, *dt, *iterations; /* NULL: the scene's */
     bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
     SetOptions set;
 } SimulateOptions;
@@ -51,7 +51,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case NO_ACCUMULATE: options->no_accumulate = true; break;
     case NO_CORRECTION: options->no_position_correction = true; break;
     case ARGP_KEY_ARG:
-        if (options->scene != NULL) argp_error(state, "one scene at a time ('%s' is a second)", value);
+        if (options->scene != NULL) argp_error(state, "only one scene can be given (second: '%s')", value);
         options->scene = value;
         break;
     case ARGP_KEY_END:
@@ -66,7 +66,7 @@ static const struct argp argp = {
     option_table,
     parse,
     "SCENE",
-    "Run a scene by one method and store the trajectory.\v"
+    "Run a scene with one method and store the trajectory.\v"
     "Example: twinbox simulate scenes/stack.yaml --bomb-x 2.5 -o stack.npz --hash stack.csv\n"
     "In Python: run = numpy.load('stack.npz'); run['position'] has shape (frames, bodies, 2).",
     NULL,
@@ -76,7 +76,7 @@ static const struct argp argp = {
 static bool override_bomb(SceneBomb *bomb, const SimulateOptions *options, const char *scene, Error *error) {
     if (options->no_bomb) {
         if (options->bomb_x != NULL || options->bomb_frame != NULL)
-            return error_input(error, "--no-bomb", "does not go with --bomb-x or --bomb-frame");
+            return error_input(error, "--no-bomb", "cannot be combined with --bomb-x or --bomb-frame");
         bomb->present = false;
         return true;
     }
@@ -132,7 +132,7 @@ int command_simulate(int argc, char **argv, Error *error) {
     SimulateOptions options = {.method = "engine"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     if (options.output != NULL && !ends_with(options.output, ".npz") && !ends_with(options.output, ".csv")) {
-        error_input(error, options.output, "the name of a trajectory ends in .npz or .csv");
+        error_input(error, options.output, "the name of a trajectory must end in .npz or .csv");
         return STATUS_DIFFERENT;
     }
     Method method;

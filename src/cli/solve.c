@@ -11,7 +11,7 @@
 enum { MAX_METHODS = 64 };
 
 static const struct argp_option option_table[] = {
-    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "A solver to score; may be given many times", 0}, {0}};
+    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Method to score (may be repeated)", 0}, {0}};
 
 typedef struct Options {
     const char *path;
@@ -27,7 +27,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
         options->methods[options->method_count++] = value;
         break;
     case ARGP_KEY_ARG:
-        if (options->path != NULL) argp_error(state, "one problem at a time ('%s' is a second)", value);
+        if (options->path != NULL) argp_error(state, "only one problem can be given (second: '%s')", value);
         options->path = value;
         break;
     case ARGP_KEY_END:
@@ -43,10 +43,10 @@ static const struct argp argp = {
     option_table,
     parse,
     "P.npz",
-    "Solve one contact problem by each method and score it against the converged solution: RMS error of the bodies' "
-    "velocities (m/s, spin weighed by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of what the "
-    "contacts did to them), and the residual of the method's own impulses: the most that one more sweep would change a "
-    "contact's velocity (m/s; of no impulses, where a method hands out none).\v"
+    "Solve one contact problem with each method and score it against the converged solution: RMS error of the bodies' "
+    "velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of the change "
+    "made by the contacts), and the residual of the method's impulses: the largest change of a contact's velocity by "
+    "one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
     "Example: twinbox solve impact.npz --method engine:k=10 --method engine:k=100",
     NULL,
     NULL,
@@ -70,7 +70,7 @@ static bool score(const Method *method, const Scene *scene, const ContactProblem
 }
 
 static bool score_all(const StoredProblem *stored, const Method *methods, int method_count, Error *error) {
-    /* One frame can wait: far longer than a study may spend on each. */
+    /* For one problem: far more visits than a study may spend on each. */
     const double tolerance = 1e-8;
     const int max_visits = 10 * REFERENCE_MAX_VISITS;
     const ContactProblem *problem = &stored->problem;

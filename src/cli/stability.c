@@ -21,18 +21,17 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Where stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures go",
-     0},
+    {"output", 'o', "DIR", 0,
+     "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures", 0},
     {"methods", METHODS, "LIST", 0,
-     "Methods, separated by commas; a name alone has as many iterations as the scene says (default: the engine, "
-     "robust, momentum, substepping, nncg, the reference, pair-net, contact-net and scene-net)",
+     "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
+     "does not report as left out)",
      0},
-    {"study", STUDY, "NAME", 0, "One of the studies or maps (may be repeated; default: all)", 0},
-    {"scenes", SCENES, "DIR", 0, "Folder in which stability/ holds the scenes (default: scenes)", 0},
+    {"study", STUDY, "NAME", 0, "Only this study or map (may be repeated; default: all)", 0},
+    {"scenes", SCENES, "DIR", 0, "Folder whose subfolder stability/ has the scenes (default: scenes)", 0},
     {"quick", QUICK, NULL, 0, "Few studies, small maps: under two minutes", 0},
     {"clip", CLIP, "CELL", 0,
-     "Only this: the moving picture of a cell of a map that DIR has, MAP:METHOD:X,Y, beside a method that holds there",
-     0},
+     "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map", 0},
     {0}};
 
 static error_t parse(int key, char *value, struct argp_state *state) {
@@ -61,9 +60,10 @@ static const struct argp argp = {
     option_table,
     parse,
     "",
-    "Find where each method fails: along one number of a scene (height of a stack, mass ratio, time step, ...) every "
-    "border between holding and failing, and how it fails there; and maps of two numbers. A run holds where it "
-    "settles, sways or creeps. Takes up to twenty minutes on two cores; what is cut off goes on where it stopped.\v"
+    "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, ...): "
+    "every border between holding and failing, and how it fails there. Over two parameters: maps. A run holds if it "
+    "settles, sways or creeps. Takes up to twenty minutes on two cores. An interrupted run continues where it "
+    "stopped.\v"
     "Example: twinbox stability -o out/stability\n"
     "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
     "         twinbox stability -o out/stability --clip height_iterations:engine:15,5",
@@ -92,7 +92,11 @@ static bool study(const StabilityOptions *options, Error *error) {
     progress_bar_begin(&bar, "stability");
     bool ok = stability_run(options, &bar.progress, error);
     progress_bar_end(&bar);
-    return ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    const NameList left_out = contenders_left_out(STUDY_STABILITY);
+    if (ok && options->methods == NULL && left_out.text[0] != '\0')
+        printf("left out unless named in --methods: %s\n", left_out.text);
+    return ok;
 }
 
 int command_stability(int argc, char **argv, Error *error) {

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a number, in how far one that is typed may differ: a figure's have three digits. */
+/* Relative tolerance of a typed number: figures show three digits. */
 static const double share = 0.01;
 
 static bool parse_values(const char *text, double *x, double *y) {
@@ -28,7 +28,7 @@ bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
 
 static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
 
-/* Of the part that is not there: what could have been said. */
+/* Names the known values of the part that was not found. */
 static const MapCell *fail(const MapTable *table, const StabilityCell *cell, bool map_known, bool method_known,
                            Error *error) {
     NameList names = {0}, ups = {0};
@@ -46,12 +46,12 @@ static const MapCell *fail(const MapTable *table, const StabilityCell *cell, boo
             name_list_add(&names, map_known ? text : row->map);
     }
     if (!map_known)
-        error_input(error, "--clip", "there is no map %s in %s; there are %s", cell->map, table->path,
+        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.csv.path,
                     names.used > 0 ? names.text : "none");
     else if (!method_known)
-        error_input(error, "--clip", "map %s has no method %s; it has %s", cell->map, cell->method, names.text);
+        error_input(error, "--clip", "map %s has no method %s; its methods: %s", cell->map, cell->method, names.text);
     else
-        error_input(error, "--clip", "map %s has no cell %g,%g by %s; its X are %s; its Y are %s", cell->map, cell->x,
+        error_input(error, "--clip", "map %s has no cell %g,%g of method %s; its X: %s; its Y: %s", cell->map, cell->x,
                     cell->y, cell->method, names.text, ups.text);
     return NULL;
 }

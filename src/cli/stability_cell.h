@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cell of a map of stability, as it is named on the command line. */
+/* A cell of a stability map, as named on the command line. */
 #pragma once
 #include "simulate/method.h"
 #include "stability/stability_table.h"
@@ -12,8 +12,8 @@ typedef struct StabilityCell {
 
 bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error);
 
-/* The row of the table that the cell names: numbers may be as short as the figure has them, within 1%; the nearest counts.
-   NULL with error set, which names what there is, where there is none. */
+/* The row of the table that the cell names. Numbers may be rounded as in the figure: the nearest within 1% counts. NULL
+   with error set if there is none; the error lists the known values. */
 const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error);
 
 /* The first method that holds in the same cell, or NULL. */

@@ -12,13 +12,13 @@
 
 enum { TITLE_SIZE = 320, NOTE_SIZE = 160 };
 
-/* s that are shown after what decided. */
+/* s that are shown after the frame that decided the verdict. */
 static const double clip_after = 3;
 
-/* Hz: of the steps of a scene that makes more, only so many become frames. */
+/* Hz: a scene with more steps per second is thinned to this rate. */
 static const double clip_rate = 60;
 
-/* What a clip shows: the holder first, if there is one. */
+/* The runs of a clip: first the method that holds, if there is one. */
 typedef struct Clip {
     const ClipOptions *options;
     const ClipMap *map;
@@ -36,7 +36,7 @@ static bool choose_rows(Clip *clip, const MapTable *table, Error *error) {
     if (row->verdict >= VERDICTS) return error_input(error, "--clip", "'%s' is not applicable", clip->options->cell);
     for (int i = 0; i < clip->options->map_count; i++)
         if (strcmp(clip->options->maps[i].name, row->map) == 0) clip->map = &clip->options->maps[i];
-    if (clip->map == NULL) return error_input(error, "--clip", "no scene is known for map %s", row->map);
+    if (clip->map == NULL) return error_input(error, "--clip", "map %s has no scene", row->map);
     const MapCell *holder = verdict_holds((Verdict)row->verdict) ? NULL : stability_cell_holder(table, row);
     if (holder != NULL) clip->rows[clip->count++] = holder;
     clip->rows[clip->count++] = row;
@@ -50,7 +50,7 @@ static Scene *read_scene(const Clip *clip, Error *error) {
     return scene_read_with(clip->map->scene, settings, 2, error);
 }
 
-/* What explodes may leave the finite numbers in the seconds after: then they are left out. */
+/* After an explosion, states may become NaN or infinite in the seconds that follow: then these are left out. */
 static bool run_row(Clip *clip, Scene *scene, const MapCell *row, int shown, Error *error) {
     char method[MAP_METHOD_SIZE];
     Error failure = {0};

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The moving picture of what happened in a cell of a map of stability. */
+/* The video of one cell of a stability map. */
 #pragma once
 #include "common/error.h"
 
-/* Where a map's runs come from. */
+/* The origin of a map's runs. */
 typedef struct ClipMap {
-    const char *name;                      /* as maps.csv has it */
+    const char *name;                      /* as in maps.csv */
     const char *scene;                     /* path of the scene file */
     const char *x_parameter, *y_parameter; /* of the scene */
 } ClipMap;
@@ -18,9 +18,9 @@ typedef struct ClipOptions {
     int width, height; /* of a frame, pixels */
 } ClipOptions;
 
-/* Runs the cell again and draws folder/clips/MAP-METHOD-X_Y/frame_000000.png ... and folder/clips/MAP-METHOD-X_Y.mp4, from
-   the start until three seconds after what decided the verdict, at most 60 frames a second: at the left the first method
-   that holds there, whose camera it is, at the right the cell's own; alone where it holds itself, or nothing does. The
-   captions tell methods and verdicts. ERROR_INPUT for a cell that there is not, or a method that does not go with its scene; ERROR_SYSTEM where
-   ffmpeg is missing. */
+/* Runs the cell again and draws folder/clips/MAP-METHOD-X_Y/frame_000000.png ... and folder/clips/MAP-METHOD-X_Y.mp4,
+   from the start until three seconds after the frame that decided the verdict, at most 60 frames per second. Left: the
+   first method that holds there, which also sets the camera; right: the method of the cell. If that one holds, or none
+   does, it is alone. Captions give methods and verdicts. ERROR_INPUT: the cell does not exist, or the method cannot run
+   its scene; ERROR_SYSTEM: ffmpeg is missing. */
 bool stability_clip(const ClipOptions *options, Error *error);

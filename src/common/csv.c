@@ -25,7 +25,7 @@ static bool check_text(const char *path, const char *text, size_t size, Error *e
         bool line_end = c == '\n' || (c == '\r' && text[i + 1] == '\n');
         if (!line_end && (c < 0x20 || c == 0x7f)) {
             char what[64];
-            snprintf(what, sizeof what, "control character 0x%02x in a table", (unsigned)c);
+            snprintf(what, sizeof what, "control character 0x%02x", (unsigned)c);
             return fail_at(path, line, column, error, what);
         }
         column += begins_character(text[i]);
@@ -39,7 +39,7 @@ static bool check_text(const char *path, const char *text, size_t size, Error *e
 typedef struct Reader {
     Csv *csv;
     char *at;
-    size_t capacity; /* fields that there is room for */
+    size_t capacity; /* of csv->fields */
     size_t count;    /* fields read */
     int column;
     int max_rows;
@@ -64,7 +64,7 @@ static char *fail_text(const Reader *reader, int column, Error *error, const cha
 static char *take_plain(Reader *reader, Error *error) {
     while (!ends_field(reader->at))
         if (step(reader) == '"')
-            return fail_text(reader, reader->column - 1, error, "a quote within a field that does not begin with one");
+            return fail_text(reader, reader->column - 1, error, "a quote inside a field that does not begin with one");
     return reader->at;
 }
 
@@ -74,14 +74,15 @@ static char *take_quoted(Reader *reader, Error *error) {
     step(reader);
     for (;;) {
         if (*reader->at == '\0' || *reader->at == '\n' || *reader->at == '\r')
-            return fail_text(reader, start, error, "this quote is not closed in its line");
+            return fail_text(reader, start, error, "this quote is not closed on its line");
         char c = step(reader);
         if (c == '"' && *reader->at != '"') break;
         if (c == '"') step(reader);
         *write++ = c;
     }
-    return ends_field(reader->at) ? write
-                                  : fail_text(reader, reader->column, error, "a comma is missing behind the quote");
+    return ends_field(reader->at)
+               ? write
+               : fail_text(reader, reader->column, error, "expected a comma after the closing quote");
 }
 
 /* *separator is what ended the field: a comma, or the line. */
@@ -108,42 +109,37 @@ static bool take_row(Reader *reader, Error *error) {
     reader->column = 1;
     if (csv->rows > reader->max_rows) {
         char what[64];
-        snprintf(what, sizeof what, "more than %d lines behind the header", reader->max_rows);
+        snprintf(what, sizeof what, "the table has more than %d rows", reader->max_rows);
         return fail(reader, 1, error, what);
     }
-    if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "an empty line");
+    if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "the line is empty");
     size_t first = reader->count;
     char separator = ',';
     while (separator == ',')
         if (!take_field(reader, &separator, error)) return false;
     int width = (int)(reader->count - first);
     if (csv->rows++ == 0) csv->width = width;
-    return width == csv->width ||
-           csv_error(csv, csv->rows - 1, 0, error, "%d fields where the header has %d", width, csv->width);
+    return width == csv->width || csv_error(csv, csv->rows - 1, 0, error, "%d field%s, but the header has %d", width,
+                                            width == 1 ? "" : "s", csv->width);
 }
 
-static bool take_rows(Csv *csv, int max_rows, Error *error) {
+static bool take_rows(Csv *csv, int min_rows, int max_rows, Error *error) {
     Reader reader = {.csv = csv, .at = csv->text, .max_rows = max_rows};
     while (*reader.at != '\0')
         if (!take_row(&reader, error)) return false;
-    return csv->rows > 1 || fail(&reader, 1, error, csv->rows == 0 ? "an empty table" : "no line behind the header");
+    return csv->rows > min_rows ||
+           fail(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
 }
 
-bool csv_is_bare(const char *path) {
-    FILE *file = fopen(path, "r");
-    int lines = 0;
-    for (int c; file != NULL && lines < 2 && (c = fgetc(file)) != EOF;) lines += lines == 0 ? c == '\n' : 1;
-    if (file != NULL) fclose(file);
-    return lines == 1;
-}
-
-bool csv_read(Csv *csv, const char *path, size_t max_size, int max_rows, Error *error) {
-    *csv = (Csv){.path = path};
+bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error) {
+    *csv = (Csv){.path = strdup(path)};
+    if (csv->path == NULL) return error_memory(error, path);
     size_t size;
     csv->text = file_read(path, max_size, &size, error);
-    if (csv->text == NULL) return false;
-    if (strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
-    if (check_text(path, csv->text, size, error) && take_rows(csv, max_rows, error)) return true;
+    if (csv->text != NULL) {
+        if (strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
+        if (check_text(path, csv->text, size, error) && take_rows(csv, min_rows, max_rows, error)) return true;
+    }
     csv_free(csv);
     return false;
 }
@@ -151,6 +147,7 @@ bool csv_read(Csv *csv, const char *path, size_t max_size, int max_rows, Error *
 void csv_free(Csv *csv) {
     free(csv->fields);
     free(csv->text);
+    free(csv->path);
     *csv = (Csv){.path = NULL};
 }
 
@@ -171,7 +168,6 @@ bool csv_error(const Csv *csv, int row, int field, Error *error, const char *for
 
 CsvShown csv_show(const char *text) {
     CsvShown shown;
-    if (*text == '\0') text = "nothing";
     size_t length = strlen(text), room = sizeof shown.text - 1;
     bool cut = length > room;
     if (cut) length = room - 3;
@@ -180,8 +176,8 @@ CsvShown csv_show(const char *text) {
     return shown;
 }
 
-void csv_put(FILE *file, const char *text) {
-    if (text[strcspn(text, ",\"\r\n")] == '\0') {
+void csv_put(FILE *file, const char *text, bool quoted) {
+    if (!quoted && text[strcspn(text, ",\"\r\n")] == '\0') {
         fputs(text, file);
         return;
     }

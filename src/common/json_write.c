@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/json.h"
+#include "common/json_write.h"
 
 #include "common/utf8.h"
 

@@ -15,15 +15,15 @@ static const Setting *find(const Settings *settings, const char *key) {
     return NULL;
 }
 
-static bool is_known(const SettingSpec *known, const char *key) {
-    for (; known->key != NULL; known++)
+bool settings_known(const SettingSpec *known, const char *key) {
+    for (; known != NULL && known->key != NULL; known++)
         if (strcmp(known->key, key) == 0) return true;
     return false;
 }
 
 static bool unknown_key(const SettingSpec *known, const char *key, const char *where, Error *error) {
     NameList keys = {0};
-    for (; known->key != NULL; known++) name_list_add(&keys, known->key);
+    for (; known != NULL && known->key != NULL; known++) name_list_add(&keys, known->key);
     return error_unknown(error, where, key, "a setting", &keys);
 }
 
@@ -41,7 +41,7 @@ static bool parse_item(Settings *settings, const char *item, size_t length, cons
                            SETTING_KEY_SIZE - 1, SETTING_VALUE_SIZE - 1);
     memcpy(setting.key, item, key_length);
     memcpy(setting.value, equals + 1, value_length);
-    if (!is_known(known, setting.key)) return unknown_key(known, setting.key, where, error);
+    if (!settings_known(known, setting.key)) return unknown_key(known, setting.key, where, error);
     if (find(settings, setting.key) != NULL)
         return error_input(error, where, "setting '%s' is given twice", setting.key);
     if (settings->count == SETTINGS_MAX) return error_input(error, where, "more than %d settings", SETTINGS_MAX);

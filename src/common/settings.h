@@ -20,8 +20,11 @@ typedef struct SettingSpec {
     const char *key, *summary;
 } SettingSpec;
 
-/* Parses "key=value,..." (may be empty). Every key must be in the table, once. `where` begins the message. */
+/* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the message. */
 bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
+
+/* True if the table, which may be NULL, has the key. */
+bool settings_known(const SettingSpec *known, const char *key);
 
 /* The value of key, or NULL. */
 const char *settings_get(const Settings *settings, const char *key);

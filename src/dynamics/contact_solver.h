@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The interface that every contact solver implements: a constant struct of functions, listed once in
-   solvers/solvers.c. */
+   solvers/solvers.h. */
 #pragma once
 #include "common/error.h"
-#include "common/settings.h"
+#include "common/method_description.h"
 #include "dynamics/contact_problem.h"
 
 typedef struct ContactSolverKind {
-    const char *name, *summary;
-    const SettingSpec *settings; /* the keys that create() reads; ends with a NULL key */
-    /* Returns the solver's state, NULL with error set if a setting is invalid. */
+    MethodDescription description;
+    /* Returns the solver's own state, NULL with error set if a setting is refused. */
     void *(*create)(const Settings *settings, Error *error);
     /* Fills the solution. False with error set only when memory is short or the problem cannot be solved at all.
        Allocates nothing once it has solved a problem of that size. */

@@ -9,18 +9,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define NORMAL_RINGS 3.1 /* how far a normal reaches on either side, in radii of the point's mark */
+#define NORMAL_RINGS 3.1 /* length of a normal on either side / radius of the point's mark */
 
-static const double least_arrow = 1;   /* mm */
-static const double large_share = 0.3; /* of the largest impulse: from here on a number is there, come what may */
+static const double min_arrow = 1;     /* mm */
+static const double large_share = 0.3; /* impulses above this share of the largest always get a number */
 
-enum { MOST_NUMBERS = 600 };
+enum { MAX_NUMBERS = 600 };
 
-/* A contact on its way to the page. */
+/* A contact in page coordinates. */
 typedef struct ShownContact {
     Point at;
-    Vec2 normal, impulse; /* N s, on the body of the higher number */
-    double size;          /* of the impulse */
+    Vec2 normal, impulse; /* N s, on the body with the higher number */
+    double size;          /* magnitude of the impulse */
 } ShownContact;
 
 static Vec2 impulse_of(const TrajectoryContact *contact) {
@@ -29,9 +29,9 @@ static Vec2 impulse_of(const TrajectoryContact *contact) {
                     vec2_scale(contact->tangent_impulse, tangent));
 }
 
-double impulse_size(const TrajectoryContact *contact) { return point_distance(impulse_of(contact), vec2(0, 0)); }
+double impulse_magnitude(const TrajectoryContact *contact) { return point_distance(impulse_of(contact), vec2(0, 0)); }
 
-bool contact_has_numbers(const TrajectoryContact *contact) {
+bool contact_is_finite(const TrajectoryContact *contact) {
     Vec2 impulse = impulse_of(contact);
     return isfinite(impulse.x) && isfinite(impulse.y) && isfinite(contact->point.x) && isfinite(contact->point.y);
 }
@@ -39,12 +39,12 @@ bool contact_has_numbers(const TrajectoryContact *contact) {
 static int by_size(const void *a, const void *b) {
     const ShownContact *p = a, *q = b;
     if (p->size != q->size) return p->size < q->size ? 1 : -1;
-    /* A total order, so that every sort finds the same. */
+    /* a total order, so that every qsort gives the same result */
     if (p->at.y != q->at.y) return p->at.y < q->at.y ? 1 : -1;
     return (p->at.x > q->at.x) - (p->at.x < q->at.x);
 }
 
-/* Those inside the cell, the largest impulse first. NULL when memory is short. */
+/* The contacts inside the cell, largest impulse first. NULL if out of memory. */
 static ShownContact *gather(const Trajectory *run, int step, const View *view, int *count) {
     int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
     ShownContact *shown = malloc((size_t)(end - first + 1) * sizeof *shown);
@@ -52,11 +52,11 @@ static ShownContact *gather(const Trajectory *run, int step, const View *view, i
     for (int64_t i = first; shown != NULL && i < end; i++) {
         const TrajectoryContact *contact = &run->contacts[i];
         Point at = view_place(view, contact->point);
-        if (!contact_has_numbers(contact) || at.x < view->low.x || at.x > view->high.x || at.y < view->low.y ||
+        if (!contact_is_finite(contact) || at.x < view->low.x || at.x > view->high.x || at.y < view->low.y ||
             at.y > view->high.y)
             continue;
         Vec2 impulse = impulse_of(contact);
-        shown[(*count)++] = (ShownContact){at, contact->normal, impulse, impulse_size(contact)};
+        shown[(*count)++] = (ShownContact){at, contact->normal, impulse, impulse_magnitude(contact)};
     }
     if (shown != NULL) qsort(shown, (size_t)*count, sizeof *shown, by_size);
     return shown;
@@ -67,34 +67,34 @@ static Point arrow_tip(const ContactLook *look, const ShownContact *contact) {
                    contact->at.y + look->arrow_scale * (double)contact->impulse.y};
 }
 
-/* With its normal, which reaches so far on either side. */
-static void put_point(Sketch *sketch, Point at, Point normal, double ring) {
+/* The point and its normal, `normal` long on either side. */
+static void draw_contact_point(Sketch *sketch, Point at, Point normal, double ring) {
     const Pen circle = {0xFFFFFF, 1, ACCENT, 1.4, NULL}, thin = pen_line(INK_SOFT, 1.3, NULL);
     sketch_line(sketch, (Point){at.x - normal.x, at.y - normal.y}, (Point){at.x + normal.x, at.y + normal.y}, &thin);
     sketch_dot(sketch, at, ring, &circle);
 }
 
-void put_contact_sample(Sketch *sketch, Point at, const ContactLook *look) {
+void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look) {
     const double reach = NORMAL_RINGS * look->ring;
-    put_point(sketch, at, (Point){reach, 0}, look->ring);
+    draw_contact_point(sketch, at, (Point){reach, 0}, look->ring);
     sketch_text(sketch, (Point){at.x + reach + 1, at.y},
                 &(TextStyle){CONTACT_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "contact, normal");
 }
 
-static void put_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
+static void draw_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
     const Point at = contact->at, tip = arrow_tip(look, contact);
     const double ring = look->ring, x = NORMAL_RINGS * ring * (double)contact->normal.x,
                  y = NORMAL_RINGS * ring * (double)contact->normal.y;
-    put_point(sketch, at, (Point){x, y}, ring);
+    draw_contact_point(sketch, at, (Point){x, y}, ring);
     label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
     label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
-    if (contact->size * look->arrow_scale < least_arrow) return;
+    if (contact->size * look->arrow_scale < min_arrow) return;
     sketch_arrow(sketch, at, tip, HEAD_AT_END, ACCENT, 2.4);
     label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
 }
 
-/* Three digits; nothing is just 0. */
-static void write_number(char text[32], double value) {
+/* Three significant digits, or "0". */
+static void format_number(char text[32], double value) {
     if (value < 0.005) {
         snprintf(text, 32, "0");
         return;
@@ -103,17 +103,17 @@ static void write_number(char text[32], double value) {
     snprintf(text, 32, "%.*f", decimals, value);
 }
 
-/* Beside the tip or the point, whichever has room; returns whether one has. */
-static bool put_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
+/* Beside the arrow's tip or the point; false if neither has room. */
+static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
     const double points = CONTACT_TYPE * look->points;
     const Point tip = arrow_tip(look, contact), places[] = {tip, contact->at};
     char text[32];
     const bool must = contact->size >= large_share * look->largest;
     PageBox box;
-    write_number(text, contact->size);
+    format_number(text, contact->size);
     const double em = points * MM_PER_POINT, width = type_width(text, points) + 0.25 * em, height = em;
     for (int i = 0; i < 2; i++) {
-        double away = i == 0 && contact->size * look->arrow_scale >= least_arrow ? 0.7 : look->ring + 0.5;
+        double away = i == 0 && contact->size * look->arrow_scale >= min_arrow ? 0.7 : look->ring + 0.5;
         if (!label_place(field, places[i].x, places[i].y, away, width, height, must, &box)) continue;
         sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
                     &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
@@ -122,16 +122,16 @@ static bool put_number(const ContactLook *look, Sketch *sketch, const ShownConta
     return false;
 }
 
-bool put_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
-                  int *count, int *numbered, Error *error) {
+bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
+                   int *count, int *numbered, Error *error) {
     ShownContact *contacts = gather(run, step, view, count);
     LabelField *field = calloc(1, sizeof *field);
     const bool done = (contacts != NULL && field != NULL) || error_memory(error, "figure");
     *numbered = 0;
     if (done) {
         field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
-        for (int i = *count - 1; i >= 0; i--) put_contact(look, sketch, &contacts[i], field);
-        for (int i = 0; i < *count && i < MOST_NUMBERS; i++) *numbered += put_number(look, sketch, &contacts[i], field);
+        for (int i = *count - 1; i >= 0; i--) draw_contact(look, sketch, &contacts[i], field);
+        for (int i = 0; i < *count && i < MAX_NUMBERS; i++) *numbered += draw_number(look, sketch, &contacts[i], field);
     }
     free(contacts);
     free(field);

@@ -1,38 +1,39 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One moment with what the step from there on found and did: contacts, their normals, their impulses. Poses are those
-   that the contacts were found for, not those after the step. */
+/* One moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
+   step, for which the contacts were found. */
 #include "figure/contact_marks.h"
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double gap = 2, edge = 0.2; /* mm: between cells; of the page, for half of a frame's line */
-static const double largest_ring = 0.55, least_ring = 0.3; /* mm */
-static const double ring_share = 0.06;                     /* of the shortest side of a body */
-static const double faded = 0.4;                           /* of the bodies' colours, for the marks to stand out */
-static const double tallest = 1.3;                         /* of a cell's width */
+static const double gap = 2, edge = 0.2;             /* mm: between cells; margin of the page, half a frame line */
+static const double max_ring = 0.55, min_ring = 0.3; /* mm */
+static const double ring_share = 0.06;               /* / the shortest side of a body */
+static const double body_opacity = 0.4;              /* opacity of the bodies, so that the marks stand out */
+static const double max_aspect = 1.3;                /* height / width of a cell, at most */
 
-enum { MOST_PANELS = 3 };
+enum { MAX_PANELS = 3 };
 
 typedef struct Annotated {
     const FigureSpec *spec;
     int frame;
     RunCells cells;
-    double top, foot, start; /* mm: above and below the cells; where the first begins */
+    double top, foot, start; /* mm: above and below the cells; left end of the first cell */
     ContactLook look;
 } Annotated;
 
-/* The frame that the bomb's first touch of a box came from; without one that of the largest impulse; -1: no contacts. */
+/* The frame before the step in which the bomb first touches a box; otherwise the frame before the largest impulse;
+   -1 without contacts. */
 static int find_moment(const Trajectory *run) {
     int touch = trajectory_impact(run), frame = -1;
     if (touch > 0) return touch - 1;
     double largest = -1;
     for (int step = 1; step < run->frames; step++)
         for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            double size = impulse_size(&run->contacts[i]);
+            double size = impulse_magnitude(&run->contacts[i]);
             if (size > largest) largest = size, frame = step - 1;
         }
     return frame;
@@ -40,42 +41,43 @@ static int find_moment(const Trajectory *run) {
 
 static bool choose_moment(Annotated *figure, Error *error) {
     const FigureSpec *spec = figure->spec;
-    FigureSpec asked = *spec;
+    FigureSpec requested = *spec;
     int count, moment = find_moment(spec->runs[0]), contacts = 0;
-    if (spec->time_count > 1) return error_input(error, "--at", "this kind shows one moment, not %d", spec->time_count);
+    if (spec->time_count > 1)
+        return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
     if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
     if (spec->time_count == 0) {
-        asked.time_count = 1;
-        asked.times[0] = moment * (double)spec->runs[0]->dt;
+        requested.time_count = 1;
+        requested.times[0] = moment * (double)spec->runs[0]->dt;
     }
     int frames[FIGURE_MOMENTS_MAX];
-    if (!run_frames(&asked, 1, 1, frames, &count, error)) return false;
+    if (!run_frames(&requested, 1, 1, frames, &count, error)) return false;
     figure->frame = frames[0];
     for (int i = 0; i < spec->run_count; i++) {
         const int64_t *start = spec->runs[i]->contact_start + figure->frame + 1;
         for (int64_t k = start[0]; k < start[1]; k++) {
-            if (!contact_has_numbers(&spec->runs[i]->contacts[k])) continue;
+            if (!contact_is_finite(&spec->runs[i]->contacts[k])) continue;
             contacts++;
-            figure->look.largest = fmax(figure->look.largest, impulse_size(&spec->runs[i]->contacts[k]));
+            figure->look.largest = fmax(figure->look.largest, impulse_magnitude(&spec->runs[i]->contacts[k]));
         }
     }
-    return contacts > 0 || error_input(error, spec->paths[0],
-                                       "has no contacts with an impulse in the step from %g s on", asked.times[0]);
+    return contacts > 0 || error_input(error, spec->paths[0], "has no contacts with an impulse in the step after %g s",
+                                       requested.times[0]);
 }
 
 static double ring_radius(const Trajectory *run, double scale) {
     double side = HUGE_VAL;
     for (int i = 0; i < run->bodies; i++)
         if (!run->fixed[i]) side = fmin(side, fmin((double)run->size[i].x, (double)run->size[i].y));
-    return fmin(fmax(ring_share * side * scale, least_ring), largest_ring);
+    return fmin(fmax(ring_share * side * scale, min_ring), max_ring);
 }
 
 static bool lay_out(Annotated *figure, Error *error) {
     const FigureSpec *spec = figure->spec;
-    const double line = line_height(spec->points), arrow_share = 0.22, longest_arrow = 14;
+    const double line = line_height(spec->points), arrow_share = 0.22, max_arrow = 14;
     figure->top = 2.2 * line, figure->foot = 2.2 * line;
     const double width = (spec->width - 2 * edge - (spec->run_count - 1) * gap) / spec->run_count;
-    const double height = fmin(FIGURE_TALLEST - figure->top - figure->foot, tallest * width);
+    const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - figure->foot, max_aspect * width);
     WorldWindow window = run_window(spec->runs[0], &figure->frame, 1);
     run_window_widen(&window, width / height);
     if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
@@ -83,31 +85,31 @@ static bool lay_out(Annotated *figure, Error *error) {
     figure->look.points = spec->points;
     figure->look.ring = ring_radius(spec->runs[0], figure->cells.scale);
     if (figure->look.largest > 0)
-        figure->look.arrow_scale = fmin(arrow_share * figure->cells.width, longest_arrow) / figure->look.largest;
+        figure->look.arrow_scale = fmin(arrow_share * figure->cells.width, max_arrow) / figure->look.largest;
     return true;
 }
 
-static void put_title(const Annotated *figure, Sketch *sketch, int panel, Point low, int count, int numbered) {
+static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point low, int count, int numbered) {
     const FigureSpec *spec = figure->spec;
     const Trajectory *run = spec->runs[panel];
     const double line = line_height(spec->points), top = low.y + figure->cells.height;
     char title[TRAJECTORY_NAME_SIZE + 32], counts[96], part[48] = "";
     snprintf(title, sizeof title, "%s, %.3f s", run->method, figure->frame * (double)run->dt);
-    words_fit(title, spec->points, figure->cells.width);
+    text_fit(title, spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
                 title);
     if (numbered < count) snprintf(part, sizeof part, ", %d of them written", numbered);
     snprintf(counts, sizeof counts, "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
-    words_fit(counts, CONTACT_TYPE * spec->points, figure->cells.width);
+    text_fit(counts, CONTACT_TYPE * spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 0.6 * line},
                 &(TextStyle){CONTACT_TYPE * spec->points, TEXT_LEFT, INK_SOFT, 0, false}, "%s", counts);
 }
 
-static bool put_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
-    Image *image = run_cells_shoot(&figure->cells, figure->spec->runs[panel], figure->frame, panel, STILL_ALL, error);
+static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
+    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, panel, STILL_ALL, error);
     if (image == NULL) return false;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        image->pixels[4 * i + 3] = (uint8_t)lrint(faded * image->pixels[4 * i + 3]);
+        image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
     sketch_image(sketch, image, low, figure->cells.width);
     image_destroy(image);
     sketch_rectangle(sketch, low, (Point){low.x + figure->cells.width, low.y + figure->cells.height},
@@ -115,26 +117,26 @@ static bool put_scene(Annotated *figure, Sketch *sketch, int panel, Point low, E
     return true;
 }
 
-static bool put_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
+static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
     const Point low = {figure->start + panel * (figure->cells.width + gap), figure->foot};
     const View view = run_cells_view(&figure->cells, low);
     int count, numbered;
-    if (!put_scene(figure, sketch, panel, low, error) ||
-        !put_contacts(sketch, &view, &figure->look, figure->spec->runs[panel], figure->frame + 1, &count, &numbered,
-                      error))
+    if (!draw_scene(figure, sketch, panel, low, error) ||
+        !draw_contacts(sketch, &view, &figure->look, figure->spec->runs[panel], figure->frame + 1, &count, &numbered,
+                       error))
         return false;
-    put_title(figure, sketch, panel, low, count, numbered);
+    draw_title(figure, sketch, panel, low, count, numbered);
     return true;
 }
 
-/* What the marks mean, in one line that goes on in a second where it is too long. */
-static void put_legend(const Annotated *figure, Sketch *sketch) {
+/* Two lines that explain the marks. */
+static void draw_legend(const Annotated *figure, Sketch *sketch) {
     const FigureSpec *spec = figure->spec;
     const double line = line_height(spec->points), points = CONTACT_TYPE * spec->points;
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
     double x = figure->start + figure->cells.width * 0.25 + 12, y = figure->foot - 0.7 * line;
-    run_cells_bar(&figure->cells, sketch, (Point){figure->start, y}, points);
-    put_contact_sample(sketch, (Point){x, y}, &figure->look);
+    run_cells_draw_scale_bar(&figure->cells, sketch, (Point){figure->start, y}, points);
+    draw_contact_sample(sketch, (Point){x, y}, &figure->look);
     x = figure->start, y -= line;
     if (figure->look.largest > 0) {
         double shown = round_down(figure->look.largest), length = shown * figure->look.arrow_scale;
@@ -149,8 +151,8 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Annotated figure = {.spec = spec};
     bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && lay_out(&figure, error);
     if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
-    for (int i = 0; done && i < spec->run_count; i++) done = put_panel(&figure, sketch, i, error);
-    if (done) put_legend(&figure, sketch);
+    for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);
+    if (done) draw_legend(&figure, sketch);
     run_cells_free(&figure.cells);
     return done;
 }
@@ -159,8 +161,8 @@ const FigureKind figure_annotated = {
     .name = "annotated",
     .summary = "one moment with contacts, normals and impulses",
     .example = "annotated engine.npz --at 0.55 -o contacts.pdf",
-    .least_runs = 1,
-    .most_runs = MOST_PANELS,
+    .min_runs = 1,
+    .max_runs = MAX_PANELS,
     .takes_times = true,
     .draw = draw,
 };

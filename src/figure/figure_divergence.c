@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest distance of any body from where the first run has it, over time; and the band in which the first run parts
-   from itself when one body is shifted by a micrometre: inside it two runs part no faster than chance does. */
+/* The largest distance of any body from its position in the first run, over time. The band shows the distance of the
+   first run from copies with one body shifted by a micrometre: two runs inside it diverge no faster than by chaos. */
 #include "chart/chart_style.h"
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 #include "sketch/plot.h"
@@ -12,17 +12,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BAND_BODIES = 5 }; /* shifted one after the other */
+enum { BAND_BODIES = 5 }; /* bodies shifted, one at a time */
 
 static const uint32_t band_colour = 0xD3D8DF;
-static const double sample = 6; /* mm of line in the legend */
+static const double sample = 6; /* mm, line sample in the legend */
 
 typedef struct Divergence {
     const FigureSpec *spec;
     int frames;                        /* of the first run */
-    double *distance[FIGURE_RUNS_MAX]; /* [frames] m; NAN where either has ended; of the first run: NULL */
-    double *low, *high;                /* [frames] m, of the band; NULL: none. NAN from where it ends */
-    int shifted;                       /* bodies that the band is made of */
+    double *distance[FIGURE_RUNS_MAX]; /* [frames] m; NaN after the end of either run; NULL for the first run */
+    double *low, *high;                /* [frames] m, the band; NULL: none. NaN after its end */
+    int shifted;                       /* number of bodies shifted for the band */
 } Divergence;
 
 static void free_all(Divergence *d) {
@@ -45,7 +45,7 @@ static bool measure(Divergence *d, Error *error) {
     return true;
 }
 
-/* The bomb, and others as far from each other in their order as can be. */
+/* The bomb, and other bodies spread evenly over the order of bodies. */
 static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
     int count = 0, others = 0, wanted = BAND_BODIES, seen = 0;
     for (int i = 0; i < run->bodies; i++) others += !run->fixed[i] && i != run->bomb;
@@ -53,7 +53,7 @@ static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
     if (wanted > others) wanted = others;
     for (int i = 0; i < run->bodies; i++) {
         if (run->fixed[i] || i == run->bomb) continue;
-        /* The k-th of those wanted is at k (others - 1) / (wanted - 1). */
+        /* the k-th of `wanted` has index k (others - 1) / (wanted - 1) */
         int taken = run->bomb >= 0 ? count - 1 : count;
         if (taken < wanted && seen == (wanted > 1 ? taken * (others - 1) / (wanted - 1) : 0)) bodies[count++] = i;
         seen++;
@@ -64,20 +64,20 @@ static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
 static bool widen_band(Divergence *d, int body, const Progress *progress, Error *error) {
     Chaos chaos;
     if (!chaos_run(&chaos, d->spec->scene, d->spec->runs[0], body, d->frames, progress, error)) return false;
-    bool same = chaos.other < 0;
+    bool same = chaos.rerun_differs < 0;
     for (int i = 0; same && i < d->frames; i++) {
-        /* A run that has left the numbers ends the band. */
+        /* a run with NaN or infinite states ends the band */
         double distance = i < chaos.frames ? chaos.distance[i] : NAN;
         bool there = !isnan(distance) && !isnan(d->low[i]);
-        /* 0: what is shifted comes later. */
+        /* distance 0: the shifted body appears later */
         d->low[i] = !there ? NAN : distance > 0 ? fmin(d->low[i], distance) : d->low[i];
         d->high[i] = there ? fmax(d->high[i], distance) : NAN;
     }
-    int other = chaos.other;
+    int other = chaos.rerun_differs;
     chaos_free(&chaos);
     return same || error_input(error, d->spec->paths[0],
-                               "%s run again is not this run from frame %d on: made with "
-                               "other options, or by another version",
+                               "%s run again differs from this run from frame %d on: it was made "
+                               "with other options or by another version",
                                d->spec->scene, other);
 }
 
@@ -88,7 +88,7 @@ static bool make_band(Divergence *d, Error *error) {
     if (d->low == NULL || d->high == NULL) return error_memory(error, "figure");
     for (int i = 0; i < d->frames; i++) d->low[i] = HUGE_VAL, d->high[i] = 0;
     d->shifted = choose_bodies(d->spec->runs[0], bodies);
-    if (d->shifted == 0) return error_input(error, d->spec->scene, "nothing in it can move, and so nothing be shifted");
+    if (d->shifted == 0) return error_input(error, d->spec->scene, "the scene has no dynamic body to shift");
     for (int i = 0; i < d->shifted; i++) {
         ProgressStage stage = {d->spec->progress, (double)i / d->shifted, 1.0 / d->shifted, false};
         if (!widen_band(d, bodies[i], &(Progress){progress_stage, &stage}, error)) return false;
@@ -108,7 +108,7 @@ static void include(Range *range, const double *values, int count) {
 
 static uint32_t colour_of(const char *text) { return (uint32_t)strtoul(text + 1, NULL, 16); }
 
-/* A part without gaps of a line on the way to the page. */
+/* The points of a line up to its next gap. */
 static int gather(const Divergence *d, const Plot *plot, const double *values, int from, Point *points) {
     int count = 0;
     for (int i = from; i < d->frames && values[i] > 0; i++)
@@ -116,7 +116,7 @@ static int gather(const Divergence *d, const Plot *plot, const double *values, i
     return count;
 }
 
-static void put_line(const Divergence *d, Sketch *sketch, const Plot *plot, int run, Point *points) {
+static void draw_line(const Divergence *d, Sketch *sketch, const Plot *plot, int run, Point *points) {
     const ChartStyle style = chart_style(run - 1);
     const Pen pen = pen_line(colour_of(style.colour), 2.2, strcmp(style.dashes, "solid") == 0 ? NULL : style.dashes);
     for (int i = 0; i < d->frames; i++) {
@@ -126,31 +126,31 @@ static void put_line(const Divergence *d, Sketch *sketch, const Plot *plot, int 
     }
 }
 
-static void put_band(const Divergence *d, Sketch *sketch, const Plot *plot, Point *points) {
+static void draw_band(const Divergence *d, Sketch *sketch, const Plot *plot, Point *points) {
     int first = 0;
     while (first < d->frames && !(d->high[first] > 0)) first++;
     int count = gather(d, plot, d->high, first, points);
     for (int i = count - 1; i >= 0; i--)
         points[count + (count - 1 - i)] =
             plot_place(plot, (first + i) * (double)d->spec->runs[0]->dt, d->low[first + i]);
-    /* Its line shows where it has no height: as long as nothing has grown. */
+    /* the outline stays visible while the band has no height */
     sketch_shape(sketch, points, 2 * count, &(Pen){band_colour, 1, band_colour, 2.2, NULL});
 }
 
-static bool parts(const double *distance, int frames) {
+static bool ever_diverges(const double *distance, int frames) {
     for (int i = 0; i < frames; i++)
         if (distance[i] > 0) return true;
     return false;
 }
 
-static void put_legend_row(Sketch *sketch, Point at, double points, double width, char *words) {
-    words_fit(words, points, width - sample - 1.5);
+static void draw_legend_row(Sketch *sketch, Point at, double points, double width, char *words) {
+    text_fit(words, points, width - sample - 1.5);
     sketch_text(sketch, (Point){at.x + sample + 1.5, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
                 words);
 }
 
-/* Rows above the plot, from `top` down. */
-static void put_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
+/* Rows above the plot, down from `top`. */
+static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
     const FigureSpec *spec = d->spec;
     const double line = line_height(spec->points);
     char words[2 * TRAJECTORY_NAME_SIZE + 64];
@@ -159,20 +159,20 @@ static void put_legend(const Divergence *d, Sketch *sketch, double left, double 
         const ChartStyle style = chart_style(i - 1);
         const Pen pen =
             pen_line(colour_of(style.colour), 2.2, strcmp(style.dashes, "solid") == 0 ? NULL : style.dashes);
-        bool ever = parts(d->distance[i], d->frames);
+        bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
         snprintf(words, sizeof words, "%s from %s%s", spec->runs[i]->method, spec->runs[0]->method,
                  ever ? "" : ": equal");
-        put_legend_row(sketch, at, spec->points, width, words);
+        draw_legend_row(sketch, at, spec->points, width, words);
     }
     if (d->low == NULL) return;
     sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
                      &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
     snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", spec->runs[0]->method, d->shifted);
-    put_legend_row(sketch, at, spec->points, width, words);
+    draw_legend_row(sketch, at, spec->points, width, words);
 }
 
-static void put_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
+static void draw_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
     const Trajectory *run = d->spec->runs[0];
     const int touch = trajectory_impact(run);
     if (touch < 0) return;
@@ -184,7 +184,7 @@ static void put_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
                 &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "bomb hits");
 }
 
-static bool put_plot(const Divergence *d, Sketch *sketch, Range range, Error *error) {
+static bool draw_plot(const Divergence *d, Sketch *sketch, Range range, Error *error) {
     const FigureSpec *spec = d->spec;
     const double shape = 0.55, tallest = 75, line = line_height(spec->points), room = 3;
     const double left = plot_left_margin(spec->points), bottom = plot_bottom_margin(spec->points);
@@ -195,11 +195,11 @@ static bool put_plot(const Divergence *d, Sketch *sketch, Range range, Error *er
     plot_begin(&plot, low, high, 0, (d->frames - 1) * (double)spec->runs[0]->dt, range.least, range.most, spec->points);
     Point *points = malloc(2 * (size_t)d->frames * sizeof *points);
     if (points == NULL) return error_memory(error, "figure");
-    if (d->low != NULL) put_band(d, sketch, &plot, points);
-    plot_put_axes(&plot, sketch, "time (s)", "largest distance (m)");
-    put_impact(d, sketch, &plot);
-    for (int i = 1; i < spec->run_count; i++) put_line(d, sketch, &plot, i, points);
-    put_legend(d, sketch, left, sketch->height, spec->width - left);
+    if (d->low != NULL) draw_band(d, sketch, &plot, points);
+    plot_draw_axes(&plot, sketch, "time (s)", "largest distance (m)");
+    draw_impact(d, sketch, &plot);
+    for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, points);
+    draw_legend(d, sketch, left, sketch->height, spec->width - left);
     free(points);
     return true;
 }
@@ -211,18 +211,19 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
     if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);
     if (done && range.most == 0)
-        done = error_input(error, spec->paths[1], "never parts from %s: there is no distance to draw", spec->paths[0]);
-    done = done && put_plot(&d, sketch, range, error);
+        done =
+            error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
+    done = done && draw_plot(&d, sketch, range, error);
     free_all(&d);
     return done;
 }
 
 const FigureKind figure_divergence = {
     .name = "divergence",
-    .summary = "distance from the first run over time, and how chance parts it",
+    .summary = "distance from the first run over time, with a band of chaotic divergence",
     .example = "divergence a.npz b.npz --scene stack.yaml -o apart.svg",
-    .least_runs = 2,
-    .most_runs = FIGURE_RUNS_MAX,
+    .min_runs = 2,
+    .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
     .draw = draw,
 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A network: its layers, their sizes, its weights. */
+/* A network: its layers, their widths, its weights. */
 #include "common/file.h"
 #include "common/npz.h"
 #include "figure/network_drawing.h"
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 
@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *activation_word(Activation activation) {
+const char *activation_name(Activation activation) {
     static const char *const words[] = {[ACTIVATION_LINEAR] = "linear",
                                         [ACTIVATION_SIGMOID] = "sigmoid",
                                         [ACTIVATION_TANH] = "tanh",
@@ -19,13 +19,13 @@ const char *activation_word(Activation activation) {
     return words[activation];
 }
 
-void write_widths(char text[WIDTHS_TEXT_SIZE], const Network *network) {
+void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network) {
     int used = 0;
     for (int i = 0; i <= network->layers; i++)
         used += snprintf(text + used, (size_t)(WIDTHS_TEXT_SIZE - used), "%s%d", i > 0 ? "-" : "", network->widths[i]);
 }
 
-/* The channels of white, and of the colour that it turns to. */
+/* Mixes a colour with white. */
 static uint32_t mix(uint32_t colour, double share) {
     uint32_t mixed = 0;
     for (int shift = 0; shift < 24; shift += 8) {
@@ -42,11 +42,11 @@ uint32_t weight_colour(double share) {
 
 double network_title_height(const FigureSpec *spec) { return 1.5 * line_height(spec->points); }
 
-void put_network_title(Sketch *sketch, const FigureSpec *spec, const char *title) {
+void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title) {
     const double line = line_height(spec->points);
     char words[NETWORK_TEXT_SIZE];
     snprintf(words, sizeof words, "%s", title);
-    words_fit(words, spec->points, sketch->width);
+    text_fit(words, spec->points, sketch->width);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false},
                 "%s", words);
 }
@@ -56,8 +56,8 @@ static bool draw_dense(Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (network == NULL) return false;
     int widest = 0;
     for (int i = 0; i <= network->layers; i++) widest = network->widths[i] > widest ? network->widths[i] : widest;
-    bool done = widest <= UNITS_MOST ? draw_units(sketch, spec, network, error)
-                                     : draw_dense_matrices(sketch, spec, network, error);
+    bool done = widest <= UNITS_MAX ? draw_units(sketch, spec, network, error)
+                                    : draw_dense_matrices(sketch, spec, network, error);
     network_destroy(network);
     return done;
 }
@@ -77,7 +77,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     npz_close(file);
     if (known && strcmp(kind, "network") == 0) return draw_dense(sketch, spec, error);
     if (known && strcmp(kind, "scene-net") == 0) return draw_slots(sketch, spec, error);
-    return error_input(error, spec->network, "holds no network with layers%s", known ? "" : ": it does not say a kind");
+    return error_input(error, spec->network, "contains no network with layers%s", known ? "" : ": it states no kind");
 }
 
 const FigureKind figure_network = {

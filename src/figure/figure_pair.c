@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The narrow phase of a contact of a run: which way two boxes touch, and in which points. Poses are those that the step
-   found the contact for. */
+/* The narrow phase of a contact of a run: the axis along which two boxes touch, and their contact points. The poses
+   are those before the step, for which the contact was found. */
 #include "figure/narrow_phase.h"
-#include "figure/run_kinds.h"
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 
@@ -10,11 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double least_tilt = 10;     /* degrees: below, two axes of one box can hardly be told from the other's */
-static const double largest_ratio = 4.5; /* of sides: beyond, one box hides what happens to the other */
-static const double side_by_side = 130;  /* mm of width, from which on both halves have room beside each other */
+static const double min_tilt = 10;      /* degrees; with less, the axes of the two boxes look the same */
+static const double max_ratio = 4.5;    /* of sides; beyond, one box hides the details of the other */
+static const double side_by_side = 130; /* mm; from this width on, both halves fit side by side */
 
-/* How much a pair has to show: 0: not what is asked for. */
+/* How instructive a pair is; SHOWS_NOTHING: not the requested one. */
 enum { SHOWS_NOTHING, SHOWS_SOMETHING, SHOWS_BOMB, SHOWS_ALL };
 
 static Box box_of(const Trajectory *run, int frame, int body) {
@@ -30,16 +30,17 @@ static double tilt(const Trajectory *run, int frame, int a, int b) {
 
 static int rate_pair(const FigureSpec *spec, int step, int a, int b, int points) {
     const Trajectory *run = spec->runs[0];
-    const int *asked = spec->bodies;
-    if (asked[0] != asked[1])
-        return (asked[0] == a && asked[1] == b) || (asked[0] == b && asked[1] == a) ? SHOWS_ALL : SHOWS_NOTHING;
+    const int *requested = spec->bodies;
+    if (requested[0] != requested[1])
+        return (requested[0] == a && requested[1] == b) || (requested[0] == b && requested[1] == a) ? SHOWS_ALL
+                                                                                                    : SHOWS_NOTHING;
     if (run->fixed[a] || run->fixed[b]) return SHOWS_NOTHING;
     if (a != run->bomb && b != run->bomb) return SHOWS_SOMETHING;
-    return points == 2 && tilt(run, step - 1, a, b) >= least_tilt ? SHOWS_ALL : SHOWS_BOMB;
+    return points == 2 && tilt(run, step - 1, a, b) >= min_tilt ? SHOWS_ALL : SHOWS_BOMB;
 }
 
-/* Of the first step from `first` on in which the bomb touches, or the pair asked for, the pair that shows most; where
-   there is none, the first pair. */
+/* Finds the most instructive pair of the first step from `first` on in which the bomb or the requested pair touches;
+   if there is none, the first pair. */
 static int find_pair(const FigureSpec *spec, int first, int end, Collision *collision) {
     const Trajectory *run = spec->runs[0];
     int best = SHOWS_NOTHING;
@@ -59,12 +60,12 @@ static int find_pair(const FigureSpec *spec, int first, int end, Collision *coll
     return best;
 }
 
-static bool refuse_none(const FigureSpec *spec, Error *error) {
+static bool refuse_no_pair(const FigureSpec *spec, Error *error) {
     const char *when = spec->time_count > 0 ? " in that step" : "";
     if (spec->bodies[0] != spec->bodies[1])
         return error_input(error, spec->paths[0], "bodies %d and %d do not touch%s", spec->bodies[0], spec->bodies[1],
                            when);
-    return error_input(error, spec->paths[0], "no two bodies that can move touch%s", when);
+    return error_input(error, spec->paths[0], "no two dynamic bodies touch%s", when);
 }
 
 static bool check_sizes(const FigureSpec *spec, const Collision *collision, Error *error) {
@@ -74,25 +75,26 @@ static bool check_sizes(const FigureSpec *spec, const Collision *collision, Erro
         sides[i][0] = fmin((double)size.x, (double)size.y), sides[i][1] = fmax((double)size.x, (double)size.y);
     }
     double least = fmin(sides[0][0], sides[1][0]), most = fmax(sides[0][1], sides[1][1]);
-    return most <= largest_ratio * least ||
-           error_input(
-               error, spec->paths[0],
-               "bodies %d and %d have sides from %g to %g m: beside the long one nothing of the short one shows",
-               collision->bodies[0], collision->bodies[1], least, most);
+    return most <= max_ratio * least ||
+           error_input(error, spec->paths[0],
+                       "bodies %d and %d have sides from %g to %g m: the ratio must be at most %g",
+                       collision->bodies[0], collision->bodies[1], least, most, max_ratio);
 }
 
 static bool choose(const FigureSpec *spec, Collision *collision, Error *error) {
     const Trajectory *run = spec->runs[0];
     int frames[FIGURE_MOMENTS_MAX], count, first = 1, end = run->frames;
-    if (spec->time_count > 1) return error_input(error, "--at", "this kind shows one moment, not %d", spec->time_count);
+    if (spec->time_count > 1)
+        return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
     for (int i = 0; i < 2; i++)
         if (spec->bodies[i] >= run->bodies)
-            return error_input(error, "--bodies", "there is no body %d: the run has %d", spec->bodies[i], run->bodies);
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               run->bodies);
     if (spec->time_count > 0) {
         if (!run_frames(spec, 1, 1, frames, &count, error)) return false;
         first = frames[0] + 1, end = first + 1;
     }
-    if (find_pair(spec, first, end, collision) == SHOWS_NOTHING) return refuse_none(spec, error);
+    if (find_pair(spec, first, end, collision) == SHOWS_NOTHING) return refuse_no_pair(spec, error);
     for (int i = 0; i < 2; i++) {
         int body = collision->bodies[i];
         collision->boxes[i] = box_of(run, collision->step - 1, body);
@@ -103,13 +105,12 @@ static bool choose(const FigureSpec *spec, Collision *collision, Error *error) {
     if (!check_sizes(spec, collision, error)) return false;
     return collision_find(collision) ||
            error_input(error, spec->paths[0],
-                       "bodies %d and %d touch in the step from %g s on, but not at the poses that "
-                       "the run has for it",
+                       "bodies %d and %d touch in the step after %g s, but not at the poses stored for it",
                        collision->bodies[0], collision->bodies[1], (collision->step - 1) * (double)run->dt);
 }
 
-/* The picture is turned: an arrow tells where down is. */
-static void put_down(Sketch *sketch, const Collision *collision, const View *view, Vec2 down) {
+/* The picture is rotated: an arrow shows where down is. */
+static void draw_down_arrow(Sketch *sketch, const Collision *collision, const View *view, Vec2 down) {
     const double reach = 3.5, x = (double)down.x, y = (double)down.y;
     const Point middle = {view->low.x + 5, view->low.y + 14};
     sketch_arrow(sketch, (Point){middle.x - reach * x, middle.y - reach * y},
@@ -118,24 +119,24 @@ static void put_down(Sketch *sketch, const Collision *collision, const View *vie
                 "down");
 }
 
-static void put_halves(Sketch *sketch, const Collision *collision, View overlaps, View contact, Vec2 down) {
+static void draw_halves(Sketch *sketch, const Collision *collision, View overlaps, View contact, Vec2 down) {
     const double line = line_height(collision->points);
     const TextStyle words = {collision->points, TEXT_LEFT, INK, 0, false};
-    put_overlaps(sketch, overlaps, collision);
-    put_down(sketch, collision, &overlaps, down);
-    put_contact(sketch, contact, collision);
+    draw_overlaps(sketch, overlaps, collision);
+    draw_down_arrow(sketch, collision, &overlaps, down);
+    draw_contact_closeup(sketch, contact, collision);
     sketch_text(sketch, (Point){overlaps.low.x, overlaps.high.y + 0.6 * line}, &words,
                 "Overlaps along the axes of both boxes");
     sketch_text(sketch, (Point){contact.low.x, contact.high.y + 0.6 * line}, &words,
                 "Contact points: separations along the normal");
 }
 
-static void put_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
+static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
     const Trajectory *run = spec->runs[0];
     char title[TRAJECTORY_NAME_SIZE + 96];
     snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run->method, (collision->step - 1) * (double)run->dt,
              collision->bodies[0], collision->bodies[1]);
-    words_fit(title, spec->points, sketch->width - 0.4);
+    text_fit(title, spec->points, sketch->width - 0.4);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line_height(spec->points)},
                 &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
 }
@@ -148,24 +149,24 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (width >= side_by_side) {
         const double side = 0.44 * width;
         sketch_begin(sketch, width, side + 2.6 * line + edge);
-        put_halves(sketch, &collision, (View){.low = {edge, edge}, .high = {width - side - gap, side + edge}},
-                   (View){.low = {width - side - edge, edge}, .high = {width - edge, side + edge}}, down);
+        draw_halves(sketch, &collision, (View){.low = {edge, edge}, .high = {width - side - gap, side + edge}},
+                    (View){.low = {width - side - edge, edge}, .high = {width - edge, side + edge}}, down);
     } else {
         const double upper = width, lower = 0.8 * width, middle = lower + 2 * line + edge;
         sketch_begin(sketch, width, middle + upper + 2.6 * line);
-        put_halves(sketch, &collision, (View){.low = {edge, middle}, .high = {width - edge, middle + upper}},
-                   (View){.low = {edge, edge}, .high = {width - edge, lower}}, down);
+        draw_halves(sketch, &collision, (View){.low = {edge, middle}, .high = {width - edge, middle + upper}},
+                    (View){.low = {edge, edge}, .high = {width - edge, lower}}, down);
     }
-    put_title(sketch, spec, &collision);
+    draw_title(sketch, spec, &collision);
     return true;
 }
 
 const FigureKind figure_pair = {
     .name = "narrow-phase",
-    .summary = "how two boxes of a run touch: overlaps, normal, points",
+    .summary = "contact of two boxes of a run: overlaps, normal, points",
     .example = "narrow-phase engine.npz --bodies 2,11 -o pair.svg",
-    .least_runs = 1,
-    .most_runs = 1,
+    .min_runs = 1,
+    .max_runs = 1,
     .takes_times = true,
     .takes_bodies = true,
     .draw = draw,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moments of runs: a row for each run, a column for each moment, all by one camera. */
-#include "figure/run_kinds.h"
+/* Moments of runs: a row per run, a column per moment, all with one camera. */
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 #include "sketch/type.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double gap = 1.2, edge = 0.2; /* mm: between cells; of the page, for half of a frame's line */
+static const double gap = 1.2, edge = 0.2; /* mm: between cells; margin of the page, half a frame line */
 
 enum { DEFAULT_MOMENTS = 5 };
 
@@ -16,8 +16,8 @@ typedef struct Strip {
     const FigureSpec *spec;
     int frames[FIGURE_MOMENTS_MAX], count;
     RunCells cells;
-    double left, top, foot; /* mm: beside, above and below the cells */
-    double start;           /* where the first cell begins */
+    double left, top, foot; /* mm: space beside, above and below the cells */
+    double start;           /* left end of the first cell */
 } Strip;
 
 static double strip_height(const Strip *strip) {
@@ -29,12 +29,13 @@ static bool lay_out(Strip *strip, Error *error) {
     const double line = line_height(spec->points);
     strip->left = 1.1 * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
     const double width = (spec->width - edge - strip->left - (strip->count - 1) * gap) / strip->count;
-    const double height = (FIGURE_TALLEST - strip->top - strip->foot - (spec->run_count - 1) * gap) / spec->run_count;
+    const double height =
+        (FIGURE_HEIGHT_MAX - strip->top - strip->foot - (spec->run_count - 1) * gap) / spec->run_count;
     const double least = 5;
     if (width < least || height < least)
         return error_input(error, "figure",
-                           "%d moments of %d runs leave %.1f x %.1f mm for each on %g mm; at least %g "
-                           "are needed",
+                           "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
+                           "%g mm are needed",
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
     const WorldWindow window = run_window(spec->runs[0], strip->frames, strip->count);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
@@ -50,13 +51,13 @@ static Point cell_corner(const Strip *strip, int row, int column) {
                    strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + gap)};
 }
 
-static bool put_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
+static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
     RunCells cells = strip->cells;
     const FigureSpec *spec = strip->spec;
     const Trajectory *run = spec->runs[row];
     const Point low = cell_corner(strip, row, column), high = {low.x + cells.width, low.y + cells.height};
     const int frame = strip->frames[column], outside = run_count_outside(run, frame, &cells.window);
-    if (!run_cells_put(&cells, sketch, low, run, frame, row, error)) return false;
+    if (!run_cells_draw(&cells, sketch, low, run, frame, row, error)) return false;
     sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
     if (outside > 0)
         sketch_text(sketch, (Point){high.x - 0.8, high.y - line_height(spec->points) / 2},
@@ -64,7 +65,7 @@ static bool put_cell(const Strip *strip, Sketch *sketch, int row, int column, Er
     return true;
 }
 
-static void put_words(const Strip *strip, Sketch *sketch) {
+static void draw_texts(const Strip *strip, Sketch *sketch) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
     const TextStyle upright = {spec->points, TEXT_CENTER, INK, 0, false};
@@ -73,7 +74,7 @@ static void put_words(const Strip *strip, Sketch *sketch) {
         const Point low = cell_corner(strip, row, 0);
         char name[TRAJECTORY_NAME_SIZE];
         memcpy(name, spec->runs[row]->method, sizeof name);
-        words_fit(name, spec->points, cells->height);
+        text_fit(name, spec->points, cells->height);
         sketch_text(sketch, (Point){low.x - strip->left / 2, low.y + cells->height / 2}, &turned, "%s", name);
     }
     for (int column = 0; column < strip->count; column++) {
@@ -81,7 +82,7 @@ static void put_words(const Strip *strip, Sketch *sketch) {
         sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + cells->height + strip->top / 2}, &upright,
                     "%.2f s", strip->frames[column] * (double)spec->runs[0]->dt);
     }
-    run_cells_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
+    run_cells_draw_scale_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
 }
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
@@ -91,18 +92,18 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)
         for (int column = 0; done && column < strip.count; column++)
-            done = put_cell(&strip, sketch, row, column, error);
-    if (done) put_words(&strip, sketch);
+            done = draw_cell(&strip, sketch, row, column, error);
+    if (done) draw_texts(&strip, sketch);
     run_cells_free(&strip.cells);
     return done;
 }
 
 const FigureKind figure_strip = {
     .name = "strip",
-    .summary = "moments of runs: a row for each run, a column for each moment",
+    .summary = "moments of runs: a row per run, a column per moment",
     .example = "strip engine.npz net.npz --at 0.5,0.6,0.8 -o strip.pdf",
-    .least_runs = 1,
-    .most_runs = FIGURE_RUNS_MAX,
+    .min_runs = 1,
+    .max_runs = FIGURE_RUNS_MAX,
     .takes_times = true,
     .takes_moments = true,
     .draw = draw,

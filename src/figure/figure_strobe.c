@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Many moments of one run in one picture: the last as it is, those before the paler the earlier. */
-#include "figure/run_kinds.h"
+/* Many moments of one run in one picture: the last is opaque, earlier ones are paler. */
+#include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 #include "sketch/label_place.h"
@@ -12,10 +12,10 @@
 
 enum { DEFAULT_MOMENTS = 9 };
 
-static const double edge = 0.2;                         /* mm of the page, for half of a frame's line */
-static const double tallest = 120, tallest_share = 1.2; /* mm; of its width */
+static const double edge = 0.2;                         /* mm, margin of the page, half a frame line */
+static const double max_height = 120, max_aspect = 1.2; /* mm; height / width */
 static const double palest = 0.12, before_last = 0.5; /* opacity of the first moment, and of the one before the last */
-static const double small_type = 0.85;                /* of the times */
+static const double small_type = 0.85;                /* font size of the times / the figure's font size */
 
 typedef struct Strobe {
     const FigureSpec *spec;
@@ -30,20 +30,20 @@ static double opacity_of(const Strobe *strobe, int moment) {
     return strobe->count > 2 ? palest + (before_last - palest) * moment / (strobe->count - 2) : palest;
 }
 
-static void put_over(Image *image, const Image *upper, double opacity) {
+static void blend_over(Image *image, const Image *upper, double opacity) {
     for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4) {
         int alpha = (int)lrint(opacity * upper->pixels[i + 3]);
         if (alpha > 0) pixel_over(image->pixels + i, upper->pixels + i, alpha);
     }
 }
 
-static bool put_moments(Strobe *strobe, Sketch *sketch, Error *error) {
-    Image *image = run_cells_shoot(&strobe->cells, strobe->run, strobe->frames[0], 0, STILL_FIXED, error);
+static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
+    Image *image = run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], 0, STILL_FIXED, error);
     bool done = image != NULL;
     for (int i = 0; done && i < strobe->count; i++) {
-        Image *moment = run_cells_shoot(&strobe->cells, strobe->run, strobe->frames[i], 0, STILL_MOVING, error);
+        Image *moment = run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], 0, STILL_MOVING, error);
         done = moment != NULL;
-        if (done) put_over(image, moment, opacity_of(strobe, i));
+        if (done) blend_over(image, moment, opacity_of(strobe, i));
         image_destroy(moment);
     }
     if (done) sketch_image(sketch, image, strobe->low, strobe->cells.width);
@@ -51,7 +51,7 @@ static bool put_moments(Strobe *strobe, Sketch *sketch, Error *error) {
     return done;
 }
 
-/* The bomb's centre on the page. False where it is not there or not in the picture. */
+/* The bomb's centre on the page. False if it does not exist yet or is outside the picture. */
 static bool find_bomb(const Strobe *strobe, const View *view, int frame, Point *at) {
     const Trajectory *run = strobe->run;
     if (!trajectory_has(run, frame, run->bomb)) return false;
@@ -59,7 +59,7 @@ static bool find_bomb(const Strobe *strobe, const View *view, int frame, Point *
     return at->x > view->low.x && at->x < view->high.x && at->y > view->low.y && at->y < view->high.y;
 }
 
-static void put_way(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
+static void draw_bomb_path(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
     const Pen pen = pen_line(BOMB.line, 1.4, NULL);
     Point p, q;
     for (int frame = strobe->frames[0]; frame < strobe->frames[strobe->count - 1]; frame++) {
@@ -69,8 +69,8 @@ static void put_way(const Strobe *strobe, Sketch *sketch, const View *view, Labe
     }
 }
 
-/* When the bomb was where, as far as there is room beside it. */
-static void put_times(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
+/* The times at the bomb's positions, where there is room. */
+static void draw_times(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
     const Trajectory *run = strobe->run;
     const double points = small_type * strobe->spec->points, height = points * MM_PER_POINT;
     const double half = 0.5 * (double)run->size[run->bomb].x * view->scale;
@@ -90,19 +90,19 @@ static void put_times(const Strobe *strobe, Sketch *sketch, const View *view, La
     }
 }
 
-static bool put_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
+static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
     if (strobe->run->bomb < 0) return true;
     const View view = run_cells_view(&strobe->cells, strobe->low);
     LabelField *field = calloc(1, sizeof *field);
     if (field == NULL) return error_memory(error, "figure");
     field->frame = (PageBox){view.low.x + 0.3, view.low.y + 0.3, view.high.x - 0.3, view.high.y - 0.3};
-    put_way(strobe, sketch, &view, field);
-    put_times(strobe, sketch, &view, field);
+    draw_bomb_path(strobe, sketch, &view, field);
+    draw_times(strobe, sketch, &view, field);
     free(field);
     return true;
 }
 
-static void put_words(const Strobe *strobe, Sketch *sketch) {
+static void draw_texts(const Strobe *strobe, Sketch *sketch) {
     const FigureSpec *spec = strobe->spec;
     const RunCells *cells = &strobe->cells;
     const double line = line_height(spec->points), y = strobe->low.y / 2 - 0.2;
@@ -114,10 +114,10 @@ static void put_words(const Strobe *strobe, Sketch *sketch) {
                  last);
     else
         snprintf(title, sizeof title, "%s, %.2f s", strobe->run->method, last);
-    words_fit(title, spec->points, cells->width);
+    text_fit(title, spec->points, cells->width);
     sketch_text(sketch, (Point){strobe->low.x, strobe->low.y + cells->height + 0.6 * line},
                 &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
-    run_cells_bar(cells, sketch, (Point){strobe->low.x, y}, spec->points);
+    run_cells_draw_scale_bar(cells, sketch, (Point){strobe->low.x, y}, spec->points);
     int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &cells->window);
     if (outside > 0)
         sketch_text(sketch, (Point){strobe->low.x + cells->width, y},
@@ -127,7 +127,7 @@ static void put_words(const Strobe *strobe, Sketch *sketch) {
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strobe strobe = {.spec = spec, .run = spec->runs[0]};
     const double line = line_height(spec->points), width = spec->width - 2 * edge;
-    const double height = fmin(tallest, tallest_share * width);
+    const double height = fmin(max_height, max_aspect * width);
     if (!run_frames(spec, DEFAULT_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
     WorldWindow window = run_window(strobe.run, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);
@@ -135,13 +135,13 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (done) {
         strobe.low = (Point){(spec->width - strobe.cells.width) / 2, 1.2 * line};
         sketch_begin(sketch, spec->width, strobe.cells.height + 2.4 * line);
-        done = put_moments(&strobe, sketch, error) && put_bomb(&strobe, sketch, error);
+        done = draw_moments(&strobe, sketch, error) && draw_bomb(&strobe, sketch, error);
     }
     if (done) {
         sketch_rectangle(sketch, strobe.low,
                          (Point){strobe.low.x + strobe.cells.width, strobe.low.y + strobe.cells.height},
                          &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
-        put_words(&strobe, sketch);
+        draw_texts(&strobe, sketch);
     }
     run_cells_free(&strobe.cells);
     return done;
@@ -151,8 +151,8 @@ const FigureKind figure_strobe = {
     .name = "strobe",
     .summary = "many moments of a run in one picture, fading",
     .example = "strobe engine.npz --at 0.3,0.4,0.5,0.6 -o strobe.png",
-    .least_runs = 1,
-    .most_runs = 1,
+    .min_runs = 1,
+    .max_runs = 1,
     .takes_times = true,
     .takes_moments = true,
     .draw = draw,

@@ -9,7 +9,8 @@ bool collision_find(Collision *collision) {
     manifold_compute(&collision->manifold, a, b);
     separating_axes(collision->overlaps, a, b);
     if (collision->manifold.count == 0) return false;
-    /* The axis that the normal lies on: the engine keeps one that is nearly the least rather than change it. */
+    /* The axis of the normal, which need not have the least overlap: for coherence the engine keeps an axis that is
+       nearly the least. */
     collision->least = -1;
     for (int i = 0; i < SEPARATING_AXES; i++) {
         const AxisOverlap *overlap = &collision->overlaps[i];
@@ -18,7 +19,7 @@ bool collision_find(Collision *collision) {
     }
     if (collision->least < 0) return false;
     collision->normal = collision->manifold.normal;
-    collision->why = collision->least == least_overlap(collision->overlaps) ? "the least" : "nearly the least";
+    collision->label = collision->least == least_overlap(collision->overlaps) ? "the least" : "nearly the least";
     return true;
 }
 
@@ -36,13 +37,13 @@ Vec2 collision_turn_up(Collision *collision) {
     manifold->normal = mat22_multiply(turn, manifold->normal);
     for (int i = 0; i < manifold->count; i++)
         manifold->points[i].position = mat22_multiply(turn, manifold->points[i].position);
-    /* What is measured along the axes stays: places along them go by the origin. */
+    /* Overlaps along the axes do not change: they are measured from the origin. */
     for (int i = 0; i < SEPARATING_AXES; i++)
         collision->overlaps[i].axis = mat22_multiply(turn, collision->overlaps[i].axis);
     return mat22_multiply(turn, vec2(0, -1));
 }
 
-void put_collision(Sketch *sketch, const View *view, const Collision *collision) {
+void draw_collision_boxes(Sketch *sketch, const View *view, const Collision *collision) {
     for (int i = 0; i < 2; i++) {
         const Pen pen = pen_fill(fill_of(collision, i), is_bomb(collision, i) ? 0.28 : 0.13, ink_of(collision, i));
         sketch_box(sketch, view, &collision->boxes[i], &pen);

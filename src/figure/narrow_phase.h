@@ -1,32 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A collision of two boxes, and the two halves of its picture. Of a window only its corners count. */
+/* The collision of two boxes, and the two halves of its picture. Of a View passed in, only the corners are used. */
 #pragma once
 #include "figure/separating_axes.h"
 #include "picture/style.h"
 #include "sketch/sketch.h"
 
-/* A pair in a step, as the narrow phase saw it. */
+/* A pair in a step, as the narrow phase found it. */
 typedef struct Collision {
     Box boxes[2];
     int bodies[2], bomb, step;
     Manifold manifold;
     AxisOverlap overlaps[SEPARATING_AXES];
-    int least;       /* of the overlaps; the manifold's normal lies along its axis */
-    const char *why; /* that one: "the least" */
+    int least;         /* index of the overlap whose axis is the manifold's normal */
+    const char *label; /* label of that overlap: "the least" */
     char names[2][16];
-    double points; /* of type */
-    Vec2 normal;   /* the manifold's, as the world has it where the picture is turned */
+    double points; /* font size */
+    Vec2 normal;   /* the manifold's, in world coordinates (the picture is rotated) */
 } Collision;
 
-/* Finds manifold and overlaps of the boxes. False where they touch nowhere. */
+/* Computes manifold and overlaps of the boxes. False if they do not touch. */
 bool collision_find(Collision *collision);
 
-/* Turns all about the origin so that the reference box lies below the other. Returns where down is then; unit. */
+/* Rotates everything about the origin so that the reference box is below the other. Returns the rotated down
+   direction, unit. */
 Vec2 collision_turn_up(Collision *collision);
 
 static inline bool is_bomb(const Collision *collision, int i) { return collision->bodies[i] == collision->bomb; }
 
-/* Two boxes are told apart, too. */
+/* Gives two boxes different colours. */
 static inline bool is_second_box(const Collision *collision, int i) { return i == 1 && !is_bomb(collision, 0); }
 
 static inline uint32_t fill_of(const Collision *collision, int i) {
@@ -39,11 +40,11 @@ static inline uint32_t ink_of(const Collision *collision, int i) {
 
 static inline const char *name_of(const Collision *collision, int i) { return collision->names[i]; }
 
-/* The boxes where they are, so that their overlap shows. */
-void put_collision(Sketch *sketch, const View *view, const Collision *collision);
+/* Draws both boxes, translucent, so that their overlap is visible. */
+void draw_collision_boxes(Sketch *sketch, const View *view, const Collision *collision);
 
-/* The shadows of both boxes on the axes of each, and how far they overlap, around the middle of the view's window. */
-void put_overlaps(Sketch *sketch, View window, const Collision *collision);
+/* Draws the projections of both boxes on the axes of each, and their overlaps, centred in the window. */
+void draw_overlaps(Sketch *sketch, View window, const Collision *collision);
 
-/* The overlap enlarged: edges, normal and contact points, around the middle of the view's window. */
-void put_contact(Sketch *sketch, View window, const Collision *collision);
+/* Draws an enlarged view of the overlap: edges, normal and contact points, centred in the window. */
+void draw_contact_closeup(Sketch *sketch, View window, const Collision *collision);

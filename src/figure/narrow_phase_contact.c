@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* Side of a box that faces a direction most: its ends. */
+/* The ends of the side of a box that faces a direction most. */
 static void facing_edge(Vec2 ends[2], const Box *box, Vec2 direction) {
     Vec2 in_box = mat22_multiply(mat22_transpose(box->rotation), direction);
     bool along_y = fabsf(in_box.y) > fabsf(in_box.x);
@@ -16,7 +16,7 @@ static void facing_edge(Vec2 ends[2], const Box *box, Vec2 direction) {
     }
 }
 
-/* The box whose axis the manifold's normal lies on. */
+/* The box whose axis is the manifold's normal. */
 static int reference_of(const Collision *collision) { return collision->overlaps[collision->least].box; }
 
 static float length_of(const Vec2 ends[2]) { return hypotf(ends[1].x - ends[0].x, ends[1].y - ends[0].y); }
@@ -28,12 +28,12 @@ static void find_edges(const Collision *collision, Vec2 front, Vec2 edges[2][2])
     facing_edge(edges[1], &collision->boxes[1 - reference], vec2_negate(front));
 }
 
-/* What lengths of the picture go by, m. */
+/* The length (m) that sizes in the picture are relative to. */
 static float unit_of(const Vec2 edges[2][2]) { return fmaxf(length_of(edges[0]), length_of(edges[1])); }
 
-/* Words of a size and colour along an edge, `share` of the way from its left end, off it in the direction `off`. */
-static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 off, TextStyle style,
-                          const char *words) {
+/* Text along an edge, at `share` of its length from the left end, displaced along `off`. */
+static void draw_edge_label(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 off,
+                            TextStyle style, const char *words) {
     Point p = view_place(view, ends[0]), q = view_place(view, ends[1]);
     if (p.x > q.x) {
         Point swap = p;
@@ -45,23 +45,23 @@ static void put_edge_name(Sketch *sketch, const View *view, const Vec2 ends[2], 
     sketch_text(sketch, at, &style, "%s", words);
 }
 
-/* What the incident edge is cut off at: it goes on along `front` through an end of the reference edge. */
-static void put_side_plane(Sketch *sketch, const View *view, Vec2 end, Vec2 out, Vec2 front, float unit,
-                           double points) {
+/* The plane that clips the incident edge: through an end of the reference edge, along `front`. */
+static void draw_side_plane(Sketch *sketch, const View *view, Vec2 end, Vec2 out, Vec2 front, float unit,
+                            double points) {
     const Pen pen = pen_line(INK_SOFT, 1.6, "(6,6)");
     const Vec2 ends[2] = {vec2_add(end, vec2_scale(-0.3f * unit, front)),
                           vec2_add(end, vec2_scale(0.26f * unit, front))};
     sketch_line(sketch, view_place(view, ends[0]), view_place(view, ends[1]), &pen);
     if (out.x <= 0) return;
-    put_edge_name(sketch, view, ends, 0.78, vec2_scale(1 / hypotf(out.x, out.y), out),
-                  (TextStyle){0.94 * points, TEXT_CENTER, INK_SOFT, 0, false}, "side plane");
+    draw_edge_label(sketch, view, ends, 0.78, vec2_scale(1 / hypotf(out.x, out.y), out),
+                    (TextStyle){0.94 * points, TEXT_CENTER, INK_SOFT, 0, false}, "side plane");
 }
 
-/* Where the contact points lie on the page; `near`: so near each other that their depths go outward. */
+/* The contact points on the page. `near`: so close that their depths are written outward. */
 typedef struct ShownPoints {
     Point deep[2], on_face[2];
     bool near;
-    double middle; /* mm, from left to right */
+    double middle; /* mm, mean x */
 } ShownPoints;
 
 static ShownPoints show_points(const View *view, const Collision *collision, Vec2 front) {
@@ -78,34 +78,34 @@ static ShownPoints show_points(const View *view, const Collision *collision, Vec
     return shown;
 }
 
-/* Between points that lie apart there is room for an edge's name outside its box; else it is inside, away from them. */
-static void name_edge(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 out,
-                      const ShownPoints *points, TextStyle style, const char *words) {
+/* The name of an edge is outside its box if there is room between the points, otherwise inside, away from them. */
+static void label_edge(Sketch *sketch, const View *view, const Vec2 ends[2], double share, Vec2 out,
+                       const ShownPoints *points, TextStyle style, const char *words) {
     const double middle = (view_place(view, ends[0]).x + view_place(view, ends[1]).x) / 2;
     if (points->near) share = points->middle > middle ? 0.3 : 0.7;
-    put_edge_name(sketch, view, ends, share, points->near ? vec2_negate(out) : out, style, words);
+    draw_edge_label(sketch, view, ends, share, points->near ? vec2_negate(out) : out, style, words);
 }
 
-static void put_edges(Sketch *sketch, const View *view, const Collision *collision, Vec2 front,
-                      const Vec2 edges[2][2]) {
+static void draw_edges(Sketch *sketch, const View *view, const Collision *collision, Vec2 front,
+                       const Vec2 edges[2][2]) {
     const double points = 0.94 * collision->points;
     const int reference = reference_of(collision);
     const uint32_t ink = ink_of(collision, reference), other_ink = ink_of(collision, 1 - reference);
     const ShownPoints shown = show_points(view, collision, front);
     for (int i = 0; i < 2; i++)
-        put_side_plane(sketch, view, edges[0][i], vec2_sub(edges[0][i], edges[0][1 - i]), front, unit_of(edges),
-                       collision->points);
+        draw_side_plane(sketch, view, edges[0][i], vec2_sub(edges[0][i], edges[0][1 - i]), front, unit_of(edges),
+                        collision->points);
     const Pen thick = pen_line(ink, 5, NULL), dashed = pen_line(other_ink, 4, "(9,4)");
     sketch_line(sketch, view_place(view, edges[0][0]), view_place(view, edges[0][1]), &thick);
-    name_edge(sketch, view, edges[0], 0.22, front, &shown, (TextStyle){points, TEXT_CENTER, ink, 0, true},
-              "reference edge");
+    label_edge(sketch, view, edges[0], 0.22, front, &shown, (TextStyle){points, TEXT_CENTER, ink, 0, true},
+               "reference edge");
     sketch_line(sketch, view_place(view, edges[1][0]), view_place(view, edges[1][1]), &dashed);
-    name_edge(sketch, view, edges[1], 0.5, vec2_negate(front), &shown,
-              (TextStyle){points, TEXT_CENTER, other_ink, 0, true}, "incident edge");
+    label_edge(sketch, view, edges[1], 0.5, vec2_negate(front), &shown,
+               (TextStyle){points, TEXT_CENTER, other_ink, 0, true}, "incident edge");
 }
 
-/* A point's depth is written below it: toward the middle of the edge, but outward where two points lie side by side. */
-static void put_points(Sketch *sketch, const View *view, const Collision *collision, Vec2 front) {
+/* A point's depth is below it: towards the middle of the edge, but outward if two points are close. */
+static void draw_points(Sketch *sketch, const View *view, const Collision *collision, Vec2 front) {
     const Pen dot = pen_fill(ACCENT, 1, NO_COLOUR), ring = {0xFFFFFF, 1, ACCENT, 1.6, NULL};
     const Pen depth = pen_line(ACCENT, 1.8, NULL);
     const Manifold *manifold = &collision->manifold;
@@ -124,13 +124,13 @@ static void put_points(Sketch *sketch, const View *view, const Collision *collis
     }
 }
 
-/* Out of the reference edge; written as the engine has it, from a to b. */
-static void put_normal(Sketch *sketch, const View *view, const Collision *collision, Vec2 foot, Vec2 way) {
+/* Starts at the reference edge; the numbers are the engine's normal, from a to b. */
+static void draw_normal(Sketch *sketch, const View *view, const Collision *collision, Vec2 foot, Vec2 way) {
     const Vec2 normal = collision->normal;
     const Point from = view_place(view, foot), to = view_place(view, vec2_add(foot, way));
     const double length = hypot(to.x - from.x, to.y - from.y);
     sketch_arrow(sketch, from, to, HEAD_AT_END, ACCENT, 3);
-    /* Beyond the tip, half of a line of words off. */
+    /* beyond the tip, by half a line of text */
     const double off = 3 * collision->points / 8;
     const Point at = {to.x + off * (to.x - from.x) / length, to.y + off * (to.y - from.y) / length};
     const TextStyle words = {1.06 * collision->points, TEXT_CENTER, ACCENT, 0, true};
@@ -140,7 +140,7 @@ static void put_normal(Sketch *sketch, const View *view, const Collision *collis
 
 static double between(double a, double b) { return (a + b) / 2; }
 
-/* Both edges lie in the window, with something of the boxes around them. */
+/* Both edges are in the window, with a margin. */
 static View look_at(View view, const Vec2 edges[2][2]) {
     const double around = 1.27;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -155,9 +155,9 @@ static View look_at(View view, const Vec2 edges[2][2]) {
     return view;
 }
 
-/* On the way from an edge's middle to that of its box; the upper one above the normal's words. */
-static void put_names(Sketch *sketch, const View *view, const Collision *collision, const Vec2 edges[2][2],
-                      Vec2 front) {
+/* Between an edge's middle and its box's centre; the upper one above the normal's label. */
+static void draw_box_names(Sketch *sketch, const View *view, const Collision *collision, const Vec2 edges[2][2],
+                           Vec2 front) {
     const int reference = reference_of(collision);
     const Vec2 foot = vec2_scale(0.5f, vec2_add(edges[0][0], edges[0][1]));
     for (int i = 0; i < 2; i++) {
@@ -172,7 +172,7 @@ static void put_names(Sketch *sketch, const View *view, const Collision *collisi
     }
 }
 
-void put_contact(Sketch *sketch, View window, const Collision *collision) {
+void draw_contact_closeup(Sketch *sketch, View window, const Collision *collision) {
     const Manifold *manifold = &collision->manifold;
     int reference = reference_of(collision);
     Vec2 front = reference == 0 ? manifold->normal : vec2_negate(manifold->normal), edges[2][2];
@@ -180,12 +180,12 @@ void put_contact(Sketch *sketch, View window, const Collision *collision) {
     const View view = look_at(window, (const Vec2(*)[2])edges);
     const float unit = unit_of((const Vec2(*)[2])edges);
     const Vec2 middle = vec2_scale(0.5f, vec2_add(edges[0][0], edges[0][1]));
-    put_collision(sketch, &view, collision);
-    put_edges(sketch, &view, collision, front, (const Vec2(*)[2])edges);
-    put_points(sketch, &view, collision, front);
-    put_normal(sketch, &view, collision, middle, vec2_scale(0.33f * unit, front));
-    put_names(sketch, &view, collision, (const Vec2(*)[2])edges, front);
-    sketch_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, view.scale, round_down(14 / view.scale), "m",
-               0.94 * collision->points);
+    draw_collision_boxes(sketch, &view, collision);
+    draw_edges(sketch, &view, collision, front, (const Vec2(*)[2])edges);
+    draw_points(sketch, &view, collision, front);
+    draw_normal(sketch, &view, collision, middle, vec2_scale(0.33f * unit, front));
+    draw_box_names(sketch, &view, collision, (const Vec2(*)[2])edges, front);
+    sketch_scale_bar(sketch, (Point){view.low.x + 4, view.low.y + 4}, view.scale, round_down(14 / view.scale), "m",
+                     0.94 * collision->points);
     sketch_rectangle(sketch, view.low, view.high, &(Pen){NO_COLOUR, 1, FRAME, 1.8, NULL});
 }

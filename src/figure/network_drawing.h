@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The two ways in which a network is shown: by its units, or where these are too many by its matrices. */
+/* A network is drawn as units, or as matrices if it has too many units. */
 #pragma once
-#include "figure/run_figures.h"
+#include "figure/figure.h"
 #include "network/network.h"
 #include "network/slot_network.h"
 
-/* Beyond so many units in a layer its matrices are shown. */
-enum { UNITS_MOST = 40 };
+/* With more units in a layer, the matrices are drawn. */
+enum { UNITS_MAX = 40 };
 
-/* Sign and size of a weight as a colour: blue above 0, orange below, white at 0; darker blue is what tells the signs
-   apart in grey. `share` of the largest: -1 .. 1. */
+/* The colour of a weight, `share` of the largest, -1 .. 1: blue above 0, orange below, white at 0. The blue is
+   darker, which distinguishes the signs in grey prints. */
 uint32_t weight_colour(double share);
 
-/* A title, cut to the page. */
-void put_network_title(Sketch *sketch, const FigureSpec *spec, const char *title);
+/* A title, shortened to the page's width. */
+void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title);
 
-/* Its height, mm. */
+/* In mm. */
 double network_title_height(const FigureSpec *spec);
 
-/* Begins the sketch. */
+/* Each begins the sketch. */
 bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error);
 bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error);
 bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const SlotNetwork *network, Error *error);
 
 /* "sigmoid" */
-const char *activation_word(Activation activation);
+const char *activation_name(Activation activation);
 
 /* "10-10-2" */
 enum { WIDTHS_TEXT_SIZE = 64 };
-void write_widths(char text[WIDTHS_TEXT_SIZE], const Network *network);
+void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A picture for each matrix, a pixel for each weight; where there are more weights than pixels, the largest of each pixel
-   is shown. */
+/* A picture per matrix. If it has more weights than pixels, each pixel shows the largest weight that it covers. */
 #include "common/file.h"
 #include "figure/network_drawing.h"
 #include "figure/run_view.h"
@@ -9,15 +8,16 @@
 
 #include <math.h>
 
-enum { MATRICES_MOST = NETWORK_MAX_LAYERS };
+enum { MATRICES_MAX = NETWORK_MAX_LAYERS };
 
-static const double widest = 56, narrowest = 36, gap = 4, shape = 0.6; /* mm of a picture; height over width */
+static const double max_width = 56, min_width = 36, gap = 4, aspect = 0.6; /* mm, width of a picture and gap; height /
+                                                                          width */
 static const double small_type = 0.85;
 
 typedef struct Matrix {
     const char *name;
     const char *activation;
-    const float *weights; /* [outputs, inputs], or, by input, [inputs, outputs] */
+    const float *weights; /* [outputs, inputs], or with by_input [inputs, outputs] */
     int inputs, outputs;
     bool by_input;
 } Matrix;
@@ -26,7 +26,7 @@ typedef struct Matrices {
     const FigureSpec *spec;
     int count, columns, rows;
     const Matrix *matrices;
-    double width, height, row; /* mm of a picture; from one row of pictures to the next */
+    double width, height, row; /* mm: size of a picture; distance between rows of pictures */
 } Matrices;
 
 static double weight_at(const Matrix *matrix, int input, int output) {
@@ -42,7 +42,7 @@ static double find_largest(const Matrix *matrix) {
     return largest;
 }
 
-/* Of the weights that a pixel stands for, the largest. */
+/* The weight of the largest magnitude that the pixel covers. */
 static double weight_of_pixel(const Matrix *matrix, int x, int y, int columns, int rows) {
     int first = (int)((int64_t)x * matrix->inputs / columns), top = (int)((int64_t)y * matrix->outputs / rows);
     int end = (int)((int64_t)(x + 1) * matrix->inputs / columns),
@@ -56,8 +56,8 @@ static double weight_of_pixel(const Matrix *matrix, int x, int y, int columns, i
     return largest;
 }
 
-static bool put_picture(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low, double largest,
-                        Error *error) {
+static bool draw_weights(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low, double largest,
+                         Error *error) {
     const double dots = all->spec->dpi / 25.4;
     const int columns = (int)fmax(rint(all->width * dots), 1), rows = (int)fmax(rint(all->height * dots), 1);
     Image *image = image_create(columns, rows, error);
@@ -75,29 +75,29 @@ static bool put_picture(const Matrices *all, Sketch *sketch, const Matrix *matri
     return true;
 }
 
-static bool put_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
+static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
     const Matrix *matrix = &all->matrices[i];
     const double points = all->spec->points, line = line_height(points), small = small_type * points;
     const double largest = find_largest(matrix), column = i % all->columns;
     const double top = sketch->height - network_title_height(all->spec) - (i / all->columns) * all->row;
     const Point low = {0.2 + column * (all->width + gap), top - line - all->height};
     char words[96];
-    if (!put_picture(all, sketch, matrix, low, largest, error)) return false;
+    if (!draw_weights(all, sketch, matrix, low, largest, error)) return false;
     sketch_rectangle(sketch, low, (Point){low.x + all->width, low.y + all->height},
                      &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
     snprintf(words, sizeof words, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
              matrix->activation);
-    words_fit(words, points, all->width);
+    text_fit(words, points, all->width);
     sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
     snprintf(words, sizeof words, "%d to %d, at most %.2g", matrix->inputs, matrix->outputs, largest);
-    words_fit(words, small, all->width);
+    text_fit(words, small, all->width);
     sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
                 words);
     return true;
 }
 
-/* From the largest below 0 to the largest above it. */
-static void put_scale(const Matrices *all, Sketch *sketch) {
+/* The colour scale, from the most negative to the most positive weight. */
+static void draw_color_scale(const Matrices *all, Sketch *sketch) {
     enum { STEPS = 20 };
     const double points = small_type * all->spec->points, y = 0.5 * line_height(points), high = 2, cell = 1;
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
@@ -117,33 +117,33 @@ static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matri
                      Error *error) {
     Matrices all = {.spec = spec, .count = count, .matrices = matrices};
     const double usable = spec->width - 0.4, line = line_height(spec->points);
-    all.columns = (int)fmax(floor((usable + gap) / (narrowest + gap)), 1);
+    all.columns = (int)fmax(floor((usable + gap) / (min_width + gap)), 1);
     if (all.columns > count) all.columns = count;
     all.rows = (count + all.columns - 1) / all.columns;
-    all.width = fmin((usable - (all.columns - 1) * gap) / all.columns, widest);
-    all.height = shape * all.width;
+    all.width = fmin((usable - (all.columns - 1) * gap) / all.columns, max_width);
+    all.height = aspect * all.width;
     all.row = all.height + 2.5 * line;
     sketch_begin(sketch, spec->width, network_title_height(spec) + all.rows * all.row + 1.2 * line);
     for (int i = 0; i < count; i++)
-        if (!put_matrix(&all, sketch, i, error)) return false;
-    put_scale(&all, sketch);
-    put_network_title(sketch, spec, title);
+        if (!draw_matrix(&all, sketch, i, error)) return false;
+    draw_color_scale(&all, sketch);
+    draw_network_title(sketch, spec, title);
     return true;
 }
 
 bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
-    Matrix matrices[MATRICES_MOST];
-    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MOST][24];
+    Matrix matrices[MATRICES_MAX];
+    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MAX][24];
     for (int i = 0; i < network->layers; i++) {
         snprintf(names[i], sizeof names[i], "layer %d", i + 1);
         matrices[i] = (Matrix){names[i],
-                               activation_word(network->activations[i]),
+                               activation_name(network->activations[i]),
                                network->weights[i],
                                network->widths[i],
                                network->widths[i + 1],
                                false};
     }
-    write_widths(widths, network);
+    format_widths(widths, network);
     snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
              network_parameter_count(network));
     return draw_all(sketch, spec, matrices, network->layers, title, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A column of units for each layer, and a line for each weight: the stronger, the darker and the wider. */
+/* A column of units per layer, and a line per weight: stronger ones are darker and wider. */
 #include "common/file.h"
 #include "figure/network_drawing.h"
 #include "figure/run_view.h"
@@ -10,14 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double small_type = 0.85;                        /* of names */
-static const double thinnest = 0.5, thickest = 4.5;           /* LINE_UNIT */
-static const double tallest = 120, farthest = 5.2, gap = 1.5; /* mm: all units; from one to the next; beside a name */
+static const double small_type = 0.85;                           /* font size of names / the figure's font size */
+static const double min_width = 0.5, max_width = 4.5;            /* LINE_UNIT */
+static const double max_height = 120, max_step = 5.2, gap = 1.5; /* mm: height of the largest layer; between units;
+                                                                 beside a name */
 
 typedef struct Units {
     const FigureSpec *spec;
     const Network *network;
-    double left, right; /* mm, of the first and the last column */
+    double left, right; /* mm, x of the first and the last column */
     double middle, step, radius;
     double largest; /* weight */
 } Units;
@@ -28,7 +29,7 @@ static Point unit_place(const Units *units, int layer, int i) {
     return (Point){units->left + share * (units->right - units->left), units->middle + up};
 }
 
-/* The i-th word of "dx dy v1x"; false where there are not `count` of them. */
+/* The i-th word of a list such as "dx dy v1x"; false if it has not `count` words. */
 static bool nth_word(const char *words, int i, int count, char *word, size_t size) {
     int found = 0;
     for (const char *at = words; *at != '\0';) {
@@ -62,11 +63,11 @@ static double find_largest(const Network *network) {
 }
 
 typedef struct WeightLine {
-    double share; /* of the largest weight, with its sign */
+    double share; /* relative to the largest weight, -1 .. 1 */
     int layer, from, to;
 } WeightLine;
 
-/* The strongest above. */
+/* The strongest last, drawn on top. */
 static int by_strength(const void *a, const void *b) {
     const WeightLine *p = a, *q = b;
     double difference = fabs(p->share) - fabs(q->share);
@@ -76,10 +77,10 @@ static int by_strength(const void *a, const void *b) {
 }
 
 static Pen weight_pen(double share) {
-    return pen_line(weight_colour(share), thinnest + (thickest - thinnest) * fabs(share), NULL);
+    return pen_line(weight_colour(share), min_width + (max_width - min_width) * fabs(share), NULL);
 }
 
-static bool put_weights(const Units *units, Sketch *sketch, Error *error) {
+static bool draw_weights(const Units *units, Sketch *sketch, Error *error) {
     const Network *network = units->network;
     int count = 0;
     for (int l = 0; l < network->layers; l++) count += network->widths[l] * network->widths[l + 1];
@@ -102,7 +103,7 @@ static bool put_weights(const Units *units, Sketch *sketch, Error *error) {
     return true;
 }
 
-static void put_units(const Units *units, Sketch *sketch) {
+static void draw_unit_dots(const Units *units, Sketch *sketch) {
     const Network *network = units->network;
     const double small = small_type * units->spec->points, beside = units->radius + gap;
     const Pen pen = {0xFFFFFF, 1, INK, 1.4, NULL};
@@ -119,8 +120,8 @@ static void put_units(const Units *units, Sketch *sketch) {
         }
 }
 
-/* Below the columns what they are, and below that what the lines mean. */
-static void put_foot(const Units *units, Sketch *sketch) {
+/* Below the columns the layers' sizes and activations, below these the meaning of lines. */
+static void draw_footer(const Units *units, Sketch *sketch) {
     const Network *network = units->network;
     const double line = line_height(units->spec->points), points = units->spec->points;
     const TextStyle center = {points, TEXT_CENTER, INK, 0, false}, left = {points, TEXT_LEFT, INK, 0, false};
@@ -134,7 +135,7 @@ static void put_foot(const Units *units, Sketch *sketch) {
         if (layer > 0)
             sketch_text(sketch, (Point){x, 1.7 * line},
                         &(TextStyle){small_type * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
-                        activation_word(network->activations[layer - 1]));
+                        activation_name(network->activations[layer - 1]));
     }
     double x = 0.2;
     for (int sign = 1; sign >= -1; sign -= 2) {
@@ -152,7 +153,8 @@ static bool check_room(const Units *units, Error *error) {
     const double least = 8 * units->network->layers;
     return units->right - units->left >= least ||
            error_input(error, units->spec->network,
-                       "its names leave %.1f mm for %d layers on %g mm; at least %g are needed",
+                       "the names of inputs and outputs leave %.1f mm for %d layers at a width of %g mm; at least %g "
+                       "mm are needed",
                        fmax(units->right - units->left, 0), units->network->layers, units->spec->width, least);
 }
 
@@ -162,7 +164,7 @@ bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, 
     int most = 0;
     for (int i = 0; i <= last; i++) most = network->widths[i] > most ? network->widths[i] : most;
     Units units = {.spec = spec, .network = network, .largest = find_largest(network)};
-    units.step = fmin(farthest, tallest / most);
+    units.step = fmin(max_step, max_height / most);
     units.radius = fmin(0.3 * units.step, 1.4);
     const double beside = units.radius + gap, words = type_width("99 outputs", spec->points) / 2;
     units.left = fmax(widest_name(&units, network->inputs, network->widths[0]) + beside, words) + 0.3;
@@ -171,13 +173,13 @@ bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, 
     if (!check_room(&units, error)) return false;
     units.middle = foot + most * units.step / 2;
     sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec));
-    bool done = put_weights(&units, sketch, error);
-    put_units(&units, sketch);
-    put_foot(&units, sketch);
+    bool done = draw_weights(&units, sketch, error);
+    draw_unit_dots(&units, sketch);
+    draw_footer(&units, sketch);
     char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE];
-    write_widths(widths, network);
+    format_widths(widths, network);
     snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
              network_parameter_count(network));
-    put_network_title(sketch, spec, title);
+    draw_network_title(sketch, spec, title);
     return done;
 }

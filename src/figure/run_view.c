@@ -16,8 +16,8 @@ static bool check_time(const FigureSpec *spec, double time, int after, Error *er
     for (int i = 0; i < spec->run_count; i++) {
         double last = last_time(spec->runs[i], after);
         if (time < 0 || time > last + (double)spec->runs[i]->dt / 2)
-            return error_input(error, spec->paths[i], "shows no moment at %g s: %s from 0 to %g s", time,
-                               after > 0 ? "steps follow those" : "it goes", last);
+            return error_input(error, spec->paths[i], "has no moment at %g s%s; its moments are 0 to %g s", time,
+                               after > 0 ? " with a step after it" : "", last);
     }
     return true;
 }
@@ -98,7 +98,8 @@ void run_cells_free(RunCells *cells) {
     cells->still = NULL;
 }
 
-Image *run_cells_shoot(RunCells *cells, const Trajectory *run, int frame, int colours, StillParts parts, Error *error) {
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, int colours, StillParts parts,
+                        Error *error) {
     const StillShot shot = {run, frame, colours, parts, cells->camera};
     Image *image = image_create(cells->columns, cells->rows, error);
     if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
@@ -106,9 +107,9 @@ Image *run_cells_shoot(RunCells *cells, const Trajectory *run, int frame, int co
     return NULL;
 }
 
-bool run_cells_put(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, int colours,
-                   Error *error) {
-    Image *image = run_cells_shoot(cells, run, frame, colours, STILL_ALL, error);
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, int colours,
+                    Error *error) {
+    Image *image = run_cells_render(cells, run, frame, colours, STILL_ALL, error);
     if (image == NULL) return false;
     sketch_image(sketch, image, low, cells->width);
     image_destroy(image);
@@ -124,13 +125,13 @@ View run_cells_view(const RunCells *cells, Point low) {
                   cells->scale};
 }
 
-void run_cells_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
-    sketch_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
+void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
+    sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
 }
 
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
 
-void words_fit(char *words, double points, double width) {
+void text_fit(char *words, double points, double width) {
     static const char ellipsis[] = "\xE2\x80\xA6";
     if (type_width(words, points) <= width) return;
     double room = width - type_width(ellipsis, points);
@@ -139,7 +140,7 @@ void words_fit(char *words, double points, double width) {
         used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
         if (used > room) break;
     }
-    /* An ellipsis takes as many bytes as three characters: of fewer that are left out there is no room for it. */
+    /* An ellipsis is three bytes long: there is no room for it if fewer bytes are removed. */
     size_t kept = (size_t)(end - words), left = strlen(words) - kept;
     if (left >= sizeof ellipsis - 1)
         memcpy(words + kept, ellipsis, sizeof ellipsis);

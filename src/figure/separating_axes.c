@@ -5,7 +5,7 @@
 
 static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
 
-static void cast_shadow(AxisOverlap *overlap, int i, const Box *box) {
+static void project_box(AxisOverlap *overlap, int i, const Box *box) {
     double middle = dot(box->position, overlap->axis);
     double reach = (double)box->half.x * fabs(dot(box->rotation.column1, overlap->axis)) +
                    (double)box->half.y * fabs(dot(box->rotation.column2, overlap->axis));
@@ -20,8 +20,8 @@ void separating_axes(AxisOverlap overlaps[SEPARATING_AXES], const Box *a, const 
         overlap->box = i / 2;
         overlap->letter = i % 2 == 0 ? 'x' : 'y';
         overlap->axis = i % 2 == 0 ? rotation->column1 : rotation->column2;
-        cast_shadow(overlap, 0, a);
-        cast_shadow(overlap, 1, b);
+        project_box(overlap, 0, a);
+        project_box(overlap, 1, b);
         overlap->depth = fmin(overlap->high[0] - overlap->low[1], overlap->high[1] - overlap->low[0]);
     }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What keeps still is painted once, into a layer of its own. A frame is the layer's rows that change, copied, and two
-   instanced draw calls: the parts of shapes in these rows, and of glyphs. Row 0 of a framebuffer is the top row of the
-   picture, so that nothing has to be turned over. */
+/* The static layer (background, rectangles, static shapes) is painted once into its own framebuffer. A frame blits
+   the changed rows of that layer and adds two instanced draw calls, for shapes and for glyphs, clipped to these
+   rows. Row 0 of a framebuffer is the top row of the picture, so no image is flipped. */
 #include "gl/canvas.h"
 
 #include "gl/font_atlas.h"
@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-/* One kind of instance: its program and the buffer that feeds it. */
+/* A program and the instance buffer that feeds it. */
 typedef struct Batch {
     GLuint program, vertices, buffer;
 } Batch;
@@ -22,10 +22,10 @@ typedef struct Target {
 struct Canvas {
     const GlFunctions *gl;
     int width, height;
-    Target still, picture;
+    Target static_layer, picture;
     GLuint font_buffer, font_texture;
     Batch rects, shapes, glyphs;
-    Drawing parts; /* what a frame paints over the layer */
+    Drawing moving; /* moving instances, clipped to the changed rows */
 };
 
 static bool create_target(Canvas *canvas, Target *target, Error *error) {
@@ -37,7 +37,7 @@ static bool create_target(Canvas *canvas, Target *target, Error *error) {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
-    return error_system(error, "render", "OpenGL makes no framebuffer of %d x %d pixels", canvas->width,
+    return error_system(error, "render", "OpenGL cannot create a framebuffer of %d x %d pixels", canvas->width,
                         canvas->height);
 }
 
@@ -51,7 +51,7 @@ static void create_font(Canvas *canvas) {
     gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
 }
 
-/* Attribute i of an instance: components[i] integers; the list ends with 0. */
+/* Attribute i of an instance has components[i] integers; a 0 ends the list. */
 static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex, const char *fragment,
                          const int *components, GLsizei stride, Error *error) {
     const GlFunctions *gl = canvas->gl;
@@ -71,10 +71,10 @@ static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const c
     return true;
 }
 
-static bool set_up(Canvas *canvas, Error *error) {
+static bool setup_gl(Canvas *canvas, Error *error) {
     static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 2, 0};
     const GlFunctions *gl = canvas->gl;
-    if (!create_target(canvas, &canvas->still, error) || !create_target(canvas, &canvas->picture, error) ||
+    if (!create_target(canvas, &canvas->static_layer, error) || !create_target(canvas, &canvas->picture, error) ||
         !create_batch(canvas, &canvas->rects, "shaders/rect", shader_rect_vert, shader_rect_frag, rect,
                       sizeof(RectInstance), error) ||
         !create_batch(canvas, &canvas->shapes, "shaders/shape", shader_shape_vert, shader_shape_frag, shape,
@@ -100,7 +100,7 @@ Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error
     canvas->gl = gl;
     canvas->width = width;
     canvas->height = height;
-    if (set_up(canvas, error)) return canvas;
+    if (setup_gl(canvas, error)) return canvas;
     canvas_destroy(canvas);
     return NULL;
 }
@@ -124,9 +124,9 @@ void canvas_destroy(Canvas *canvas) {
     destroy_batch(gl, &canvas->glyphs);
     gl->DeleteTextures(1, &canvas->font_texture);
     gl->DeleteBuffers(1, &canvas->font_buffer);
-    destroy_target(gl, &canvas->still);
+    destroy_target(gl, &canvas->static_layer);
     destroy_target(gl, &canvas->picture);
-    drawing_free(&canvas->parts);
+    drawing_free(&canvas->moving);
     free(canvas);
 }
 
@@ -139,24 +139,24 @@ static void draw(const GlFunctions *gl, const Batch *batch, const void *instance
     gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
 }
 
-static void paint_still(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
+static void paint_static(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
     const GlFunctions *gl = canvas->gl;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->still.framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
     gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
                    (float)(background & 255) / 255, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->Disable(GL_BLEND);
     draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
     gl->Enable(GL_BLEND);
-    draw(gl, &canvas->shapes, drawing->shapes, drawing->still_shapes, sizeof *drawing->shapes);
+    draw(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
 }
 
-/* Rows to paint that follow each other. */
+/* Consecutive rows to paint. */
 typedef struct Band {
     int top, bottom;
 } Band;
 
-/* The first band at or below row y; empty below the last. */
+/* The first band at or below row y; empty if there is none. */
 static Band next_band(const Canvas *canvas, const bool *changed, int y) {
     if (changed == NULL) return (Band){y, canvas->height};
     while (y < canvas->height && !changed[y]) y++;
@@ -165,20 +165,20 @@ static Band next_band(const Canvas *canvas, const bool *changed, int y) {
     return band;
 }
 
-/* One copy a band, but one draw call a kind for all bands: calls cost more than instances. */
-static void paint_moving(Canvas *canvas, const Drawing *drawing, const bool *changed) {
+/* One blit per band, but one draw call per batch for all bands: calls cost more than instances. */
+static void paint_changed_rows(Canvas *canvas, const Drawing *drawing, const bool *changed) {
     const GlFunctions *gl = canvas->gl;
-    Drawing *parts = &canvas->parts;
-    drawing_clear(parts);
-    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->still.framebuffer);
+    Drawing *moving = &canvas->moving;
+    drawing_clear(moving);
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->static_layer.framebuffer);
     gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
     for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
         gl->BlitFramebuffer(0, b.top, canvas->width, b.bottom, 0, b.top, canvas->width, b.bottom, GL_COLOR_BUFFER_BIT,
                             GL_NEAREST);
-        drawing_add_rows(parts, drawing, b.top, b.bottom);
+        drawing_add_rows(moving, drawing, b.top, b.bottom);
     }
-    draw(gl, &canvas->shapes, parts->shapes, parts->shape_count, sizeof *parts->shapes);
-    draw(gl, &canvas->glyphs, parts->glyphs, parts->glyph_count, sizeof *parts->glyphs);
+    draw(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
+    draw(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
 }
 
 static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
@@ -192,9 +192,9 @@ static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
 bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
                   Error *error) {
     if (drawing->failed) return error_memory(error, "render");
-    if (changed == NULL) paint_still(canvas, drawing, background);
-    paint_moving(canvas, drawing, changed);
-    if (canvas->parts.failed) return error_memory(error, "render");
+    if (changed == NULL) paint_static(canvas, drawing, background);
+    paint_changed_rows(canvas, drawing, changed);
+    if (canvas->moving.failed) return error_memory(error, "render");
     read_back(canvas, changed, image);
     GLenum problem = canvas->gl->GetError();
     return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x", problem);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Paints drawings with OpenGL and reads the pixels back. */
+/* Paints drawings with OpenGL and reads back the pixels. */
 #pragma once
 #include "gl/drawing.h"
 #include "gl/gl_functions.h"
@@ -7,12 +7,12 @@
 
 typedef struct Canvas Canvas;
 
-/* Needs a current context then and in every later call. `gl` must outlive the canvas. */
+/* This and all later calls need a current context. `gl` must outlive the canvas. */
 Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error);
 void canvas_destroy(Canvas *canvas);
 
-/* Paints a drawing over the background into an image of the canvas's size. `changed`, of one flag a row, tells which
-   rows to paint: the image holds the others already, and what keeps still, as well as the background, is as in the
-   last call. NULL: paint everything. */
+/* Paints a drawing over the background into `image`, which has the canvas's size. `changed` has one flag per row and
+   selects the rows to paint; the image must hold the others already, and the static layer and the background must be
+   those of the last call. NULL: paint everything. */
 bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
                   Error *error);

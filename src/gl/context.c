@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which kind of context, and loading its library. */
+/* The choice of a context, and library loading. */
 #include "gl/context.h"
 
 #include <dlfcn.h>
@@ -13,18 +13,18 @@ bool context_load(const char *library, const char *package, const ContextFunctio
                   Error *error) {
     void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (handle == NULL)
-        return error_system(error, "render", "cannot load %s; the Debian package %s brings it", library, package);
+        return error_system(error, "render", "cannot load %s; install the Debian package %s", library, package);
     for (int i = 0; i < count; i++) {
         void *symbol = dlsym(handle, functions[i].name);
-        if (symbol == NULL) return error_system(error, "render", "%s lacks %s", library, functions[i].name);
+        if (symbol == NULL) return error_system(error, "render", "%s has no function %s", library, functions[i].name);
         memcpy((char *)table + functions[i].offset, &symbol, sizeof symbol);
     }
     return true;
 }
 
-/* Frames must be the same on every machine: Mesa's own rasteriser, and no shader cache in the user's home. It
-   must not start threads of its own: they would not survive a fork, and would compete with the other
-   processes of a sequence. */
+/* Frames must be identical on every machine: force Mesa's software rasteriser and disable the shader cache in the
+   user's home. No rasteriser threads: they would not survive a fork, and would compete with the other processes of a
+   sequence. */
 static void prepare_mesa(void) {
     setenv("LP_NUM_THREADS", "0", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "true", 1);
@@ -44,8 +44,8 @@ bool context_create(Context *context, ContextChoice wanted, Error *error) {
     for (int i = 0; i < KINDS; i++)
         if (create(context, kinds[i], &(Error){0})) return true;
     return error_system(error, "render",
-                        "no OpenGL can be had without a display; one of the Debian packages libosmesa6 and "
-                        "libegl1 (with libgl1-mesa-dri) is needed");
+                        "no OpenGL without a display; install the Debian package libosmesa6, or libegl1 "
+                        "with libgl1-mesa-dri");
 }
 
 bool context_make_current(const Context *context, Error *error) {

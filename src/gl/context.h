@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OpenGL context without a display: OSMesa, or EGL's surfaceless platform. Both are loaded at run time, so
-   that the program runs where one is missing (Mesa dropped OSMesa in 25.1). Nothing is drawn to the context's
-   own surface: the canvas brings a framebuffer, and so both run the same code. */
+/* An OpenGL context without a display: OSMesa or EGL's surfaceless platform. Both are loaded at run time, so the
+   program runs if one is missing (Mesa dropped OSMesa in 25.1). Nothing is drawn to the context's own surface: the
+   canvas has a framebuffer, so both run the same code. */
 #pragma once
 #include "common/error.h"
 #include "gl/gl_functions.h"
@@ -13,7 +13,7 @@ typedef enum ContextChoice { CONTEXT_AUTO, CONTEXT_OSMESA, CONTEXT_EGL } Context
 
 typedef struct ContextKind {
     const char *name;
-    /* The libraries, loaded, and a context; NULL with error set. */
+    /* Loads the libraries and creates a context; NULL with error set on failure. */
     void *(*create)(Error *error);
     bool (*make_current)(void *state);
     GlFunction (*find)(void *state, const char *name);
@@ -27,19 +27,19 @@ typedef struct Context {
     void *state;
 } Context;
 
-/* Makes a context of this kind; CONTEXT_AUTO takes the first that there is. ERROR_SYSTEM names the
-   packages to install. */
+/* Creates a context of this kind; CONTEXT_AUTO takes the first kind that works. ERROR_SYSTEM names the packages to
+   install. */
 bool context_create(Context *context, ContextChoice wanted, Error *error);
 bool context_make_current(const Context *context, Error *error);
 void context_destroy(Context *context);
 
-/* For the kinds: where in a struct the function of this name goes. */
+/* A function to load, and its offset in the struct that holds it. */
 typedef struct ContextFunction {
     const char *name;
     size_t offset;
 } ContextFunction;
 
-/* Opens a library, for good (Mesa does not survive being closed), and fills the struct. `package` is
-   Debian's for it. */
+/* Opens a library and fills `table`. The library is never closed: Mesa does not survive it. `package` is its Debian
+   package. */
 bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
                   Error *error);

@@ -32,14 +32,14 @@ static const ContextFunction functions[] = {
 
 static bool egl_make_current(void *state) {
     Egl *egl = state;
-    /* The bound API belongs to the thread; another user of EGL may have changed it. */
+    /* The bound API is a state of the thread; other EGL code may have changed it. */
     return egl->bind_api(EGL_OPENGL_API) &&
            egl->make_current(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
 }
 
 static GlFunction egl_find(void *state, const char *name) { return ((Egl *)state)->get_proc_address(name); }
 
-/* The display stays: it is one for the whole process, and another context may be using it. */
+/* The display is shared by the whole process and stays open: another context may use it. */
 static void egl_destroy(void *state) {
     Egl *egl = state;
     if (egl->context != EGL_NO_CONTEXT) {
@@ -73,7 +73,7 @@ static void *egl_create(Error *error) {
     if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl, error)) {
         if (open_display(egl) && open_context(egl)) return egl;
         error_system(error, "render",
-                     "EGL makes no surfaceless context of OpenGL 3.3; is the Debian package libgl1-mesa-dri there?");
+                     "EGL cannot create a surfaceless OpenGL 3.3 context; install the Debian package libgl1-mesa-dri");
     }
     egl_destroy(egl);
     return NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OSMesa: a context that needs nothing but memory. */
+/* OSMesa: a context that needs only memory. */
 #include "gl/context.h"
 
 #include <GL/osmesa.h>
@@ -13,7 +13,7 @@ typedef struct Osmesa {
     OSMESAproc(GLAPIENTRY *get_proc_address)(const char *name);
     void(GLAPIENTRY *destroy)(OSMesaContext);
     OSMesaContext context;
-    unsigned char surface[SURFACE_SIDE * SURFACE_SIDE * 4]; /* OSMesa wants one, though nothing is drawn to it */
+    unsigned char surface[SURFACE_SIDE * SURFACE_SIDE * 4]; /* required by OSMesa, never drawn to */
 } Osmesa;
 
 static const ContextFunction functions[] = {
@@ -50,7 +50,7 @@ static bool open_context(Osmesa *osmesa, Error *error) {
     if (!context_load("libOSMesa.so.8", "libosmesa6", functions, count, osmesa, error)) return false;
     osmesa->context = osmesa->create(attributes, NULL);
     if (osmesa->context != NULL && osmesa_make_current(osmesa)) return true;
-    return error_system(error, "render", "OSMesa makes no context of OpenGL 3.3");
+    return error_system(error, "render", "OSMesa cannot create an OpenGL 3.3 context");
 }
 
 static void *osmesa_create(Error *error) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The n-th shape of one drawing is taken for the n-th of the other, and glyphs likewise. That keeps the order, and so a
-   row that no differing instance touches is painted by the same instances in the same order. */
+/* The n-th shape of one drawing is compared with the n-th of the other, and glyphs likewise. This respects the order
+   of painting: a row that no differing instance touches is painted by the same instances in the same order. */
 #include "gl/damage.h"
 
 #include <string.h>
@@ -10,10 +10,10 @@ typedef struct Rows {
     int height;
 } Rows;
 
-static bool still_parts_equal(const Drawing *a, const Drawing *b) {
-    return a->rect_count == b->rect_count && a->still_shapes == b->still_shapes &&
+static bool static_layers_equal(const Drawing *a, const Drawing *b) {
+    return a->rect_count == b->rect_count && a->static_shapes == b->static_shapes &&
            (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
-           (a->still_shapes == 0 || memcmp(a->shapes, b->shapes, a->still_shapes * sizeof *a->shapes) == 0);
+           (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
 }
 
 static void mark(const Rows *rows, int top, int bottom) {
@@ -33,7 +33,7 @@ static void mark_glyph(const Rows *rows, const Drawing *drawing, size_t i) {
 static size_t larger(size_t a, size_t b) { return a > b ? a : b; }
 
 static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *after) {
-    for (size_t i = after->still_shapes; i < larger(before->shape_count, after->shape_count); i++) {
+    for (size_t i = after->static_shapes; i < larger(before->shape_count, after->shape_count); i++) {
         if (i < before->shape_count && i < after->shape_count &&
             memcmp(&before->shapes[i], &after->shapes[i], sizeof *after->shapes) == 0)
             continue;
@@ -54,9 +54,9 @@ static void mark_glyphs(const Rows *rows, const Drawing *before, const Drawing *
 
 bool damage_find(const Drawing *before, const Drawing *after, int height, bool *changed) {
     const Rows rows = {changed, height};
-    bool still = still_parts_equal(before, after);
-    memset(changed, !still, (size_t)height);
-    if (!still) return false;
+    bool equal = static_layers_equal(before, after);
+    memset(changed, !equal, (size_t)height);
+    if (!equal) return false;
     mark_shapes(&rows, before, after);
     mark_glyphs(&rows, before, after);
     return true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From shapes to the integers of the shader. All that could be rounded in more than one way is rounded here,
-   in double, to a grid far coarser than double's own error. */
+/* Converts shapes to the integers of the shader. Everything that could be rounded in more than one way is rounded
+   here, in double, to a grid far coarser than double's own error. */
 #include "gl/drawing.h"
 
 #include "common/array.h"
@@ -8,13 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double FIXED = 65536.0;       /* the shader's units in a pixel */
-static const double SNAP = 256.0;          /* positions and sizes are whole multiples of 1/256 pixel */
-static const double LARGEST_HALF = 8192.0; /* pixels; larger boxes are cut down, or the shader's integers overflow */
-static const double FARTHEST = 1e9;        /* pixels; beyond it no body can be seen */
+static const double FIXED = 65536.0;        /* shader units per pixel */
+static const double SNAP = 256.0;           /* positions and sizes are multiples of 1/256 pixel */
+static const double MAX_HALF_SIZE = 8192.0; /* pixels; larger boxes are reduced, or the shader's integers overflow */
+static const double MAX_COORDINATE = 1e9;   /* pixels; no visible body is farther away */
 
 void drawing_clear(Drawing *drawing) {
-    drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->still_shapes = 0;
+    drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->static_shapes = 0;
     drawing->failed = false;
 }
 
@@ -29,37 +29,36 @@ static double snap(double pixels) { return rint(pixels * SNAP) / SNAP; }
 
 static int32_t fixed(double pixels) { return (int32_t)rint(pixels * FIXED); }
 
-/* Cuts the interval [-*half, *half] to what reaches at most LARGEST_HALF / 2 beyond [low, high], and returns
-   its new centre. */
-static double cut(double low, double high, double *half) {
-    double first = fmax(-*half, low - LARGEST_HALF / 2), last = fmin(*half, high + LARGEST_HALF / 2);
+/* Clamps the interval [-*half, *half] to MAX_HALF_SIZE / 2 beyond [low, high]. Returns its new centre. */
+static double clamp_interval(double low, double high, double *half) {
+    double first = fmax(-*half, low - MAX_HALF_SIZE / 2), last = fmin(*half, high + MAX_HALF_SIZE / 2);
     *half = (last - first) / 2;
     return (first + last) / 2;
 }
 
-/* A box of which only a part can be seen loses what lies far outside, and its band with it. */
-static void cut_down(Shape *shape, const Rect *clip) {
-    if (shape->half_width <= LARGEST_HALF && shape->half_height <= LARGEST_HALF) return;
+/* Removes what is far outside the clip from a very large box, and its band with it. */
+static void limit_size(Shape *shape, const Rect *clip) {
+    if (shape->half_width <= MAX_HALF_SIZE && shape->half_height <= MAX_HALF_SIZE) return;
     double c = shape->cosine, s = shape->sine;
     double x = (clip->left + clip->right) / 2.0, y = (clip->top + clip->bottom) / 2.0;
     double w = (clip->right - clip->left) / 2.0, h = (clip->bottom - clip->top) / 2.0;
     double local_x = (x - shape->x) * c - (y - shape->y) * s;
     double local_y = -(x - shape->x) * s - (y - shape->y) * c;
     double reach_x = fabs(c) * w + fabs(s) * h, reach_y = fabs(s) * w + fabs(c) * h;
-    double center_x = cut(local_x - reach_x, local_x + reach_x, &shape->half_width);
-    double center_y = cut(local_y - reach_y, local_y + reach_y, &shape->half_height);
+    double center_x = clamp_interval(local_x - reach_x, local_x + reach_x, &shape->half_width);
+    double center_y = clamp_interval(local_y - reach_y, local_y + reach_y, &shape->half_height);
     shape->x += center_x * c - center_y * s;
     shape->y -= center_x * s + center_y * c;
     shape->band = 0;
 }
 
 static bool is_drawable(const Shape *shape) {
-    return fabs(shape->x) < FARTHEST && fabs(shape->y) < FARTHEST && shape->half_width > 0 && shape->half_height > 0 &&
-           shape->half_width < FARTHEST && shape->half_height < FARTHEST && isfinite(shape->cosine) &&
-           isfinite(shape->sine);
+    return fabs(shape->x) < MAX_COORDINATE && fabs(shape->y) < MAX_COORDINATE && shape->half_width > 0 &&
+           shape->half_height > 0 && shape->half_width < MAX_COORDINATE && shape->half_height < MAX_COORDINATE &&
+           isfinite(shape->cosine) && isfinite(shape->sine);
 }
 
-/* A hollow shape is its line in all its parts, or its inner edge would take on another colour. */
+/* A hollow shape has one colour throughout, or its inner edge would blend with another colour. */
 static void set_paint(ShapeInstance *instance, const Shape *shape) {
     bool hollow = shape->hollow;
     instance->paint[0] = hollow ? shape->line | SHAPE_HOLLOW : shape->fill;
@@ -68,7 +67,7 @@ static void set_paint(ShapeInstance *instance, const Shape *shape) {
     instance->paint[3] = (uint32_t)fixed(shape->band);
 }
 
-/* The whole pixels that the snapped shape can touch, inside clip. False where there are none. */
+/* The whole pixels inside `clip` that the snapped shape can touch. Returns false if there are none. */
 static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
     double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
     double reach_y = fabs(shape->sine) * shape->half_width + fabs(shape->cosine) * shape->half_height + 1;
@@ -89,23 +88,23 @@ static ShapeInstance *next_shape(Drawing *drawing) {
 }
 
 void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip) {
-    if (!is_drawable(original)) return; /* NaN must not reach cut_down() */
+    if (!is_drawable(original)) return; /* keeps NaN away from limit_size() */
     Shape shape = *original;
-    cut_down(&shape, clip);
+    limit_size(&shape, clip);
     if (!is_drawable(&shape)) return;
     shape.x = snap(shape.x), shape.y = snap(shape.y);
     shape.half_width = snap(shape.half_width), shape.half_height = snap(shape.half_height);
     ShapeInstance *instance = next_shape(drawing);
     if (instance == NULL || !find_bounds(&shape, clip, instance->bounds)) return;
-    /* The local axes are (c, -s) and (-s, -c), y pointing down; rounded first, so that the position below is
-       the one that the shader's steps of one pixel lead to. */
+    /* The local axes are (c, -s) and (-s, -c), y pointing down. They are rounded first, so that the position below
+       agrees with the shader's steps of one pixel. */
     int32_t c = fixed(shape.cosine), s = fixed(-shape.sine);
     double x = instance->bounds[0] + 0.5 - shape.x, y = instance->bounds[1] + 0.5 - shape.y;
     instance->axis[0] = c, instance->axis[1] = s;
     instance->axis[2] = (int32_t)rint(c * x + s * y), instance->axis[3] = (int32_t)rint(s * x - c * y);
-    instance->form[0] = fixed(shape.half_width), instance->form[1] = fixed(shape.half_height);
-    instance->form[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
-    instance->form[3] = fixed(fmin(shape.outline, LARGEST_HALF));
+    instance->extents[0] = fixed(shape.half_width), instance->extents[1] = fixed(shape.half_height);
+    instance->extents[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
+    instance->extents[3] = fixed(fmin(shape.outline, MAX_HALF_SIZE));
     set_paint(instance, &shape);
     drawing->shape_count++;
 }
@@ -126,7 +125,7 @@ void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
         drawing->failed = true;
 }
 
-/* A lower first row moves the local position that belongs to it by whole steps of the shader. */
+/* If the first row is below the shape's top, its local position moves by whole steps of the shader. */
 static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top, int bottom) {
     ShapeInstance *part = from->bounds[1] < bottom && from->bounds[3] > top ? next_shape(drawing) : NULL;
     if (part == NULL) return;
@@ -152,7 +151,7 @@ static void add_glyph_rows(Drawing *drawing, const GlyphInstance *from, int top,
 }
 
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
-    for (size_t i = from->still_shapes; i < from->shape_count; i++)
+    for (size_t i = from->static_shapes; i < from->shape_count; i++)
         add_shape_rows(drawing, &from->shapes[i], top, bottom);
     for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a frame consists of, before OpenGL sees it: rectangles, above them shapes, above these glyphs, each in
-   the order they were added. The rectangles and the first shapes are those that keep still. Pixels, y down, (0, 0) the
-   upper left corner of the picture; colours 0xRRGGBB. */
+/* The content of a frame before OpenGL: rectangles, above them shapes, above these glyphs, each in the order they
+   were added. The rectangles and the first `static_shapes` shapes form the static layer. Pixels, y down, (0, 0) is
+   the picture's upper left corner; colours are 0xRRGGBB. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@ typedef struct Rect {
     int left, top, right, bottom;
 } Rect;
 
-/* As shaders/rect.vert wants it. */
+/* The input of shaders/rect.vert. */
 typedef struct RectInstance {
     Rect rect;
     uint32_t color;
@@ -22,50 +22,50 @@ typedef struct RectInstance {
 typedef struct Shape {
     double x, y; /* centre */
     double half_width, half_height;
-    double cosine, sine;    /* of its angle, counter-clockwise as seen */
-    double radius, outline; /* of the corners; width of the outline, inside the box */
+    double cosine, sine;    /* of the angle, counter-clockwise on the screen */
+    double radius, outline; /* corner radius; width of the outline, inside the box */
     double band;            /* thickness of the band along the local top; 0: none */
-    bool hollow;            /* the outline alone, in `line`: what lies below shows inside it */
+    bool hollow;            /* only the outline is drawn, in `line` */
     uint32_t fill, line, band_color;
 } Shape;
 
-enum { SHAPE_HOLLOW = 1 << 24 }; /* beside the colour */
+enum { SHAPE_HOLLOW = 1 << 24 }; /* flag in the bits above the colour */
 
-/* As shaders/shape.vert wants it: lengths in 1/65536 pixel. */
+/* The input of shaders/shape.vert: lengths in 1/65536 pixel. */
 typedef struct ShapeInstance {
-    int32_t bounds[4]; /* the whole pixels to paint: left, top, right, bottom */
-    int32_t axis[4];   /* direction of the local x axis, local position of the first pixel's centre */
-    int32_t form[4];   /* half width, half height, corner radius, outline */
-    uint32_t paint[4]; /* fill (SHAPE_HOLLOW: none), line, colour and thickness of the band */
+    int32_t bounds[4];  /* the whole pixels to paint: left, top, right, bottom */
+    int32_t axis[4];    /* direction of the local x axis; local position of the first pixel's centre */
+    int32_t extents[4]; /* half width, half height, corner radius, outline */
+    uint32_t paint[4];  /* fill or SHAPE_HOLLOW, line, band colour, band thickness */
 } ShapeInstance;
 
-/* As shaders/text.vert wants it. */
+/* The input of shaders/text.vert. */
 typedef struct GlyphInstance {
     int32_t box[4];  /* left, top, width, height */
-    uint32_t bitmap; /* index of its first texel in font_bitmaps */
+    uint32_t bitmap; /* index of the first texel in font_bitmaps */
     uint32_t color;
 } GlyphInstance;
 
-/* Zero it to begin with. */
+/* Initialise with zeros. */
 typedef struct Drawing {
     RectInstance *rects;
     ShapeInstance *shapes;
     GlyphInstance *glyphs;
     size_t rect_count, rect_capacity, shape_count, shape_capacity, glyph_count, glyph_capacity;
-    size_t still_shapes; /* the first of the shapes: like the rectangles, the same in almost every frame */
-    bool failed;         /* memory was short: something is missing */
+    size_t static_shapes; /* the first shapes: like the rectangles, equal in almost every frame */
+    bool failed;          /* out of memory: the drawing is incomplete */
 } Drawing;
 
-/* Removes everything, keeps the memory. */
+/* Removes all content, keeps the memory. */
 void drawing_clear(Drawing *drawing);
 void drawing_free(Drawing *drawing);
 
-/* Adds the part of a shape inside `clip`. What cannot be seen there, or has no finite place, adds nothing. */
+/* Adds the part of a shape inside `clip`. Ignores a shape that is outside or has NaN or infinite values. */
 void drawing_add_shape(Drawing *drawing, const Shape *shape, const Rect *clip);
 
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color);
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph);
 
-/* Adds to a drawing what another shows, but for what keeps still, in the rows top <= y < bottom. */
+/* Adds the shapes and glyphs of `from`, except its static shapes, clipped to the rows top <= y < bottom. */
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);

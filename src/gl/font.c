@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { PEN_UNIT = 64 }; /* pen positions count in 1/64 pixel, so that the rounding of one glyph does not add up */
+enum { PEN_UNIT = 64 }; /* pen positions are in 1/64 pixel, so that rounding errors of glyphs do not accumulate */
 #define ELLIPSIS "\xE2\x80\xA6"
 
 Font font_pick(FontFace face, double pixels) {
@@ -65,6 +65,6 @@ int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x
     const char *end = text, *next = text;
     while (*next != '\0' && (pen += find(font, utf8_next(&next))->advance) <= room) end = next;
     while (end > text && end[-1] == ' ') end--;
-    int behind = add(drawing, font, text, end, x, baseline, color);
-    return font_add(drawing, font, ELLIPSIS, behind, baseline, color);
+    int end_x = add(drawing, font, text, end, x, baseline, color);
+    return font_add(drawing, font, ELLIPSIS, end_x, baseline, color);
 }

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One line of text, UTF-8, at whole pixels. */
+/* One line of UTF-8 text at whole pixels. */
 #pragma once
 #include "gl/drawing.h"
 #include "gl/font_atlas.h"
 
 typedef enum FontFace { FONT_REGULAR, FONT_SEMIBOLD } FontFace;
 
-/* A face at a size. Without glyphs (too small to read) all text has width 0 and adds nothing. */
+/* A face at a size. If it is too small to read, `glyphs` is NULL: all text has width 0 and adds nothing. */
 typedef struct Font {
     const FontGlyph *glyphs;
-    int pixels; /* an em */
+    int pixels; /* per em */
 } Font;
 
-/* A space as wide as a figure: pads numbers. */
+/* A space as wide as a digit, to pad numbers. */
 #define FIGURE_SPACE "\xE2\x80\x87"
 
 /* The largest size not above `pixels`. */
 Font font_pick(FontFace face, double pixels);
 
-/* Width in pixels, rounded up. */
+/* In pixels, rounded up. */
 int font_width(const Font *font, const char *text);
 
-/* Adds the text with its pen starting at x, and returns where the pen stands behind it. Characters that the
-   font lacks, and bytes that are no UTF-8, show as '?'. */
+/* Adds text that starts at x and returns the x where it ends. Characters missing from the font and bytes that are
+   not UTF-8 become '?'. */
 int font_add(Drawing *drawing, const Font *font, const char *text, int x, int baseline, uint32_t color);
 
-/* The same, cut short with an ellipsis to take at most max_width pixels. */
+/* The same, shortened with an ellipsis to at most max_width pixels. */
 int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x, int baseline, int max_width,
                      uint32_t color);

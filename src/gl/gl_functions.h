@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The OpenGL functions that the renderer calls, found at run time by whatever made the context. */
+/* The OpenGL functions that the renderer calls, loaded at run time through the context. */
 #pragma once
 #include "common/error.h"
 
@@ -66,5 +66,6 @@ typedef struct GlFunctions {
 
 typedef void (*GlFunction)(void);
 
-/* Fills the table by `find`, in the current context, and refuses (ERROR_SYSTEM) an OpenGL below 3.3. */
+/* Fills the table with `find`, in the current context. ERROR_SYSTEM if a function is missing or OpenGL is older than
+   3.3. */
 bool gl_load(GlFunctions *gl, GlFunction (*find)(void *state, const char *name), void *state, Error *error);

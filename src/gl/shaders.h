@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The GLSL of shaders/, put into the binary by tools/embed.cmake. */
+/* The GLSL of shaders/, embedded in the binary by tools/embed.cmake. */
 #pragma once
 
 extern const char shader_rect_vert[], shader_rect_frag[];

@@ -3,18 +3,19 @@
 
 #include <math.h>
 
-static const double HEAD = 4.2;       /* length of an arrow's head over its thickness */
-static const double LEAST_HEAD = 3;   /* the same where the whole arrow is short */
-static const double LEAST_LENGTH = 2; /* of an arrow over its thickness */
-static const double HALO = 1.0;       /* pixels to each side, and a third of the thickness */
-static const double APART = 0.85;     /* two heads, over their length */
-static const double HEAD_SINE = 0.5;  /* of half the angle between its sides: 30 degrees */
+static const double HEAD = 4.2;          /* length of an arrow's head / thickness */
+static const double MIN_HEAD = 3;        /* the same for short arrows */
+static const double MIN_LENGTH = 2;      /* of an arrow / thickness */
+static const double HALO = 1.0;          /* pixels on each side; at least a third of the thickness */
+static const double HEAD_SPACING = 0.85; /* between two heads / their length */
+static const double HEAD_SINE = 0.5;     /* of half the angle between the head's sides, 30 degrees */
 static const double HEAD_COSINE = 0.8660254037844386;
-static const double TILE = 16;            /* pixels, of a slanted line */
-static const double LONGEST_TILED = 8000; /* pixels; beyond it a shape is cut down, and its parts would differ */
-static const int MOST_DASHES = 10000;     /* of one piece: a line of 8,192 pixels has fewer */
+static const double TILE = 16;        /* pixels, side of a tile of a slanted line */
+static const double MAX_TILED = 8000; /* pixels; longer shapes are reduced per tile, and their tiles would not
+                                             match */
+static const int MAX_DASHES = 10000;  /* of one segment; a line of 8,192 pixels has fewer */
 
-/* Between these rows or columns the whole pixels that the line can touch. */
+/* The whole pixels that the line can touch between these columns (flat) or rows. */
 static Rect tile_of(Point from, Point to, double thickness, bool flat, double first, double last) {
     double start = flat ? from.x : from.y, length = flat ? to.x - from.x : to.y - from.y;
     double a = fmin(fmax((first - start) / length, 0), 1), b = fmin(fmax((last - start) / length, 0), 1);
@@ -24,12 +25,12 @@ static Rect tile_of(Point from, Point to, double thickness, bool flat, double fi
     return flat ? (Rect){(int)first, before, (int)last, behind} : (Rect){before, (int)first, behind, (int)last};
 }
 
-static Rect common(Rect a, const Rect *b) {
+static Rect intersection(Rect a, const Rect *b) {
     return (Rect){a.left > b->left ? a.left : b->left, a.top > b->top ? a.top : b->top,
                   a.right < b->right ? a.right : b->right, a.bottom < b->bottom ? a.bottom : b->bottom};
 }
 
-/* A long slanted line touches few of the pixels around it: it is drawn in tiles, which share no pixel. */
+/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles. */
 static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point to, double thickness,
                          const Rect *clip) {
     bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);
@@ -37,7 +38,7 @@ static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point 
     double first = fmax(floor(low - thickness - 2), flat ? clip->left : clip->top);
     double last = fmin(ceil(high + thickness + 2), flat ? clip->right : clip->bottom);
     for (double at = first; at < last; at += TILE) {
-        Rect part = common(tile_of(from, to, thickness, flat, at, fmin(at + TILE, last)), clip);
+        Rect part = intersection(tile_of(from, to, thickness, flat, at, fmin(at + TILE, last)), clip);
         if (part.left < part.right && part.top < part.bottom) drawing_add_shape(drawing, line, &part);
     }
 }
@@ -53,7 +54,7 @@ void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint3
                   .sine = length > 0 ? -dy / length : 0,
                   .radius = thickness / 2,
                   .fill = color};
-    if (fmin(fabs(dx), fabs(dy)) > TILE && length < LONGEST_TILED)
+    if (fmin(fabs(dx), fabs(dy)) > TILE && length < MAX_TILED)
         add_in_tiles(drawing, &line, from, to, thickness, clip);
     else
         drawing_add_shape(drawing, &line, clip);
@@ -72,31 +73,31 @@ void stroke_dot(Drawing *drawing, Point center, double radius, uint32_t fill, ui
     drawing_add_shape(drawing, &dot, clip);
 }
 
-/* One side of a head whose tip is at `tip`; (c, s) points along the arrow, `turn` is 1 or -1. */
+/* One side of the head at `tip`. (c, s) is the arrow's direction; `turn` is 1 or -1. */
 static void draw_side(Drawing *drawing, Point tip, double c, double s, double turn, double size, double thickness,
                       uint32_t color, const Rect *clip) {
     double x = -c * HEAD_COSINE - turn * s * HEAD_SINE, y = -s * HEAD_COSINE + turn * c * HEAD_SINE;
     stroke_line(drawing, tip, (Point){tip.x + size * x, tip.y + size * y}, thickness, color, clip);
 }
 
-static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool longer, double thickness,
+static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool truncated, double thickness,
                        uint32_t color, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
     double c = dx / length, s = dy / length;
     stroke_line(drawing, from, to, thickness, color, clip);
-    for (int i = 0; i < (longer ? 2 : 1); i++) {
-        Point tip = {to.x - i * APART * head * c, to.y - i * APART * head * s};
+    for (int i = 0; i < (truncated ? 2 : 1); i++) {
+        Point tip = {to.x - i * HEAD_SPACING * head * c, to.y - i * HEAD_SPACING * head * s};
         draw_side(drawing, tip, c, s, 1, head, thickness, color, clip);
         draw_side(drawing, tip, c, s, -1, head, thickness, color, clip);
     }
 }
 
-void stroke_arrow(Drawing *drawing, Point from, Point to, bool longer, const ArrowStyle *style, const Rect *clip) {
+void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const ArrowStyle *style, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), t = style->thickness;
-    if (!(length >= LEAST_LENGTH * t) || !isfinite(length)) return; /* a shorter one would be all head */
-    double head = fmin(HEAD * t, fmax(LEAST_HEAD * t, 0.6 * length));
-    draw_arrow(drawing, from, to, head, longer, t + 2 * fmax(HALO, t / 3), style->halo, clip);
-    draw_arrow(drawing, from, to, head, longer, t, style->color, clip);
+    if (!(length >= MIN_LENGTH * t) || !isfinite(length)) return; /* nothing but head */
+    double head = fmin(HEAD * t, fmax(MIN_HEAD * t, 0.6 * length));
+    draw_arrow(drawing, from, to, head, truncated, t + 2 * fmax(HALO, t / 3), style->halo, clip);
+    draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
 }
 
 void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip) {
@@ -109,7 +110,7 @@ void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, con
         stroke_line(drawing, from, to, t, line->color, clip);
         return;
     }
-    for (int i = 0; i < MOST_DASHES && done < length; i++) {
+    for (int i = 0; i < MAX_DASHES && done < length; i++) {
         double at = fmod(line->travelled, period);
         int part = 0;
         while (part < 3 && at >= parts[part]) at -= parts[part++];

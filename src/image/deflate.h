@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A deflate stream of one block with one constant code (RFC 1951, 3.2.7), made for the rows of flat pictures of
-   which most equal the row above. A constant code makes the bits of a row depend on that row alone. */
+/* A deflate stream of one block with a constant dynamic code (RFC 1951, 3.2.7), tuned for the rows of flat pictures,
+   most of which equal the row above. With a constant code, the bits of a row depend only on that row. */
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
 
 enum {
-    DEFLATE_RUN = 86,           /* pixels, of three bytes each, that one match can repeat: 258 / 3 */
-    DEFLATE_LONGEST = 10,       /* bits a literal */
-    DEFLATE_HEADER_BYTES = 176, /* what deflate_begin takes, at most */
-    BITS_MARGIN = 8             /* bytes that a BitWriter may write behind its last bit */
+    DEFLATE_RUN = 86,           /* pixels of three bytes that one match can repeat: 258 / 3 */
+    DEFLATE_LITERAL_BITS = 10,  /* longest code */
+    DEFLATE_HEADER_BYTES = 176, /* upper bound of what deflate_begin() writes */
+    BITS_MARGIN = 8             /* bytes that a BitWriter may write past its last bit */
 };
 
-/* Bits, the lowest first, as deflate packs them. */
+/* Writes bits from the lowest up, as deflate packs them. */
 typedef struct BitWriter {
     uint8_t *next;
     uint64_t pending; /* fewer than 8 bits */
-    unsigned count;   /* of them */
+    unsigned count;   /* of pending bits */
 } BitWriter;
 
-/* Up to 56 bits. Stores eight bytes each time (compilers make it one store), and moves on by the whole ones. */
-static inline void bits_put(BitWriter *writer, uint64_t bits, unsigned count) {
+/* Writes up to 56 bits. Stores eight bytes (compilers emit one store) and advances by the complete ones. */
+static inline void bits_write(BitWriter *writer, uint64_t bits, unsigned count) {
     uint8_t *next = writer->next;
     bits = writer->pending | bits << writer->count;
     count += writer->count;
@@ -30,7 +30,7 @@ static inline void bits_put(BitWriter *writer, uint64_t bits, unsigned count) {
     writer->count = count % 8;
 }
 
-/* The last byte, filled up with zeros. */
+/* Completes the last byte with zeros. */
 static inline void bits_end(BitWriter *writer) {
     if (writer->count > 0) *writer->next++ = (uint8_t)writer->pending;
     writer->pending = writer->count = 0;
@@ -42,10 +42,10 @@ typedef struct DeflateCode {
 
 typedef struct DeflateCodes {
     DeflateCode literals[256], end;
-    DeflateCode runs[DEFLATE_RUN + 1]; /* [n]: the last three bytes n times again, n from 1 */
+    DeflateCode runs[DEFLATE_RUN + 1]; /* [n], n >= 1: repeats the last three bytes n times */
 } DeflateCodes;
 
 void deflate_make_codes(DeflateCodes *codes);
 
-/* The head of a zlib stream (RFC 1950) and of its only block. */
+/* Writes the header of a zlib stream (RFC 1950) and of its only block. */
 void deflate_begin(BitWriter *writer);

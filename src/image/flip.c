@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers are the paper's; equations are named after it. */
+/* Constants and equation numbers are the paper's. */
 #include "image/flip.h"
 
 #include "image/flip_filter.h"
@@ -9,10 +9,10 @@
 #include <string.h>
 
 typedef struct Color {
-    float x, y, z; /* of whatever space */
+    float x, y, z; /* in any colour space */
 } Color;
 
-/* Linear sRGB to XYZ (IEC 61966-2-1), and its white. */
+/* Linear sRGB to XYZ (IEC 61966-2-1), and the white point. */
 static const float to_xyz[3][3] = {{0.41238656f, 0.35759149f, 0.18045049f},
                                    {0.21263682f, 0.71518298f, 0.07218020f},
                                    {0.01933062f, 0.11919716f, 0.95037259f}};
@@ -33,7 +33,7 @@ static float linear(int byte) {
     return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);
 }
 
-/* A linear space in which lightness and the two colour channels can be blurred apart (section 4.1.1). */
+/* A linear opponent space, in which lightness and the two chroma channels are blurred separately (section 4.1.1). */
 static Color rgb_to_opponent(Color rgb) {
     Color c = multiply(to_xyz, rgb);
     c = (Color){c.x / white.x, c.y / white.y, c.z / white.z};
@@ -52,7 +52,7 @@ static float lab_curve(float t) {
 
 static float clamp(float value) { return value < 0 ? 0 : value > 1 ? 1 : value; }
 
-/* CIELab, its colours paler in the dark (Hunt, section 4.1.2). */
+/* CIELab with the Hunt effect: less chroma at low lightness (section 4.1.2). */
 static Color rgb_to_hunt_lab(Color rgb) {
     Color c = multiply(to_xyz, (Color){clamp(rgb.x), clamp(rgb.y), clamp(rgb.z)});
     float x = lab_curve(c.x / white.x), y = lab_curve(c.y / white.y), z = lab_curve(c.z / white.z);
@@ -66,99 +66,100 @@ static float hyab(Color a, Color b) {
 
 static const float COLOR_POWER = 0.7f, COLOR_KNEE = 0.4f, COLOR_KNEE_VALUE = 0.95f, FEATURE_POWER = 0.5f;
 
-/* Section 4.1.3: large differences share what is above the knee. */
+/* Section 4.1.3: errors above the knee are compressed. */
 static float color_error(float distance, float largest) {
     float error = powf(distance, COLOR_POWER), knee = COLOR_KNEE * largest;
     if (error < knee) return COLOR_KNEE_VALUE / knee * error;
     return COLOR_KNEE_VALUE + (error - knee) / (largest - knee) * (1 - COLOR_KNEE_VALUE);
 }
 
-/* A part of both pictures, as planes. */
+/* The region of both pictures that is compared, as planes. */
 enum { CHANNELS = 3, FEATURES = 4, PLANES = CHANNELS + FEATURES, SCRATCH = 2 };
-typedef struct Part {
+typedef struct Region {
     int left, top, width, height;
     FlipPlane planes[2][PLANES]; /* blurred lightness, red-green, blue-yellow; edges, points in x and y */
     FlipPlane scratch[SCRATCH], channels[CHANNELS];
-    float *padded; /* a row */
+    float *padded; /* one row */
     float *memory;
-} Part;
+} Region;
 
-static bool part_create(Part *part, Error *error) {
-    size_t size = (size_t)part->width * (size_t)part->height;
+static bool region_create(Region *region, Error *error) {
+    size_t size = (size_t)region->width * (size_t)region->height;
     enum { ALL = 2 * PLANES + SCRATCH + CHANNELS };
-    float *next = part->memory = malloc((size * ALL + (size_t)part->width + 2 * FLIP_RADIUS_MAX) * sizeof *next);
+    float *next = region->memory = malloc((size * ALL + (size_t)region->width + 2 * FLIP_RADIUS_MAX) * sizeof *next);
     if (next == NULL) return error_memory(error, "FLIP");
     for (int i = 0; i < ALL; i++, next += size) {
-        FlipPlane plane = {part->width, part->height, next};
+        FlipPlane plane = {region->width, region->height, next};
         if (i < 2 * PLANES)
-            part->planes[i / PLANES][i % PLANES] = plane;
+            region->planes[i / PLANES][i % PLANES] = plane;
         else if (i < 2 * PLANES + SCRATCH)
-            part->scratch[i - 2 * PLANES] = plane;
+            region->scratch[i - 2 * PLANES] = plane;
         else
-            part->channels[i - 2 * PLANES - SCRATCH] = plane;
+            region->channels[i - 2 * PLANES - SCRATCH] = plane;
     }
-    part->padded = next;
+    region->padded = next;
     return true;
 }
 
-static void load_channels(Part *part, const Image *image, const float linear_of[256]) {
+static void load_channels(Region *region, const Image *image, const float linear_of[256]) {
     size_t i = 0;
-    for (int y = 0; y < part->height; y++) {
-        const uint8_t *p = image->pixels + ((size_t)(part->top + y) * (size_t)image->width + (size_t)part->left) * 4;
-        for (int x = 0; x < part->width; x++, p += 4, i++) {
+    for (int y = 0; y < region->height; y++) {
+        const uint8_t *p =
+            image->pixels + ((size_t)(region->top + y) * (size_t)image->width + (size_t)region->left) * 4;
+        for (int x = 0; x < region->width; x++, p += 4, i++) {
             float rgb[3];
             for (int c = 0; c < 3; c++) rgb[c] = linear_of[255 - (255 - p[c]) * p[3] / 255];
             Color color = rgb_to_opponent((Color){rgb[0], rgb[1], rgb[2]});
-            part->channels[0].values[i] = color.x;
-            part->channels[1].values[i] = color.y;
-            part->channels[2].values[i] = color.z;
+            region->channels[0].values[i] = color.x;
+            region->channels[1].values[i] = color.y;
+            region->channels[2].values[i] = color.z;
         }
     }
 }
 
-static void blur(Part *part, FlipChannel channel, const FlipBlur *by, FlipPlane *to) {
-    size_t size = (size_t)part->width * (size_t)part->height;
-    FlipPlane *scratch = part->scratch;
-    flip_filter(&part->channels[channel], &by->kernels[0], &by->kernels[0], &scratch[0], part->padded, to);
+static void blur(Region *region, FlipChannel channel, const FlipBlur *by, FlipPlane *to) {
+    size_t size = (size_t)region->width * (size_t)region->height;
+    FlipPlane *scratch = region->scratch;
+    flip_filter(&region->channels[channel], &by->kernels[0], &by->kernels[0], &scratch[0], region->padded, to);
     if (by->count == 1) return;
-    flip_filter(&part->channels[channel], &by->kernels[1], &by->kernels[1], &scratch[0], part->padded, &scratch[1]);
+    flip_filter(&region->channels[channel], &by->kernels[1], &by->kernels[1], &scratch[0], region->padded, &scratch[1]);
     for (size_t i = 0; i < size; i++)
         to->values[i] = by->share[0] * to->values[i] + by->share[1] * scratch[1].values[i];
 }
 
-static void find_features(Part *part, const FlipFeatures *features, FlipPlane *to) {
-    size_t size = (size_t)part->width * (size_t)part->height;
-    FlipPlane *light = &part->channels[FLIP_LIGHTNESS];
+static void find_features(Region *region, const FlipFeatures *features, FlipPlane *to) {
+    size_t size = (size_t)region->width * (size_t)region->height;
+    FlipPlane *light = &region->channels[FLIP_LIGHTNESS];
     for (size_t i = 0; i < size; i++) light->values[i] = (light->values[i] + 16) / 116;
-    flip_filter(light, &features->edge, &features->across, part->scratch, part->padded, &to[0]);
-    flip_filter(light, &features->across, &features->edge, part->scratch, part->padded, &to[1]);
-    flip_filter(light, &features->point, &features->across, part->scratch, part->padded, &to[2]);
-    flip_filter(light, &features->across, &features->point, part->scratch, part->padded, &to[3]);
+    flip_filter(light, &features->edge, &features->across, region->scratch, region->padded, &to[0]);
+    flip_filter(light, &features->across, &features->edge, region->scratch, region->padded, &to[1]);
+    flip_filter(light, &features->point, &features->across, region->scratch, region->padded, &to[2]);
+    flip_filter(light, &features->across, &features->point, region->scratch, region->padded, &to[3]);
 }
 
-static Color blurred(const Part *part, int picture, size_t i) {
-    const FlipPlane *p = part->planes[picture];
+static Color blurred(const Region *region, int picture, size_t i) {
+    const FlipPlane *p = region->planes[picture];
     return rgb_to_hunt_lab(opponent_to_rgb((Color){p[0].values[i], p[1].values[i], p[2].values[i]}));
 }
 
-static float feature_change(const Part *part, int first, size_t i) {
-    const FlipPlane *a = part->planes[0] + CHANNELS + first, *b = part->planes[1] + CHANNELS + first;
+static float feature_change(const Region *region, int first, size_t i) {
+    const FlipPlane *a = region->planes[0] + CHANNELS + first, *b = region->planes[1] + CHANNELS + first;
     float strength_a = sqrtf(a[0].values[i] * a[0].values[i] + a[1].values[i] * a[1].values[i]);
     float strength_b = sqrtf(b[0].values[i] * b[0].values[i] + b[1].values[i] * b[1].values[i]);
     return fabsf(strength_a - strength_b);
 }
 
-static bool looks_equal(const Part *part, size_t i) {
-    const FlipPlane *a = part->planes[0], *b = part->planes[1];
+static bool looks_equal(const Region *region, size_t i) {
+    const FlipPlane *a = region->planes[0], *b = region->planes[1];
     return a[0].values[i] == b[0].values[i] && a[1].values[i] == b[1].values[i] && a[2].values[i] == b[2].values[i];
 }
 
-/* Equation 6 of one pixel. */
-static float pixel_flip(const Part *part, size_t i, float largest) {
-    if (looks_equal(part, i)) return 0;
-    float color = color_error(hyab(blurred(part, 0, i), blurred(part, 1, i)), largest);
-    if (color <= 0) return 0; /* where 0 to the power of 0 would be 1 */
-    float change = fmaxf(feature_change(part, 0, i), feature_change(part, 2, i));
+/* Equation 6 for one pixel. */
+static float pixel_flip(const Region *region, size_t i, float largest) {
+    if (looks_equal(region, i)) return 0;
+    float color = color_error(hyab(blurred(region, 0, i), blurred(region, 1, i)), largest);
+    if (color <= 0) return 0; /* 0 to the power of 0 would be 1 */
+    float change = fmaxf(feature_change(region, 0, i), feature_change(region, 2, i));
     float feature = powf(clamp(change / sqrtf(2)), FEATURE_POWER);
     return powf(color, 1 - feature);
 }
@@ -167,30 +168,30 @@ static float largest_color_error(void) {
     return powf(hyab(rgb_to_hunt_lab((Color){0, 1, 0}), rgb_to_hunt_lab((Color){0, 0, 1})), COLOR_POWER);
 }
 
-static double fill(const Part *part, int width, float *map) {
+static double fill(const Region *region, int width, float *map) {
     double sum = 0;
     float largest = largest_color_error();
     size_t i = 0;
-    for (int y = 0; y < part->height; y++)
-        for (int x = 0; x < part->width; x++, i++) {
-            float value = pixel_flip(part, i, largest);
+    for (int y = 0; y < region->height; y++)
+        for (int x = 0; x < region->width; x++, i++) {
+            float value = pixel_flip(region, i, largest);
             sum += (double)value;
-            if (map != NULL) map[(size_t)(part->top + y) * (size_t)width + (size_t)(part->left + x)] = value;
+            if (map != NULL) map[(size_t)(region->top + y) * (size_t)width + (size_t)(region->left + x)] = value;
         }
     return sum;
 }
 
-/* What differs, as far as the filters carry it, and what they read there. */
-static bool part_around(Part *part, const Image *a, const Image *b, int radius) {
+/* The bounds of the differences, extended by the filter radius, and again by what the filters read there. */
+static bool find_region(Region *region, const Image *a, const Image *b, int radius) {
     ImageDifference difference;
     image_compare(a, b, &difference);
     if (difference.equal) return false;
     int left = difference.left - 2 * radius, right = difference.right + 2 * radius;
     int top = difference.top - 2 * radius, bottom = difference.bottom + 2 * radius;
-    part->left = left > 0 ? left : 0;
-    part->top = top > 0 ? top : 0;
-    part->width = (right < a->width ? right : a->width) - part->left;
-    part->height = (bottom < a->height ? bottom : a->height) - part->top;
+    region->left = left > 0 ? left : 0;
+    region->top = top > 0 ? top : 0;
+    region->width = (right < a->width ? right : a->width) - region->left;
+    region->height = (bottom < a->height ? bottom : a->height) - region->top;
     return true;
 }
 
@@ -200,22 +201,22 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
     FlipBlur blurs[CHANNELS];
     FlipFeatures features;
     float linear_of[256];
-    Part part = {0};
+    Region region = {0};
     *mean = 0;
     if (map != NULL) memset(map, 0, all * sizeof *map);
     for (int c = 0; c < CHANNELS; c++) flip_make_blur(&blurs[c], (FlipChannel)c, pixels_per_degree);
     flip_make_features(&features, pixels_per_degree);
     int reach = blurs[0].kernels[0].radius;
     if (features.across.radius > reach) reach = features.across.radius;
-    if (!part_around(&part, expected, actual, reach)) return true;
-    if (!part_create(&part, error)) return false;
+    if (!find_region(&region, expected, actual, reach)) return true;
+    if (!region_create(&region, error)) return false;
     for (int i = 0; i < 256; i++) linear_of[i] = linear(i);
     for (int picture = 0; picture < 2; picture++) {
-        load_channels(&part, picture == 0 ? expected : actual, linear_of);
-        for (int c = 0; c < CHANNELS; c++) blur(&part, (FlipChannel)c, &blurs[c], &part.planes[picture][c]);
-        find_features(&part, &features, part.planes[picture] + CHANNELS);
+        load_channels(&region, picture == 0 ? expected : actual, linear_of);
+        for (int c = 0; c < CHANNELS; c++) blur(&region, (FlipChannel)c, &blurs[c], &region.planes[picture][c]);
+        find_features(&region, &features, region.planes[picture] + CHANNELS);
     }
-    *mean = fill(&part, expected->width, map) / (double)all;
-    free(part.memory);
+    *mean = fill(&region, expected->width, map) / (double)all;
+    free(region.memory);
     return true;
 }

@@ -8,14 +8,14 @@
 
 static int at_most(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
 
-/* Equation 3's constants: the weight and the width of up to two Gaussians. */
+/* The constants of equation 3: weights and widths of up to two Gaussians. */
 static const struct {
     double weight[2], width[2];
 } sensitivity[] = {{{1, 0}, {0.0047, 0}}, {{1, 0}, {0.0053, 0}}, {{34.1, 13.5}, {0.04, 0.025}}};
 
 void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degree) {
     double volume[2] = {0, 0};
-    /* All channels reach as far as the widest does: three of its standard deviations. */
+    /* One radius for all channels: three standard deviations of the widest Gaussian. */
     int radius = at_most(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
     blur->count = sensitivity[channel].weight[1] > 0 ? 2 : 1;
     for (int i = 0; i < blur->count; i++) {
@@ -30,7 +30,7 @@ void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degre
     for (int i = 0; i < blur->count; i++) blur->share[i] = (float)(volume[i] / (volume[0] + volume[1]));
 }
 
-/* Scales what is above 0 to a sum of 1, and what is below to -1. */
+/* Scales the positive weights to a sum of 1, the negative ones to -1. */
 static void normalise(FlipKernel *kernel, const double *weights) {
     double above = 0, below = 0;
     int count = 2 * kernel->radius + 1;
@@ -40,7 +40,8 @@ static void normalise(FlipKernel *kernel, const double *weights) {
 
 void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     enum { LARGEST = 2 * FLIP_RADIUS_MAX + 1 };
-    double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: a feature as wide as the eye sees best */
+    double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: the feature width at the eye's peak
+                                                           contrast sensitivity */
     int radius = at_most(ceil(3 * deviation));
     double across[LARGEST], edge[LARGEST], point[LARGEST];
     for (int k = -radius; k <= radius; k++) {
@@ -57,12 +58,12 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
 
 static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
 
-/* Weight by weight, so that the compiler takes many columns at once. */
+/* One weight at a time, so that the compiler vectorises over columns. */
 static void add_weighted(const float *from, int count, float weight, float *to) {
     for (int i = 0; i < count; i++) to[i] += weight * from[i];
 }
 
-/* padded has room for a row and a kernel. */
+/* `padded` has room for a row and a kernel. */
 static void filter_row(const float *from, int width, const FlipKernel *kernel, float *padded, float *to) {
     int radius = kernel->radius;
     for (int i = 0; i < width + 2 * radius; i++) padded[i] = from[inside(i - radius, width)];

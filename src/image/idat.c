@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each row goes through the Up filter, so that what equals the row above becomes zero; then each run of equal pixels is
-   one pixel and matches that repeat it. The bits of a row are kept: a row is compressed again only where it, or the
-   one above, has changed. So is what the row adds to the checksum, which is found by runs and not by bytes. */
+/* Each row goes through the Up filter: pixels that equal those above become zero. Then each run of equal pixels
+   becomes one pixel and matches that repeat it. The bits of a row are kept, and its part of the checksum, which is
+   computed per run: a row is compressed again only if it or the row above has changed. */
 #include "image/idat.h"
 
 #include "common/array.h"
@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILTER_UP = 2, CHANNELS = 3, WORD_BYTES = 8, PUT_BITS = 56 };
+enum { FILTER_UP = 2, CHANNELS = 3, WORD_BYTES = 8, CHUNK_BITS = 56 };
 static const uint64_t ADLER_MODULUS = 65521;
 
-/* The bits, and the row's part of Adler-32: the sum of its bytes, and the sum of each times its distance from the
+/* The bits, and the row's part of Adler-32: the sum of its bytes, and the sum weighted by the distance from the
    row's end. */
 typedef struct Row {
     uint8_t *bits;
@@ -24,16 +24,18 @@ typedef struct Row {
 struct Idat {
     int width, height;
     DeflateCodes codes;
-    uint32_t *differences; /* [width] of a row to the one above, RGBA */
-    uint8_t *edges;        /* [width + 1] where runs begin, and a word behind it */
-    uint8_t *scratch;      /* room for the longest row */
-    uint8_t *blank;        /* the row above the first */
+    uint32_t *differences; /* [width], of a row to the one above, RGBA */
+    uint8_t *edges;        /* [width + 1], 1 where a run begins; padded by a word */
+    uint8_t *scratch;      /* buffer for the largest row */
+    uint8_t *blank;        /* a row of zeros, above the first row */
     Row *rows;             /* [height] */
     uint8_t *data;
     size_t capacity;
 };
 
-static size_t longest_row(int width) { return ((size_t)width * CHANNELS + 1) * DEFLATE_LONGEST / 8 + 1 + BITS_MARGIN; }
+static size_t max_row_bytes(int width) {
+    return ((size_t)width * CHANNELS + 1) * DEFLATE_LITERAL_BITS / 8 + 1 + BITS_MARGIN;
+}
 
 Idat *idat_create(int width, int height, Error *error) {
     Idat *idat = calloc(1, sizeof *idat);
@@ -41,7 +43,7 @@ Idat *idat_create(int width, int height, Error *error) {
         *idat = (Idat){.width = width, .height = height};
         idat->differences = malloc((size_t)width * sizeof *idat->differences);
         idat->edges = calloc((size_t)width + 1 + WORD_BYTES, 1);
-        idat->scratch = malloc(longest_row(width));
+        idat->scratch = malloc(max_row_bytes(width));
         idat->blank = calloc((size_t)width, 4);
         idat->rows = calloc((size_t)height, sizeof *idat->rows);
         deflate_make_codes(&idat->codes);
@@ -66,8 +68,8 @@ void idat_destroy(Idat *idat) {
     free(idat);
 }
 
-/* Of a row to the one above, byte by byte modulo 256; and each pixel that is not like the one before. Plain loops that
-   compilers turn into vectors: here into those that every processor of the kind has, below into wider ones. */
+/* The difference of a row to the one above, per byte modulo 256, and the pixels that differ from their left
+   neighbour. Simple loops that compilers vectorise: for the baseline instruction set here, for AVX2 below. */
 static inline void subtract(uint8_t *differences, const uint8_t *row, const uint8_t *above, int width) {
     for (int i = 0; i < 4 * width; i++) differences[i] = (uint8_t)(row[i] - above[i]);
 }
@@ -79,7 +81,7 @@ static inline void find_edges(uint8_t *edges, const uint32_t *pixels, int width)
     for (int i = 1; i < width; i++) edges[i] = ((pixels[i] ^ pixels[i - 1]) & mask) != 0;
 }
 
-static void compare_rows_plain(Idat *idat, const uint8_t *row, const uint8_t *above) {
+static void compare_rows_baseline(Idat *idat, const uint8_t *row, const uint8_t *above) {
     subtract((uint8_t *)idat->differences, row, above, idat->width);
     find_edges(idat->edges, idat->differences, idat->width);
 }
@@ -93,45 +95,45 @@ __attribute__((target("avx2"), flatten)) static void compare_rows_avx2(Idat *ida
 #endif
 
 static void compare_rows(Idat *idat, const uint8_t *row, const uint8_t *above) {
-    idat->edges[idat->width] = 1; /* a run ends with the row */
+    idat->edges[idat->width] = 1; /* the last run ends with the row */
 #ifdef __x86_64__
     if (__builtin_cpu_supports("avx2")) {
         compare_rows_avx2(idat, row, above);
         return;
     }
 #endif
-    compare_rows_plain(idat, row, above);
+    compare_rows_baseline(idat, row, above);
 }
 
-/* Compilers make it one load. */
+/* Compilers emit one load. */
 static uint64_t load_word(const uint8_t *bytes) {
     uint64_t word = 0;
     for (int i = 0; i < WORD_BYTES; i++) word |= (uint64_t)bytes[i] << (8 * i);
     return word;
 }
 
-/* Most runs are short: the first eight edges are looked at in one word. */
-static int run_length(const uint8_t *edges, int behind) {
+/* Most runs are short: test the next eight edges with one word. */
+static int run_length(const uint8_t *edges, int remaining) {
     uint64_t word = load_word(edges + 1);
     if (word != 0) return 1 + __builtin_ctzll(word) / 8;
-    return (int)((const uint8_t *)memchr(edges + 1, 1, (size_t)behind) - edges);
+    return (int)((const uint8_t *)memchr(edges + 1, 1, (size_t)remaining) - edges);
 }
 
-static void put_code(BitWriter *writer, DeflateCode code) { bits_put(writer, code.bits, code.count); }
+static void write_code(BitWriter *writer, DeflateCode code) { bits_write(writer, code.bits, code.count); }
 
-static void put_run(BitWriter *writer, const DeflateCodes *codes, const uint8_t pixel[CHANNELS], int length) {
+static void write_run(BitWriter *writer, const DeflateCodes *codes, const uint8_t pixel[CHANNELS], int length) {
     DeflateCode a = codes->literals[pixel[0]], b = codes->literals[pixel[1]], c = codes->literals[pixel[2]];
-    bits_put(writer, a.bits | (uint64_t)b.bits << a.count | (uint64_t)c.bits << (a.count + b.count),
-             a.count + b.count + c.count);
-    for (length--; length > DEFLATE_RUN; length -= DEFLATE_RUN) put_code(writer, codes->runs[DEFLATE_RUN]);
-    put_code(writer, codes->runs[length]);
+    bits_write(writer, a.bits | (uint64_t)b.bits << a.count | (uint64_t)c.bits << (a.count + b.count),
+               a.count + b.count + c.count);
+    for (length--; length > DEFLATE_RUN; length -= DEFLATE_RUN) write_code(writer, codes->runs[DEFLATE_RUN]);
+    write_code(writer, codes->runs[length]);
 }
 
-/* `behind`: pixels from the run's first to the row's end. The first bytes of its pixels stand 3 * behind, then
-   3 * (behind - 1) and so on before the end; the second and third bytes one and two nearer. */
-static void add_run(Row *row, const uint8_t pixel[CHANNELS], int length, int behind) {
+/* Adds a run to the row's sums. `remaining`: pixels from the run's first to the row's end. The pixels' first bytes
+   have the distances 3 * remaining, 3 * (remaining - 1), ... from the end; second and third bytes one and two less. */
+static void add_run(Row *row, const uint8_t pixel[CHANNELS], int length, int remaining) {
     uint64_t n = (uint64_t)length, bytes = (uint64_t)pixel[0] + pixel[1] + pixel[2];
-    uint64_t places = CHANNELS * (n * (uint64_t)behind - n * (n - 1) / 2);
+    uint64_t places = CHANNELS * (n * (uint64_t)remaining - n * (n - 1) / 2);
     row->sum += n * bytes;
     row->weighted += bytes * places - n * (pixel[1] + 2u * pixel[2]);
 }
@@ -141,7 +143,7 @@ static bool keep_bits(Row *row, const uint8_t *bits, const BitWriter *end, Error
     size_t count = (size_t)(writer.next - bits) * 8 + writer.count;
     bits_end(&writer);
     size_t bytes = (size_t)(writer.next - bits);
-    /* Read back in words. */
+    /* write_row() reads whole words. */
     if (!array_reserve((void **)&row->bits, &row->capacity, bytes + WORD_BYTES, 1)) return error_memory(error, "image");
     memcpy(row->bits, bits, bytes);
     row->count = count;
@@ -150,18 +152,18 @@ static bool keep_bits(Row *row, const uint8_t *bits, const BitWriter *end, Error
 
 static bool encode_row(Idat *idat, const uint8_t *pixels, const uint8_t *above, Row *row, Error *error) {
     BitWriter writer = {.next = idat->scratch};
-    put_code(&writer, idat->codes.literals[FILTER_UP]);
+    write_code(&writer, idat->codes.literals[FILTER_UP]);
     row->sum = FILTER_UP;
     row->weighted = FILTER_UP * ((uint64_t)idat->width * CHANNELS + 1);
     if (memcmp(pixels, above, 4 * (size_t)idat->width) == 0) {
-        put_run(&writer, &idat->codes, idat->blank, idat->width);
+        write_run(&writer, &idat->codes, idat->blank, idat->width);
         return keep_bits(row, idat->scratch, &writer, error);
     }
     compare_rows(idat, pixels, above);
     const uint8_t *differences = (const uint8_t *)idat->differences;
     for (int x = 0, length; x < idat->width; x += length) {
         length = run_length(idat->edges + x, idat->width - x);
-        put_run(&writer, &idat->codes, differences + 4 * x, length);
+        write_run(&writer, &idat->codes, differences + 4 * x, length);
         add_run(row, differences + 4 * x, length, idat->width - x);
     }
     return keep_bits(row, idat->scratch, &writer, error);
@@ -177,15 +179,15 @@ static bool encode_rows(Idat *idat, const Image *image, const bool *changed, Err
     return true;
 }
 
-static void put_row(BitWriter *writer, const Row *row) {
+static void write_row(BitWriter *writer, const Row *row) {
     size_t at = 0;
-    for (; at + PUT_BITS <= row->count; at += PUT_BITS)
-        bits_put(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << PUT_BITS) - 1), PUT_BITS);
+    for (; at + CHUNK_BITS <= row->count; at += CHUNK_BITS)
+        bits_write(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << CHUNK_BITS) - 1), CHUNK_BITS);
     unsigned left = (unsigned)(row->count - at);
-    bits_put(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << left) - 1), left);
+    bits_write(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << left) - 1), left);
 }
 
-/* Adler-32 (RFC 1950): after a row, b has grown by the old a once for each byte. */
+/* Adler-32 (RFC 1950): over a row, b grows by the old a once per byte. */
 static uint32_t checksum(const Idat *idat) {
     uint64_t a = 1, b = 0, bytes = (uint64_t)idat->width * CHANNELS + 1;
     for (int y = 0; y < idat->height; y++) {
@@ -199,7 +201,7 @@ static uint32_t checksum(const Idat *idat) {
 static size_t joined_size(const Idat *idat) {
     size_t bits = 0;
     for (int y = 0; y < idat->height; y++) bits += idat->rows[y].count;
-    return DEFLATE_HEADER_BYTES + bits / 8 + BITS_MARGIN + 16; /* the block's end and the checksum */
+    return DEFLATE_HEADER_BYTES + bits / 8 + BITS_MARGIN + 16; /* end of block and checksum */
 }
 
 bool idat_encode(Idat *idat, const Image *image, const bool *changed, const uint8_t **data, size_t *size,
@@ -209,8 +211,8 @@ bool idat_encode(Idat *idat, const Image *image, const bool *changed, const uint
         return error_memory(error, "image");
     BitWriter writer = {.next = idat->data};
     deflate_begin(&writer);
-    for (int y = 0; y < idat->height; y++) put_row(&writer, &idat->rows[y]);
-    put_code(&writer, idat->codes.end);
+    for (int y = 0; y < idat->height; y++) write_row(&writer, &idat->rows[y]);
+    write_code(&writer, idat->codes.end);
     bits_end(&writer);
     uint32_t sum = checksum(idat);
     for (int shift = 24; shift >= 0; shift -= 8) *writer.next++ = (uint8_t)(sum >> shift);

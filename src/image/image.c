@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory, hash and comparison of pictures. */
+/* Allocation, hash and comparison of pictures. */
 #include "image/image.h"
 
 #include "common/hash.h"
@@ -23,11 +23,11 @@ Image *image_create(int width, int height, Error *error) {
 void image_destroy(Image *image) {
     if (image == NULL) return;
     free(image->pixels);
-    free(image->deep);
+    free(image->pixels16);
     free(image);
 }
 
-/* Continues a hash over the bytes of a number, the lowest first on every machine. */
+/* Continues a hash with a number in little-endian bytes. */
 static uint64_t add_number(uint64_t hash, uint64_t value, int count) {
     uint8_t bytes[8];
     for (int i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
@@ -59,9 +59,9 @@ uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows
 }
 
 static int channel_difference(const Image *a, const Image *b, size_t i) {
-    if (a->deep == NULL && b->deep == NULL) return abs(a->pixels[i] - b->pixels[i]);
-    int deep_a = a->deep != NULL ? a->deep[i] : a->pixels[i] * 257;
-    int deep_b = b->deep != NULL ? b->deep[i] : b->pixels[i] * 257;
+    if (a->pixels16 == NULL && b->pixels16 == NULL) return abs(a->pixels[i] - b->pixels[i]);
+    int deep_a = a->pixels16 != NULL ? a->pixels16[i] : a->pixels[i] * 257;
+    int deep_b = b->pixels16 != NULL ? b->pixels16[i] : b->pixels[i] * 257;
     return (abs(deep_a - deep_b) + 256) / 257;
 }
 
@@ -86,7 +86,7 @@ static void count_pixel(ImageDifference *difference, int x, int y, int here) {
 }
 
 static bool equal_row(const Image *a, const Image *b, size_t first) {
-    return a->deep == NULL && b->deep == NULL &&
+    return a->pixels16 == NULL && b->pixels16 == NULL &&
            memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
 }
 

@@ -7,12 +7,12 @@
 #include <stdint.h>
 
 typedef struct Image {
-    int width, height; /* pixels */
-    uint8_t *pixels;   /* [height, width, 4] */
-    uint16_t *deep;    /* the same in 16 bits where it was read from a PNG of 16 bits, else NULL */
+    int width, height;  /* pixels */
+    uint8_t *pixels;    /* [height, width, 4] */
+    uint16_t *pixels16; /* [height, width, 4] if read from a 16-bit PNG, otherwise NULL */
 } Image;
 
-/* Zeroed pixels. NULL with error set when memory is short. */
+/* All pixels are zero. NULL with error set if out of memory. */
 Image *image_create(int width, int height, Error *error);
 void image_destroy(Image *image);
 
@@ -21,49 +21,49 @@ typedef struct ImageText {
     const char *key, *value;
 } ImageText;
 
-/* Writes an opaque 8-bit RGB PNG (alpha is dropped) that is in place only when whole. */
+/* Writes an opaque 8-bit RGB PNG (alpha is dropped). The file appears when complete. */
 bool image_write_png(const Image *image, const char *path, const ImageText *texts, int count, Error *error);
 
 enum { IMAGE_MAX_PIXELS = 100000000 };
 
-/* Any still PNG that libpng can turn into RGBA, of at most IMAGE_MAX_PIXELS (checked before anything is inflated).
-   Refuses damaged, truncated and animated files: ERROR_INPUT, naming the file. */
+/* Reads any still PNG of at most IMAGE_MAX_PIXELS, checked before decompression. ERROR_INPUT, naming the file, if it
+   is damaged, truncated or animated. */
 Image *image_read_png(const char *path, Error *error);
 
-/* A whole file, as it lies on the disk. NULL with error set as image_decode_png() fails. */
+/* Reads a whole file without decoding it. NULL with error set, as for image_decode_png(). */
 uint8_t *image_load_png(const char *path, size_t *size, Error *error);
 
-/* The same of a file in memory, with another limit; path is for messages. */
+/* Like image_read_png(), for a file in memory and with another limit; `path` is used in messages. */
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
 
-/* The value of the first text with this key that stands before the pixels, into value. ERROR_INPUT where
-   there is none, or it takes size bytes or more. */
+/* Copies the value of the first text with this key before the pixels. ERROR_INPUT if there is none, or if it needs
+   more than `size` bytes. */
 bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error);
 
-/* The same of a file in memory that may well have no such text: then, or where it cannot be read, value is empty. */
+/* The same for a file in memory; `value` is empty if the text is missing or cannot be read. */
 void image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size);
 
-/* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, however the file was
-   compressed. */
+/* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, regardless of
+   compression. */
 uint64_t image_hash(const Image *image);
 
-/* The same for a picture of a sequence: rows[height] holds the hashes of the rows of the one before. `changed`, of one
-   flag a row, tells which are others now; NULL for all. */
+/* The same for a picture of a sequence: rows[height] holds the row hashes of the previous picture. `changed` flags
+   the rows that differ; NULL: all. */
 uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows);
 
-/* Of two pictures of different size only same_size is filled. */
+/* If the sizes differ, only same_size is set. */
 typedef struct ImageDifference {
     bool equal, same_size;
-    int64_t pixels;               /* that differ */
-    int64_t counted;              /* that are not masked */
-    int largest;                  /* largest difference of a channel, 0..255; a part of one counts as one */
-    int first_x, first_y;         /* first that differs, row by row; -1, -1 when equal */
-    int left, top, right, bottom; /* what differs lies within; right and bottom are just outside */
+    int64_t pixels;               /* differing */
+    int64_t counted;              /* not masked */
+    int largest;                  /* largest difference of a channel, 0..255, rounded up */
+    int first_x, first_y;         /* first differing pixel, row by row; -1, -1 if equal */
+    int left, top, right, bottom; /* bounds of the differences; right and bottom are exclusive */
 } ImageDifference;
 void image_compare(const Image *a, const Image *b, ImageDifference *difference);
 
-/* The largest difference of a channel of one pixel, as above. The pictures have one size. */
+/* The largest difference of a channel of one pixel, as above. Both pictures must have the same size. */
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
 
-/* masked[height, width], of a's size: where it is not 0, pixels do not count; NULL: all count. */
+/* masked[height, width]: pixels with a nonzero mask are ignored; NULL: none. */
 void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, ImageDifference *difference);

@@ -27,7 +27,7 @@ void mask_free(Mask *mask) {
     mask->count = 0;
 }
 
-static void put_picture(const Image *picture, uint8_t *masked) {
+static void mark_picture(const Image *picture, uint8_t *masked) {
     size_t pixels = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < pixels; i++) {
         const uint8_t *p = picture->pixels + 4 * i;
@@ -37,7 +37,7 @@ static void put_picture(const Image *picture, uint8_t *masked) {
 
 static int64_t clamp(int64_t value, int64_t largest) { return value < 0 ? 0 : value > largest ? largest : value; }
 
-static void put_rectangle(const MaskPart *part, int width, int height, uint8_t *masked) {
+static void mark_rectangle(const MaskPart *part, int width, int height, uint8_t *masked) {
     size_t left = (size_t)clamp(part->x, width), right = (size_t)clamp((int64_t)part->x + part->width, width);
     size_t top = (size_t)clamp(part->y, height), bottom = (size_t)clamp((int64_t)part->y + part->height, height);
     for (size_t y = top; y < bottom; y++) memset(masked + y * (size_t)width + left, 1, right - left);
@@ -49,11 +49,11 @@ uint8_t *mask_make(const Mask *mask, int width, int height, const char *path, Er
     for (int i = 0; masked != NULL && i < mask->count; i++) {
         const MaskPart *part = &mask->parts[i];
         if (part->picture == NULL)
-            put_rectangle(part, width, height, masked);
+            mark_rectangle(part, width, height, masked);
         else if (part->picture->width == width && part->picture->height == height)
-            put_picture(part->picture, masked);
+            mark_picture(part->picture, masked);
         else {
-            error_input(error, part->path, "the mask has %d x %d pixels, but %s %d x %d", part->picture->width,
+            error_input(error, part->path, "the mask has %d x %d pixels, but %s has %d x %d", part->picture->width,
                         part->picture->height, path, width, height);
             free(masked);
             return NULL;
@@ -62,7 +62,7 @@ uint8_t *mask_make(const Mask *mask, int width, int height, const char *path, Er
     return masked;
 }
 
-void image_cover(const Image *expected, Image *actual, const uint8_t *masked) {
+void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked) {
     size_t pixels = (size_t)expected->width * (size_t)expected->height;
     for (size_t i = 0; masked != NULL && i < pixels; i++)
         if (masked[i] != 0) memcpy(actual->pixels + 4 * i, expected->pixels + 4 * i, 4);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing PNG files: libpng makes the file; the pixels inside are compressed by it, or by idat.c. */
+/* Writes PNG files with libpng; the pixels are compressed by libpng or by idat.c. */
 #include "image/png_encoder.h"
 
 #include "common/array.h"
@@ -12,10 +12,10 @@
 
 enum { IDAT_PART = 1 << 15 }; /* bytes */
 
-/* All that an encoding changes lies here and not in locals, which longjmp would clobber. */
+/* Everything that encoding modifies is in this struct, as longjmp would clobber locals. */
 struct PngEncoder {
     int width, height;
-    Idat *idat; /* NULL where libpng compresses */
+    Idat *idat; /* NULL: libpng compresses */
     png_structp png;
     png_infop info;
     uint8_t *data;
@@ -75,14 +75,14 @@ static void write_rows(png_structp png, const Image *image) {
     png_write_end(png, NULL);
 }
 
-/* In parts, since decoders refuse a chunk that is larger than the picture, as that of noise is. */
+/* Split, as decoders refuse an IDAT chunk larger than the picture, which noise would produce. */
 static void write_chunks(png_structp png, const uint8_t *pixels, size_t size) {
     for (size_t at = 0; at < size; at += IDAT_PART)
         png_write_chunk(png, (png_const_bytep) "IDAT", pixels + at, size - at < IDAT_PART ? size - at : IDAT_PART);
     png_write_chunk(png, (png_const_bytep) "IEND", NULL, 0);
 }
 
-/* Without `pixels`, libpng compresses the image. */
+/* pixels NULL: libpng compresses the image. */
 static bool write_file(PngEncoder *encoder, const Image *image, const ImageText *texts, int count,
                        const uint8_t *pixels, size_t pixels_size) {
     if (setjmp(png_jmpbuf(encoder->png)) != 0) return false;

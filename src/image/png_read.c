@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading PNG files, which may come from anywhere: damaged, truncated, or made to eat memory. */
+/* Reads PNG files from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
 #include "common/file.h"
 #include "image/image.h"
 
@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More than IMAGE_MAX_PIXELS take at 16 bits a channel, stored uncompressed. */
+/* More than IMAGE_MAX_PIXELS need with 16 bits per channel, uncompressed. */
 static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 enum { MAX_TEXT_SIZE = 1 << 16, MAX_TEXTS = 64 };
 
-/* All that the decoder changes lies here and not in locals, which longjmp would clobber. */
+/* Everything that decoding modifies is in this struct, as longjmp would clobber locals. */
 typedef struct Decoder {
     png_structp png;
     png_infop info;
@@ -20,20 +20,20 @@ typedef struct Decoder {
     size_t size, position;
     int64_t max_pixels;
     Image *image;
-    uint8_t *row; /* of 16 bits */
+    uint8_t *row; /* 16-bit samples */
     Error *error;
 } Decoder;
 
-static void take(png_structp png, png_bytep data, size_t size) {
+static void read_bytes(png_structp png, png_bytep data, size_t size) {
     Decoder *decoder = png_get_io_ptr(png);
-    if (size > decoder->size - decoder->position) png_error(png, "it ends too early");
+    if (size > decoder->size - decoder->position) png_error(png, "unexpected end of file");
     memcpy(data, decoder->data + decoder->position, size);
     decoder->position += size;
 }
 
 static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
     Decoder *decoder = png_get_error_ptr(png);
-    error_input(decoder->error, decoder->path, "no PNG file, or a damaged one: %s", message);
+    error_input(decoder->error, decoder->path, "not a PNG file, or damaged: %s", message);
     png_longjmp(png, 1);
 }
 
@@ -55,9 +55,9 @@ uint8_t *image_load_png(const char *path, size_t *size, Error *error) {
     return (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
 }
 
-/* Everything doubtful is an error: a frame of which a part is a guess must not count as a frame. */
-static void be_strict(Decoder *decoder) {
-    png_set_read_fn(decoder->png, decoder, take);
+/* Every irregularity is an error: a partly guessed frame must not count as a frame. */
+static void set_strict_limits(Decoder *decoder) {
+    png_set_read_fn(decoder->png, decoder, read_bytes);
     png_set_crc_action(decoder->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_benign_errors(decoder->png, 0);
     png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -65,53 +65,54 @@ static void be_strict(Decoder *decoder) {
     png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
 }
 
-static void refuse_bomb(Decoder *decoder) {
+static void check_size(Decoder *decoder) {
     uint64_t width = png_get_image_width(decoder->png, decoder->info);
     uint64_t height = png_get_image_height(decoder->png, decoder->info);
     if (width * height <= (uint64_t)decoder->max_pixels) return;
-    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %lld in all can be read",
+    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %lld pixels can be read",
                 (unsigned long long)width, (unsigned long long)height, (long long)decoder->max_pixels);
     png_longjmp(decoder->png, 1);
 }
 
-/* libpng would show the first picture of an animation, and no difference in the others. What is here has passed its
-   checks up to the pixels, so the lengths of chunks are right. */
+/* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
+   valid here, as libpng has checked everything up to the pixels. */
 static void refuse_animation(Decoder *decoder) {
     for (size_t at = 8; at + 12 <= decoder->position;) {
         const uint8_t *chunk = decoder->data + at;
         size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 | chunk[3];
         if (memcmp(chunk + 4, "acTL", 4) == 0) {
             error_input(decoder->error, decoder->path,
-                        "an animated PNG (chunk acTL at byte %zu); split it into one file a frame", at);
+                        "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
             png_longjmp(decoder->png, 1);
         }
         at += length + 12;
     }
 }
 
-static void ask_for_rgba(Decoder *decoder) {
+static void request_rgba(Decoder *decoder) {
     png_set_expand(decoder->png);
     png_set_gray_to_rgb(decoder->png);
     png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
 }
 
-static bool make_deep(Decoder *decoder) {
+static bool allocate_pixels16(Decoder *decoder) {
     size_t width = (size_t)decoder->image->width;
-    decoder->image->deep = calloc(width * (size_t)decoder->image->height * 4, sizeof(uint16_t));
+    decoder->image->pixels16 = calloc(width * (size_t)decoder->image->height * 4, sizeof(uint16_t));
     decoder->row = malloc(width * 8);
-    return (decoder->image->deep != NULL && decoder->row != NULL) || error_memory(decoder->error, decoder->path);
+    return (decoder->image->pixels16 != NULL && decoder->row != NULL) || error_memory(decoder->error, decoder->path);
 }
 
-/* The rows of one pass of an interlaced file fill only some pixels: they go on from what the passes before left. */
-static void read_deep_row(Decoder *decoder, size_t first) {
+/* A pass of an interlaced file sets only some pixels; libpng needs the others from earlier passes. */
+static void read_row16(Decoder *decoder, size_t first) {
     size_t samples = (size_t)decoder->image->width * 4;
-    uint16_t *deep = decoder->image->deep + first;
+    uint16_t *pixels16 = decoder->image->pixels16 + first;
     uint8_t *pixels = decoder->image->pixels + first, *row = decoder->row;
-    for (size_t i = 0; i < samples; i++) row[2 * i] = (uint8_t)(deep[i] >> 8), row[2 * i + 1] = (uint8_t)deep[i];
+    for (size_t i = 0; i < samples; i++)
+        row[2 * i] = (uint8_t)(pixels16[i] >> 8), row[2 * i + 1] = (uint8_t)pixels16[i];
     png_read_row(decoder->png, row, NULL);
     for (size_t i = 0; i < samples; i++) {
-        deep[i] = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
-        pixels[i] = (uint8_t)((deep[i] * 255u + 32895) >> 16); /* rounded to the nearest */
+        pixels16[i] = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
+        pixels[i] = (uint8_t)((pixels16[i] * 255u + 32895) >> 16); /* rounded to nearest */
     }
 }
 
@@ -120,8 +121,8 @@ static void read_rows(Decoder *decoder) {
     size_t samples = (size_t)image->width * 4;
     for (int y = 0; y < image->height; y++) {
         size_t first = (size_t)y * samples;
-        if (image->deep != NULL)
-            read_deep_row(decoder, first);
+        if (image->pixels16 != NULL)
+            read_row16(decoder, first);
         else
             png_read_row(decoder->png, image->pixels + first, NULL);
     }
@@ -130,19 +131,19 @@ static void read_rows(Decoder *decoder) {
 static bool decode(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
-    be_strict(decoder);
-    /* Only what makes the pixels: no other chunk is even unpacked. */
+    set_strict_limits(decoder);
+    /* Only the chunks needed for pixels; others are not even decompressed. */
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(png, decoder->info);
-    refuse_bomb(decoder);
+    check_size(decoder);
     refuse_animation(decoder);
-    ask_for_rgba(decoder);
+    request_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
     decoder->image = image_create((int)png_get_image_width(png, decoder->info),
                                   (int)png_get_image_height(png, decoder->info), decoder->error);
     if (decoder->image == NULL) return false;
-    if (png_get_bit_depth(png, decoder->info) == 16 && !make_deep(decoder)) return false;
+    if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
     for (int pass = 0; pass < passes; pass++) read_rows(decoder);
     png_read_end(png, NULL);
     return true;
@@ -169,7 +170,7 @@ Image *image_read_png(const char *path, Error *error) {
 
 static bool decode_texts(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
-    be_strict(decoder);
+    set_strict_limits(decoder);
     png_read_info(decoder->png, decoder->info);
     return true;
 }
@@ -187,8 +188,8 @@ static bool find_text(const Decoder *decoder, const char *key, char *value, size
     return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
 }
 
-static bool text_of(const uint8_t *data, size_t size, const char *path, const char *key, char *value, size_t value_size,
-                    Error *error) {
+static bool read_text(const uint8_t *data, size_t size, const char *path, const char *key, char *value,
+                      size_t value_size, Error *error) {
     Decoder decoder;
     bool ok = open_decoder(&decoder, data, size, path, error) && decode_texts(&decoder) &&
               find_text(&decoder, key, value, value_size);
@@ -199,12 +200,12 @@ static bool text_of(const uint8_t *data, size_t size, const char *path, const ch
 bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
     size_t file_size;
     uint8_t *data = image_load_png(path, &file_size, error);
-    bool ok = data != NULL && text_of(data, file_size, path, key, value, size, error);
+    bool ok = data != NULL && read_text(data, file_size, path, key, value, size, error);
     free(data);
     return ok;
 }
 
 void image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size) {
     Error ignored = {0};
-    if (!text_of(data, size, "", key, value, value_size, &ignored)) value[0] = '\0';
+    if (!read_text(data, size, "", key, value, value_size, &ignored)) value[0] = '\0';
 }

@@ -28,7 +28,7 @@ static bool is_png(const char *name) {
     return name[0] != '.' && ending != NULL && strcasecmp(ending, ".png") == 0;
 }
 
-/* Splits a name into stem and number; 19 digits and more are no number. */
+/* Splits a name into stem and number; 19 or more digits do not count as a number. */
 static void read_name(SequenceFrame *frame) {
     enum { DIGITS = 18 };
     const char *ending = strrchr(frame->name, '.'), *end = ending != NULL ? ending : frame->name + strlen(frame->name);
@@ -39,10 +39,11 @@ static void read_name(SequenceFrame *frame) {
     frame->stem = (int)((numbered ? digits : end) - frame->name);
 }
 
-/* folder is what goes before the name, with its slash. */
+/* `folder` is the path before the name, including the slash. */
 static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *folder, const char *name, Error *error) {
     size_t size = strlen(folder) + strlen(name) + 1;
-    if (!name_is_text(name)) return error_input(error, folder, "a file's name there is no text (UTF-8)");
+    if (!name_is_text(name))
+        return error_input(error, folder, "a file name in it is not UTF-8 or has control characters");
     char *path = malloc(size);
     if (path == NULL ||
         !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1, sizeof *sequence->frames)) {
@@ -102,7 +103,7 @@ static bool take_file(ImageSequence *sequence, const char *path, Error *error) {
     return ok;
 }
 
-/* "a/b/" -> "a/b"; a file's folder. */
+/* "a/b/" -> "a/b"; for a file its folder. */
 static char *folder_of(const char *path, bool single) {
     size_t length = single ? file_folder_length(path) : strlen(path);
     while (length > 1 && path[length - 1] == '/') length--;

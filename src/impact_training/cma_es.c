@@ -12,7 +12,7 @@
 
 typedef struct Candidate {
     double cost;
-    double *step; /* [n] from the mean, in units of sigma */
+    double *step; /* [n] (point - mean) / sigma */
 } Candidate;
 
 typedef struct Strategy {
@@ -20,7 +20,8 @@ typedef struct Strategy {
     double *weights; /* [parents] */
     double mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi;
     double sigma;
-    gsl_vector *mean, *path_sigma, *path_c, *scale, *normal, *whitened, *shift; /* scale: roots of the eigenvalues */
+    gsl_vector *mean, *path_sigma, *path_c, *scale, *normal, *whitened,
+        *shift; /* scale: square roots of the eigenvalues */
     gsl_matrix *covariance, *axes, *scratch;
     gsl_eigen_symmv_workspace *eigen;
     gsl_rng *generator;
@@ -42,7 +43,7 @@ static void strategy_free(Strategy *s) {
     free(s->steps);
 }
 
-/* The tutorial's table 1. */
+/* Default parameters: table 1 of the tutorial. */
 static void set_rates(Strategy *s) {
     double n = s->n, sum = 0, squares = 0;
     for (int i = 0; i < s->parents; i++) {
@@ -94,7 +95,7 @@ static void decompose(Strategy *s) {
         gsl_vector_set(s->scale, i, sqrt(fmax(gsl_vector_get(s->scale, i), 1e-20)));
 }
 
-/* A normal step with the strategy's covariance; point = mean + sigma step. */
+/* step ~ N(0, covariance); point = mean + sigma step. */
 static void sample(Strategy *s, double *step, double *point) {
     for (size_t i = 0; i < s->normal->size; i++)
         gsl_vector_set(s->normal, i, gsl_vector_get(s->scale, i) * gsl_ran_gaussian_ziggurat(s->generator, 1));
@@ -108,13 +109,13 @@ static int by_cost(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* path = (1 - c) path + sqrt(c (2 - c) mu_eff) by */
-static void lengthen(gsl_vector *path, double c, double mu_eff, const gsl_vector *by, double share) {
+/* path = (1 - c) path + weight sqrt(c (2 - c) mu_eff) step */
+static void update_path(gsl_vector *path, double c, double mu_eff, const gsl_vector *step, double weight) {
     gsl_vector_scale(path, 1 - c);
-    gsl_blas_daxpy(share * sqrt(c * (2 - c) * mu_eff), by, path);
+    gsl_blas_daxpy(weight * sqrt(c * (2 - c) * mu_eff), step, path);
 }
 
-/* Moves the mean to the better half of a generation. */
+/* Moves the mean to the weighted mean of the better half of a generation. */
 static void move_mean(Strategy *s) {
     qsort(s->candidates, (size_t)s->offspring, sizeof *s->candidates, by_cost);
     gsl_vector_set_zero(s->shift);
@@ -125,19 +126,19 @@ static void move_mean(Strategy *s) {
     gsl_blas_daxpy(s->sigma, s->shift, s->mean);
 }
 
-/* Lets paths, covariance and sigma follow. */
+/* Updates the evolution paths, the covariance and sigma. */
 static void adapt(Strategy *s, int generation) {
     /* covariance^(-1/2) shift */
     gsl_blas_dgemv(CblasTrans, 1, s->axes, s->shift, 0, s->normal);
     gsl_vector_div(s->normal, s->scale);
     gsl_blas_dgemv(CblasNoTrans, 1, s->axes, s->normal, 0, s->whitened);
-    lengthen(s->path_sigma, s->c_sigma, s->mu_eff, s->whitened, 1);
+    update_path(s->path_sigma, s->c_sigma, s->mu_eff, s->whitened, 1);
     double length = gsl_blas_dnrm2(s->path_sigma);
-    double settled = sqrt(1 - pow(1 - s->c_sigma, 2.0 * (generation + 1)));
-    double moving = length / settled < (1.4 + 2.0 / (s->n + 1)) * s->chi ? 1 : 0;
-    lengthen(s->path_c, s->c_c, s->mu_eff, s->shift, moving);
+    double expected = sqrt(1 - pow(1 - s->c_sigma, 2.0 * (generation + 1)));
+    double h_sigma = length / expected < (1.4 + 2.0 / (s->n + 1)) * s->chi ? 1 : 0;
+    update_path(s->path_c, s->c_c, s->mu_eff, s->shift, h_sigma);
 
-    gsl_matrix_scale(s->covariance, 1 - s->c_1 - s->c_mu + (1 - moving) * s->c_1 * s->c_c * (2 - s->c_c));
+    gsl_matrix_scale(s->covariance, 1 - s->c_1 - s->c_mu + (1 - h_sigma) * s->c_1 * s->c_c * (2 - s->c_c));
     gsl_blas_dger(s->c_1, s->path_c, s->path_c, s->covariance);
     for (int i = 0; i < s->parents; i++) {
         gsl_vector_view step = gsl_vector_view_array(s->candidates[i].step, (size_t)s->n);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CONVERGED 1e-3 /* m/s, residual: far below what any number of sweeps in question leaves */
+#define CONVERGED 1e-3 /* m/s: far below the residuals after the numbers of sweeps that are fitted */
 
 typedef struct Recording {
     ImpactProblems *problems;
@@ -65,7 +65,7 @@ static bool run_launches(ImpactProblems *problems, const Scene *scene, const Flo
     return problems->count > 0 || error_input(error, scene->name, "no launch touches a box");
 }
 
-/* Solves them all; those that do not converge go. */
+/* Removes the problems that do not converge. */
 static bool solve_references(ImpactProblems *problems, const Progress *progress, Error *error) {
     Reference reference = {0};
     size_t kept = 0, done = 0;

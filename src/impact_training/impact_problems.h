@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What schedules are fitted to: contact problems from the engine's runs, from the bomb's first touch on, and their
-   converged velocities. */
+/* Training data of momentum schedules: contact problems recorded from engine runs, starting at the bomb's first touch,
+   with their converged velocities. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
@@ -8,10 +8,10 @@
 #include "reference/reference.h"
 #include "scene/scene.h"
 
-enum { AFTER_STEP = 6 }; /* all frames of the impact (simulate/phases.h), and every so many of those after */
+enum { AFTER_STEP = 6 }; /* all impact frames (simulate/phases.h) and every sixth frame after */
 
 typedef struct ImpactProblem {
-    ContactProblem problem; /* with arrays of its own */
+    ContactProblem problem; /* owns its arrays */
     ReferenceVelocity *reference;
     bool impact;
 } ImpactProblem;
@@ -23,7 +23,7 @@ typedef struct ImpactProblems {
 
 void impact_problems_free(ImpactProblems *problems);
 
-/* Runs every launch. Problems whose reference does not converge are left out. ERROR_INPUT where the scene has no bomb,
-   the bomb touches nothing, or progress asks to stop. */
+/* Runs every launch. Omits problems whose reference does not converge. ERROR_INPUT if the scene has no bomb, no launch
+   touches a box, or progress stops the recording. */
 bool impact_problems_record(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x,
                             const Progress *progress, Error *error);

@@ -14,7 +14,7 @@ enum { KNOTS_MAX = 20 };
 static const int fitted[] = {5, 10, 20, 50};
 enum { FITTED = sizeof fitted / sizeof fitted[0], SWEEPS_SUM = 5 + 10 + 20 + 50, SWEEPS_MOST = 50 };
 
-/* What one thread works with. */
+/* Work space of a thread. */
 typedef struct Worker {
     Momentum momentum;
     ContactSolution solution;
@@ -25,7 +25,7 @@ typedef struct Fit {
     double *errors; /* [problems.count] */
     Worker *workers;
     int worker_count;
-    int sweeps, knots; /* of the schedule that is being fitted */
+    int sweeps, knots; /* of the current schedule */
 } Fit;
 
 static void fit_end(Fit *fit) {
@@ -59,7 +59,7 @@ static bool fit_begin(Fit *fit, Error *error) {
     return ok || error_memory(error, "momentum schedules");
 }
 
-/* Mean error at impact plus mean error after it; 1e9 where memory is short. */
+/* Mean error of the impact frames plus that of the frames after. A failed solve (out of memory) counts as 1e9. */
 static double mean_error(Fit *fit, const float *factors) {
     const int count = (int)fit->problems.count;
 #pragma omp parallel for schedule(dynamic, 16)
@@ -78,8 +78,8 @@ static double mean_error(Fit *fit, const float *factors) {
     return (counts[0] > 0 ? sums[0] / counts[0] : 0) + (counts[1] > 0 ? sums[1] / counts[1] : 0);
 }
 
-/* Factors from the numbers that are sought: one for each sweep but the first, or knots of a line through them where
-   there are many. What lies out of bounds is brought in; returns how far out it was. */
+/* Factors of the sweeps 1, 2, ... by linear interpolation of the knots, clamped to their bounds. Returns the sum of the
+   squared excesses. */
 static double factors_of(const Fit *fit, const double *knots, float *factors) {
     double out = 0;
     factors[0] = 0;
@@ -107,20 +107,20 @@ static bool fit_schedule(Fit *fit, MomentumSchedules *schedules, const MomentumF
     double knots[KNOTS_MAX];
     for (int i = 0; i < fit->knots; i++) {
         int sweep = 1 + (fit->sweeps - 2) * i / (fit->knots - 1);
-        knots[i] = (double)momentum_factor_by_hand(sweep, fit->sweeps);
+        knots[i] = (double)momentum_factor_tuned(sweep, fit->sweeps);
     }
     const CmaEs task = {fit->knots, 0.15, options->generations, options->seed, cost, fit};
     if (!cma_es_minimize(&task, knots, progress, error)) return false;
-    float factors[SWEEPS_MOST], by_hand[SWEEPS_MOST], none[SWEEPS_MOST] = {0};
+    float factors[SWEEPS_MOST], hand_tuned[SWEEPS_MOST], none[SWEEPS_MOST] = {0};
     factors_of(fit, knots, factors);
-    for (int s = 0; s < fit->sweeps; s++) by_hand[s] = momentum_factor_by_hand(s, fit->sweeps);
-    double of_learned = mean_error(fit, factors), of_hand = mean_error(fit, by_hand);
-    /* A line through knots can miss those set by hand. */
-    bool better = of_learned < of_hand;
+    for (int s = 0; s < fit->sweeps; s++) hand_tuned[s] = momentum_factor_tuned(s, fit->sweeps);
+    double learned_error = mean_error(fit, factors), hand_tuned_error = mean_error(fit, hand_tuned);
+    /* The interpolated factors cannot represent all hand-tuned ones, so they can be worse. */
+    bool better = learned_error < hand_tuned_error;
     if (options->on_schedule != NULL)
-        options->on_schedule(options->context, fit->sweeps, mean_error(fit, none), of_hand,
-                             better ? of_learned : of_hand);
-    return momentum_schedules_add(schedules, fit->sweeps, better ? factors : by_hand, error);
+        options->on_schedule(options->context, fit->sweeps, mean_error(fit, none), hand_tuned_error,
+                             better ? learned_error : hand_tuned_error);
+    return momentum_schedules_add(schedules, fit->sweeps, better ? factors : hand_tuned, error);
 }
 
 bool momentum_fit(MomentumSchedules *schedules, const Scene *scene, const MomentumFitOptions *options,

@@ -11,19 +11,19 @@
 #include <string.h>
 
 enum {
-    OVERSAMPLING = 8,    /* directions more than asked for, at least: 5 to 10 in the source */
-    POWER_ITERATIONS = 4 /* each costs one pass over the rows; the source's 2 are for spectra that fall off fast */
+    OVERSAMPLING = 8,    /* minimum number of extra directions; the source recommends 5 to 10 */
+    POWER_ITERATIONS = 4 /* one pass over the rows each; the source's 2 suffice only if the spectrum decays fast */
 };
 
-/* Of the largest variance. What is weaker is what rounding left: rows come as float. */
+/* Relative to the largest variance. Smaller variances are rounding errors of the float rows. */
 static const double least_variance = 1e-10;
 
-/* Of the largest length. What is left of a vector that lies in the span of others is rounding. */
+/* Relative to the longest column. A shorter remainder is rounding: the column is in the span of the others. */
 static const double least_length = 1e-14;
 
 typedef struct Fit {
     SparseCovariance covariance;
-    size_t columns, width; /* of the covariance: directions that are too many become 0 */
+    size_t columns, width; /* width: number of directions; those beyond the rank become 0 */
     double *basis, *image; /* [columns, width] Q and C Q */
     double *products;      /* [width] work space */
     gsl_rng *generator;
@@ -68,7 +68,7 @@ static void start(Fit *fit, uint64_t seed) {
     for (size_t i = 0; i < fit->columns * fit->width; i++) fit->basis[i] = gsl_ran_gaussian_ziggurat(fit->generator, 1);
 }
 
-/* products[k] = column j of the basis times column k, for k >= from. */
+/* products[k] = dot product of columns j and k of the basis, for k >= from. */
 static void multiply_columns(Fit *fit, size_t j, size_t from) {
     memset(fit->products, 0, fit->width * sizeof *fit->products);
     for (size_t i = 0; i < fit->columns; i++) {
@@ -85,8 +85,8 @@ static double longest_column(const Fit *fit, double *squares) {
     return sqrt(largest);
 }
 
-/* Modified Gram-Schmidt on the columns of the basis, twice, as one round leaves rounding of what it took away. Columns
-   in the span of those before them become 0. */
+/* Modified Gram-Schmidt on the columns of the basis, repeated once to remove the rounding errors of the first round.
+   Columns in the span of earlier ones become 0. */
 static void orthonormalise(Fit *fit) {
     for (int round = 0; round < 2; round++) {
         const double least = least_length * longest_column(fit, fit->products);
@@ -102,7 +102,7 @@ static void orthonormalise(Fit *fit) {
     }
 }
 
-/* Eigenvectors of the covariance within the basis, strongest first. */
+/* Eigenvectors of Q^T C Q, strongest first. */
 static void find_axes(Fit *fit) {
     for (size_t a = 0; a < fit->width; a++) {
         double *row = gsl_matrix_ptr(fit->small, a, 0);
@@ -113,7 +113,7 @@ static void find_axes(Fit *fit) {
     gsl_eigen_symmv_sort(fit->variances, fit->axes, GSL_EIGEN_SORT_VAL_DESC);
 }
 
-/* Component c: axis c of the basis, divided by its deviation. */
+/* scale: 1 / standard deviation of the component. */
 static void write_component(const Fit *fit, size_t c, double scale, Projection *projection) {
     const size_t to = (size_t)projection->to;
     float largest = 0;
@@ -135,7 +135,7 @@ static void write_components(const Fit *fit, Projection *projection) {
     const size_t to = (size_t)projection->to;
     memset(projection->rows, 0, fit->columns * to * sizeof *projection->rows);
     memset(projection->centre, 0, to * sizeof *projection->centre);
-    /* Below the square of FLT_MIN the divided direction would leave float. */
+    /* Below FLT_MIN^2 the scaled direction would overflow float. */
     const double least = fmax(least_variance * gsl_vector_get(fit->variances, 0), (double)FLT_MIN * (double)FLT_MIN);
     for (size_t c = 0; c < to; c++) {
         const double variance = gsl_vector_get(fit->variances, c);

@@ -12,16 +12,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Steps from the touch on that are learned from, beyond the scene's impact; visits of the reference for a label: a tenth
-   of what the studies ask for, and within 1e-3 m/s on nearly all. */
+/* STEPS_AFTER: steps after the scene's impact frames that are samples too. LABEL_VISITS: contact visits of the
+   reference for a label, a tenth of the studies'; converged to 1e-3 m/s for nearly all labels. */
 enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
 
 static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
-/* RMS over the contacts: at rest they miss their bias by less, where a shock runs through them by more. */
+/* RMS residual of the warm start over the contacts: below it at rest, above it during a shock. */
 static const float gate = 0.3f; /* m/s */
-/* The setting `near` of the runs with the network: what they meet is what it is fitted to next. */
+/* The setting `near` (residual) of scene-net in the runs that record training samples. */
 static const float rollout_near = 0.05f; /* m/s */
-static const double near_weight = 0.02, first_rate = 3e-3;
+static const double impulse_weight = 0.02, first_rate = 3e-3;
 
 typedef struct Trainer {
     const Scene *scene;
@@ -39,7 +39,7 @@ static float draw(Trainer *trainer, double limit) {
     return (float)(limit * (2 * gsl_rng_uniform(trainer->generator) - 1));
 }
 
-/* Every second one turned and spinning. */
+/* Every second launch has a random rotation and spin. */
 static void draw_launches(Trainer *trainer, int count) {
     for (int i = 0; i < count; i++) {
         Launch launch = launch_of(trainer->scene);
@@ -54,17 +54,18 @@ static void draw_launches(Trainer *trainer, int count) {
 
 typedef enum Driver { BY_MOMENTUM, BY_REFERENCE, BY_NETWORK } Driver;
 
-typedef struct DriverOf {
+typedef struct DriverContext {
     Driver driver;
     const SlotNetwork *network;
-} DriverOf;
+} DriverContext;
 
 static bool make_driver(void *context, ContactSolver *solver, Error *error) {
-    const DriverOf *of = context;
-    if (of->driver == BY_NETWORK) return scene_net_make(solver, of->network, rollout_near, error);
+    const DriverContext *run = context;
+    if (run->driver == BY_NETWORK) return scene_net_make(solver, run->network, rollout_near, error);
     Settings settings;
-    const ContactSolverKind *kind = of->driver == BY_MOMENTUM ? &solver_momentum : &solver_reference;
-    if (!settings_parse(&settings, of->driver == BY_MOMENTUM ? "k=20" : "", kind->settings, kind->name, error))
+    const ContactSolverKind *kind = run->driver == BY_MOMENTUM ? &solver_momentum : &solver_reference;
+    if (!settings_parse(&settings, run->driver == BY_MOMENTUM ? "k=20" : "", kind->description.settings,
+                        kind->description.name, error))
         return false;
     void *state = kind->create(&settings, error);
     if (state == NULL) return false;
@@ -77,9 +78,9 @@ static void next_stage(Trainer *trainer, double share) {
     trainer->stage.share = share;
 }
 
-/* Launches first .. first + count - 1 of the round by a driver, labelled. */
+/* Runs launches first .. first + count - 1 of the round with a driver and labels their samples. */
 static bool record(Trainer *trainer, SlotSamples *samples, Driver driver, int first, int count, Error *error) {
-    DriverOf of = {driver, trainer->network};
+    DriverContext run = {driver, trainer->network};
     const SlotRollout rollout = {.scene = trainer->scene,
                                  .launches = trainer->launches + first,
                                  .launch_count = count,
@@ -87,14 +88,14 @@ static bool record(Trainer *trainer, SlotSamples *samples, Driver driver, int fi
                                  .steps = trainer->scene->bomb.impact_frames + STEPS_AFTER,
                                  .gate = gate,
                                  .make_solver = make_driver,
-                                 .context = &of};
+                                 .context = &run};
     const int had = samples->count;
     trainer->launches_done += count;
     return slot_rollout(&rollout, samples, NULL, error) &&
            slot_samples_label(samples, had, LABEL_VISITS, &trainer->progress, error);
 }
 
-/* The box of inputs that there were, and a little around it. */
+/* The range of each input over the samples, with a margin. */
 static void find_bounds(SlotNetwork *network, const SlotSamples *samples) {
     const float margin = 0.1f;
     for (int k = 0; k < slot_network_inputs(network); k++) {
@@ -115,7 +116,7 @@ static bool first_round(Trainer *trainer, Error *error) {
     if (!record(trainer, &trainer->samples, BY_MOMENTUM, 0, half, error)) return false;
     next_stage(trainer, 0.1);
     if (!record(trainer, &trainer->samples, BY_REFERENCE, half, training->launches - half, error)) return false;
-    trainer->network = slot_network_for(&trainer->samples, &training->widths, training->seed, error);
+    trainer->network = slot_network_from_samples(&trainer->samples, &training->widths, training->seed, error);
     if (trainer->network == NULL) return false;
     SlotNetwork *network = trainer->network;
     snprintf(network->scene, sizeof network->scene, "%s", trainer->scene->name);
@@ -123,7 +124,7 @@ static bool first_round(Trainer *trainer, Error *error) {
     network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
     network->sweeps = training->sweeps;
     for (int s = 0; s < training->sweeps && training->momentum; s++)
-        network->factors[s] = momentum_factor_by_hand(s, training->sweeps);
+        network->factors[s] = momentum_factor_tuned(s, training->sweeps);
     return true;
 }
 
@@ -132,12 +133,12 @@ static bool next_round(Trainer *trainer, double share, Error *error) {
     draw_launches(trainer, trainer->training->launches);
     next_stage(trainer, share);
     return record(trainer, &trainer->samples, BY_NETWORK, 0, trainer->training->launches, error) &&
-           slot_samples_look(&trainer->samples, had, trainer->network, error);
+           slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
 
 static bool score(const Trainer *trainer, int round, Error *error) {
-    SceneScore result = {.round = round};
-    if (!scene_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
+    SceneNetScore result = {.round = round};
+    if (!scene_net_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
     if (trainer->training->on_score != NULL) trainer->training->on_score(trainer->training->context, &result);
     return true;
 }
@@ -145,8 +146,8 @@ static bool score(const Trainer *trainer, int round, Error *error) {
 static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     const SceneTraining *training = trainer->training;
     const int epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
-    const SlotFit fit = {.near = near_weight,
-                         .near_epochs = round == 0 ? epochs / 12 : 0,
+    const SlotFit fit = {.impulse_weight = impulse_weight,
+                         .impulse_epochs = round == 0 ? epochs / 12 : 0,
                          .epochs = epochs,
                          .rate = round == 0 ? first_rate : first_rate / 2,
                          .learn_factors = training->momentum,
@@ -157,7 +158,7 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     return score(trainer, round, error);
 }
 
-/* Launches that no round draws, met by momentum. */
+/* Held-out launches have their own random seed and are run by momentum. */
 static bool hold_out(Trainer *trainer, Error *error) {
     gsl_rng_set(trainer->generator, (unsigned long)trainer->training->seed + HELD_OUT_SEED);
     const int count = trainer->training->launches < HELD_OUT_LAUNCHES ? trainer->training->launches : HELD_OUT_LAUNCHES;
@@ -172,7 +173,7 @@ static bool train(Trainer *trainer, Error *error) {
     if (!hold_out(trainer, error)) return false;
     gsl_rng_set(trainer->generator, (unsigned long)trainer->training->seed);
     draw_launches(trainer, trainer->training->launches);
-    if (!first_round(trainer, error) || !slot_samples_look(&trainer->held_out, 0, trainer->network, error))
+    if (!first_round(trainer, error) || !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error))
         return false;
     if (!fit_round(trainer, 0, share, error)) return false;
     for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {

@@ -8,13 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A batch is cut into parts, whatever the number of threads, so that sums have one order. */
+/* A batch has a fixed number of parts, so that the order of sums does not depend on the number of threads. */
 enum { BATCH = 32, PARTS = 4, PART = BATCH / PARTS };
 
 static const double pi = 3.14159265358979323846;
 static const double decay = 0.9, square_decay = 0.999; /* of Adam (Kingma, Ba 2015) */
 
-/* One fit in progress. */
 typedef struct Fitter {
     SlotNetwork *network;
     const SlotSamples *samples;
@@ -28,19 +27,19 @@ typedef struct Fitter {
     int steps;
 } Fitter;
 
-/* What Adam multiplies its mean gradient by. */
 typedef struct Step {
-    double rate, mean_share, square_share;
+    double rate, mean_correction, square_correction; /* bias corrections of Adam */
 } Step;
 
 static SlotTask task_of(const Fitter *fitter, int epoch) {
-    const bool near_only = epoch < fitter->fit->near_epochs;
-    return (SlotTask){near_only ? 1 : fitter->fit->near, near_only ? 0 : 1, fitter->network->sweeps, fitter->factors};
+    const bool impulses_only = epoch < fitter->fit->impulse_epochs;
+    return (SlotTask){impulses_only ? 1 : fitter->fit->impulse_weight, impulses_only ? 0 : 1, fitter->network->sweeps,
+                      fitter->factors};
 }
 
 static bool do_part(Fitter *fitter, const SlotTask *task, const int *items, int count, int part) {
     float *gradient = fitter->gradients + (size_t)part * fitter->network->parameter_count;
-    double *by_factors = fitter->fit->learn_factors && task->far > 0 ? fitter->by_factors[part] : NULL;
+    double *by_factors = fitter->fit->learn_factors && task->velocity_weight > 0 ? fitter->by_factors[part] : NULL;
     for (int i = 0; i < count; i++) {
         SlotScore score;
         if (!slot_loss(&fitter->loss[part], fitter->network, &fitter->samples->items[items[i]], task, gradient,
@@ -51,7 +50,7 @@ static bool do_part(Fitter *fitter, const SlotTask *task, const int *items, int 
     return true;
 }
 
-/* The gradients of a batch of `count`, part by part. */
+/* The gradients of a batch, one per part. */
 static bool do_batch(Fitter *fitter, const SlotTask *task, const int *items, int count) {
     bool ok = true;
 #pragma omp parallel for schedule(static, 1) reduction(&& : ok)
@@ -63,11 +62,11 @@ static bool do_batch(Fitter *fitter, const SlotTask *task, const int *items, int
     return ok;
 }
 
-/* One step of Adam for a number; returns its change. */
+/* Updates the moments of one parameter; returns its step. */
 static double adam(double gradient, double *mean, double *square, const Step *step) {
     *mean = decay * *mean + (1 - decay) * gradient;
     *square = square_decay * *square + (1 - square_decay) * gradient * gradient;
-    return -step->rate * *mean * step->mean_share / (sqrt(*square * step->square_share) + 1e-8);
+    return -step->rate * *mean * step->mean_correction / (sqrt(*square * step->square_correction) + 1e-8);
 }
 
 static void step_parameters(Fitter *fitter, int count, const Step *step) {
@@ -87,7 +86,7 @@ static void step_parameters(Fitter *fitter, int count, const Step *step) {
     slot_network_pack_layers(fitter->network);
 }
 
-/* Between 0 and 2: further ahead than two sweeps carried an impulse there is nothing to gain. */
+/* Factors are clamped to 0 .. 2: extrapolating further than two sweeps gains nothing. */
 static void step_factors(Fitter *fitter, int count, const Step *step) {
     for (int s = 1; s < fitter->network->sweeps; s++) {
         double sum = 0;
@@ -112,7 +111,7 @@ static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
         const Step step = {fitter->fit->rate * (1 + cos(pi * done)) / 2, 1 / (1 - pow(decay, fitter->steps)),
                            1 / (1 - pow(square_decay, fitter->steps))};
         step_parameters(fitter, size, &step);
-        if (fitter->fit->learn_factors && task.far > 0) step_factors(fitter, size, &step);
+        if (fitter->fit->learn_factors && task.velocity_weight > 0) step_factors(fitter, size, &step);
     }
     *mean_loss = 0;
     for (int part = 0; part < PARTS; part++) *mean_loss += fitter->losses[part] / count;

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double straight_from = 0.3; /* of smooth L1, in scales */
-static const double least_error = 0.01;  /* m/s: below it the root bends into a square */
+static const double linear_from = 0.3;  /* threshold of smooth L1, in scales */
+static const double least_error = 0.01; /* m/s: below it the loss is nearly quadratic */
 
 void slot_loss_free(SlotLoss *loss) {
     unrolled_free(&loss->unrolled);
@@ -28,13 +28,13 @@ static bool reserve(SlotLoss *loss, const SlotSample *sample) {
 /* Smooth L1 and its derivative. */
 static double smooth(double x, double *by) {
     const double size = fabs(x);
-    *by = size < straight_from ? x / straight_from : copysign(1, x);
-    return size < straight_from ? x * x / (2 * straight_from) : size - straight_from / 2;
+    *by = size < linear_from ? x / linear_from : copysign(1, x);
+    return size < linear_from ? x * x / (2 * linear_from) : size - linear_from / 2;
 }
 
-/* The first term; its derivative by the outputs. */
-static double near_goal(const SlotNetwork *network, const SlotSample *sample, const double *start, double weight,
-                        float *by_outputs) {
+/* Returns the impulse loss; writes its derivative with respect to the outputs. */
+static double impulse_loss(const SlotNetwork *network, const SlotSample *sample, const double *start, double weight,
+                           float *by_outputs) {
     const SlotView *slots = &sample->view.slots;
     double sum = 0;
     for (int i = 0; i < slots->slot_count; i++) {
@@ -50,7 +50,7 @@ static double near_goal(const SlotNetwork *network, const SlotSample *sample, co
     return sum;
 }
 
-/* The squared error, summed as solution_error.h says, over how many bodies; its derivative, but for a factor. */
+/* The squared error summed over the dynamic bodies, weighted as in solution_error.h, and half its derivative. */
 static double velocity_error(const SlotSample *sample, const double *velocities, double *by_velocity, int *counted) {
     double sum = 0;
     *counted = 0;
@@ -67,9 +67,9 @@ static double velocity_error(const SlotSample *sample, const double *velocities,
     return sum;
 }
 
-/* The second term; its derivative by the outputs is added. */
-static bool after_sweeps(SlotLoss *loss, const SlotSample *sample, const SlotTask *task, bool back, double *by_factors,
-                         SlotScore *score) {
+/* Adds the velocity loss to the score and, if `back`, its derivative to loss->by_outputs. */
+static bool velocity_loss(SlotLoss *loss, const SlotSample *sample, const SlotTask *task, bool back, double *by_factors,
+                          SlotScore *score) {
     const SlotView *slots = &sample->view.slots;
     const int contacts = sample->problem.contact_count;
     double *start = loss->numbers, *by_start = start + 2 * contacts, *by_velocity = by_start + 2 * contacts;
@@ -78,16 +78,16 @@ static bool after_sweeps(SlotLoss *loss, const SlotSample *sample, const SlotTas
     const double sum = velocity_error(sample, loss->unrolled.velocities, by_velocity, &counted);
     score->error = counted > 0 ? sqrt(sum / counted) : 0;
     const double root = hypot(score->error, least_error);
-    score->loss += task->far * root;
+    score->loss += task->velocity_weight * root;
     if (!back) return true;
-    for (int i = 0; i < 3 * sample->problem.body_count; i++) by_velocity[i] *= task->far / (counted * root);
+    for (int i = 0; i < 3 * sample->problem.body_count; i++) by_velocity[i] *= task->velocity_weight / (counted * root);
     unrolled_back(&loss->unrolled, &sample->unrolled, by_velocity, by_start, by_factors);
     for (int i = 0; i < slots->slot_count; i++)
         for (int k = 0; k < 2; k++) loss->by_outputs[2 * i + k] += (float)by_start[2 * sample->view.contacts[i] + k];
     return true;
 }
 
-/* Where in the gradient a parameter's derivative is. */
+/* The gradient entry of a parameter. */
 static float *place(const SlotNetwork *network, float *gradient, const float *parameter) {
     return gradient + (parameter - network->parameters);
 }
@@ -130,9 +130,9 @@ bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sam
     }
     for (int i = 0; i < slots->slot_count; i++)
         for (int k = 0; k < 2; k++) start[2 * sample->view.contacts[i] + k] += (double)loss->outputs[2 * i + k];
-    *score = (SlotScore){.loss = near_goal(network, sample, start, task->near, loss->by_outputs)};
-    const bool goes_on = task->far > 0 || gradient == NULL;
-    if (goes_on && !after_sweeps(loss, sample, task, gradient != NULL, by_factors, score)) return false;
+    *score = (SlotScore){.loss = impulse_loss(network, sample, start, task->impulse_weight, loss->by_outputs)};
+    const bool run_sweeps = task->velocity_weight > 0 || gradient == NULL;
+    if (run_sweeps && !velocity_loss(loss, sample, task, gradient != NULL, by_factors, score)) return false;
     if (gradient != NULL) back(loss, network, sample, gradient);
     return true;
 }

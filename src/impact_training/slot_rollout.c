@@ -3,22 +3,21 @@
 
 #include "common/parallel.h"
 #include "simulate/phases.h"
-#include "solvers/impact_gap.h"
+#include "solvers/residual.h"
 
 #include <omp.h>
 #include <stdlib.h>
 
-/* What the threads share, and what each has. */
 typedef struct Runs {
     const SlotRollout *rollout;
-    World *prefix;          /* as it is when the bomb comes: the same for all launches */
+    World *prefix;          /* the world just before the bomb is added; shared by all launches */
     ContactSolver *solvers; /* [threads] */
     World **worlds;         /* [threads] */
     Sweeps *sweeps;         /* [threads] */
     SlotSamples *samples;   /* [launches] */
 } Runs;
 
-/* Steps a world, and shows its contact problem before. *finite false: the state left the finite numbers. */
+/* One step; `problem` is its contact problem. *finite: false if the new state is NaN or infinite. */
 static bool step(const SlotRollout *rollout, const ContactSolver *solver, World *world, ContactProblem *problem,
                  bool *finite, Error *error) {
     ContactSolution *solution;
@@ -49,14 +48,14 @@ static bool run_launch(void *context, int i, Error *error) {
         if (phase != PHASE_IMPACT) continue;
         Sweeps *sweeps = &runs->sweeps[thread];
         if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), &problem)) return error_memory(error, "samples");
-        if (impact_gap_reaches(sweeps, problem.contact_count, rollout->gate) &&
+        if (residual_reaches(sweeps, problem.contact_count, rollout->gate) &&
             !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
             return error_memory(error, "samples");
     }
     return true;
 }
 
-/* The scene without its bomb, run until that comes. */
+/* Runs the scene without its bomb up to the bomb's frame. */
 static bool run_prefix(Runs *runs, Error *error) {
     Scene quiet = *runs->rollout->scene;
     quiet.bomb.present = false;
@@ -65,7 +64,7 @@ static bool run_prefix(Runs *runs, Error *error) {
     for (int frame = 1; ok && frame <= runs->rollout->scene->bomb.frame; frame++) {
         ContactProblem problem;
         ok = step(runs->rollout, &runs->solvers[0], runs->prefix, &problem, &finite, error) &&
-             (finite || error_input(error, quiet.name, "leaves the finite numbers before the bomb comes"));
+             (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
     }
     return ok;
 }
@@ -106,7 +105,7 @@ bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progre
     const ParallelWork work = {run_launch, &runs};
     bool ok = begin(&runs, threads, error) && parallel_for(&work, rollout->launch_count, "launches", progress, error);
     for (int i = 0; ok && i < rollout->launch_count; i++)
-        ok = slot_samples_take(samples, &runs.samples[i]) || error_memory(error, "samples");
+        ok = slot_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
     end(&runs, threads);
     return ok;
 }

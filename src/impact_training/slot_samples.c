@@ -45,7 +45,7 @@ bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int l
     return true;
 }
 
-bool slot_samples_take(SlotSamples *samples, SlotSamples *from) {
+bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
     if (!reserve(samples, from->count + 1)) return false;
     for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
     free(from->items);
@@ -53,10 +53,9 @@ bool slot_samples_take(SlotSamples *samples, SlotSamples *from) {
     return true;
 }
 
-/* Labels in progress. */
 typedef struct Labels {
     SlotSample *items;
-    Reference *references; /* one a thread */
+    Reference *references; /* [threads] */
     int max_visits;
 } Labels;
 
@@ -90,7 +89,7 @@ bool slot_samples_label(SlotSamples *samples, int first, int max_visits, const P
     return ok;
 }
 
-bool slot_samples_look(SlotSamples *samples, int first, const SlotNetwork *network, Error *error) {
+bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error) {
     bool ok = true;
 #pragma omp parallel for schedule(dynamic, 64) reduction(&& : ok)
     for (int i = first; i < samples->count; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a slot network learns from: contact problems of impacts, with their converged solutions. */
+/* Training samples of a slot network: contact problems of impacts with their converged solutions. */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
@@ -11,13 +11,13 @@
 #include <stddef.h>
 
 typedef struct SlotSample {
-    ContactProblem problem; /* with arrays of its own */
+    ContactProblem problem; /* owns its arrays */
     int launch, since;      /* number of the launch; steps since the bomb's first touch */
     /* After slot_samples_label: */
     ReferenceVelocity *reference; /* [body_count] */
-    ContactImpulse *goal;         /* [contact_count] the reference's impulses */
+    ContactImpulse *goal;         /* [contact_count] impulses of the reference */
     UnrolledProblem unrolled;
-    /* After slot_samples_look: */
+    /* After slot_samples_compute_inputs: */
     SceneView view;
     float *inputs; /* [slot_network_inputs] */
 } SlotSample;
@@ -31,14 +31,15 @@ typedef struct SlotSamples {
 
 void slot_samples_free(SlotSamples *samples);
 
-/* Appends a copy of a problem. False when memory is short. */
+/* Appends a copy of a problem. False if out of memory. */
 bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since);
 
-/* Moves all of `from` to the end of the samples. False when memory is short. */
-bool slot_samples_take(SlotSamples *samples, SlotSamples *from);
+/* Moves all of `from` to the end of the samples. False if out of memory. */
+bool slot_samples_move(SlotSamples *samples, SlotSamples *from);
 
-/* Solves those from `first` on by the reference, until max_visits of contacts are done. */
+/* Solves the samples from index `first` by the reference, with at most max_visits contact visits each. */
 bool slot_samples_label(SlotSamples *samples, int first, int max_visits, const Progress *progress, Error *error);
 
-/* Shows those from `first` on to a network: their views and, where the projections are there, inputs. */
-bool slot_samples_look(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
+/* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
+   has projections. */
+bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);

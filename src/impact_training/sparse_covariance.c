@@ -5,23 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PARTS = 8 }; /* of the rows, summed apart and then in order, whatever the number of threads */
+enum { PARTS = 8 }; /* of the rows; a fixed number, so that the order of sums does not depend on the threads */
 
-/* Two doubles are a register on every machine. Left to itself the compiler keeps the sums in memory. */
-typedef double Two __attribute__((vector_size(16), aligned(sizeof(double)), may_alias));
-enum { TWOS = DIRECTIONS_BLOCK / 2 };
+/* A register of two doubles exists on every machine. Without vectors the compiler keeps the sums in memory. */
+typedef double Double2 __attribute__((vector_size(16), aligned(sizeof(double)), may_alias));
+enum { BLOCK_VECTORS = DIRECTIONS_BLOCK / 2 };
 
 void sparse_covariance_free(SparseCovariance *covariance) {
     free(covariance->mean);
-    free(covariance->still);
+    free(covariance->constant);
     free(covariance->centre);
     free(covariance->parts);
 }
 
 typedef struct Column {
-    int last, count; /* row that had it last, counted from 1; rows that have it */
-    float first;     /* value */
-    bool differs;    /* a value from the first */
+    int last, count; /* last row with an entry, counted from 1; number of entries */
+    float first;     /* first value */
+    bool differs;    /* a later value differs from the first */
 } Column;
 
 static bool read_row(SparseCovariance *covariance, int i, Column *columns, Error *error) {
@@ -33,7 +33,7 @@ static bool read_row(SparseCovariance *covariance, int i, Column *columns, Error
             return error_input(error, "sparse rows", "row %d: column %d of %d", i, at, rows->columns);
         if (!isfinite(value)) return error_input(error, "sparse rows", "row %d: column %d is not finite", i, at);
         Column *column = &columns[at];
-        if (column->last == i + 1) return error_input(error, "sparse rows", "row %d: column %d comes twice", i, at);
+        if (column->last == i + 1) return error_input(error, "sparse rows", "row %d: column %d is repeated", i, at);
         if (column->count++ == 0) column->first = value;
         column->last = i + 1;
         column->differs |= value != column->first;
@@ -48,7 +48,7 @@ static bool read_rows(SparseCovariance *covariance, Error *error) {
     bool ok = columns != NULL || error_memory(error, "sparse rows");
     for (int i = 0; ok && i < rows; i++) ok = read_row(covariance, i, columns, error);
     for (size_t j = 0; ok && j < covariance->columns; j++) {
-        covariance->still[j] = columns[j].count == rows && !columns[j].differs;
+        covariance->constant[j] = columns[j].count == rows && !columns[j].differs;
         covariance->mean[j] /= rows;
     }
     free(columns);
@@ -59,19 +59,19 @@ bool sparse_covariance_make(SparseCovariance *covariance, const SparseRows *rows
     const size_t columns = (size_t)rows->columns;
     *covariance = (SparseCovariance){.rows = rows, .columns = columns, .width = width};
     covariance->mean = calloc(columns, sizeof *covariance->mean);
-    covariance->still = calloc(columns, sizeof *covariance->still);
+    covariance->constant = calloc(columns, sizeof *covariance->constant);
     covariance->centre = calloc(width, sizeof *covariance->centre);
     covariance->parts = calloc(PARTS * (columns + 1) * width, sizeof *covariance->parts);
-    if (!covariance->mean || !covariance->still || !covariance->centre || !covariance->parts)
+    if (!covariance->mean || !covariance->constant || !covariance->centre || !covariance->parts)
         return error_memory(error, "sparse rows");
     return read_rows(covariance, error);
 }
 
-static inline void add_block(Two *sums, double scale, const Two *numbers) {
-    for (int i = 0; i < TWOS; i++) sums[i] += scale * numbers[i];
+static inline void add_block(Double2 *sums, double scale, const Double2 *numbers) {
+    for (int i = 0; i < BLOCK_VECTORS; i++) sums[i] += scale * numbers[i];
 }
 
-/* Sums row^T (row - mean) Q, and (row - mean) Q, over the rows of a part, for the block of directions from `from`. */
+/* Sums row^T (row - mean) Q and (row - mean) Q over the rows of a part, for the block of directions at `from`. */
 static void sum_part(const SparseCovariance *covariance, const double *directions, int part, size_t from) {
     const SparseRows *rows = covariance->rows;
     const size_t width = covariance->width, columns = covariance->columns;
@@ -79,15 +79,15 @@ static void sum_part(const SparseCovariance *covariance, const double *direction
     for (size_t j = 0; j <= columns; j++) memset(sums + j * width, 0, DIRECTIONS_BLOCK * sizeof *sums);
     const int first = (int)((int64_t)rows->rows * part / PARTS), end = (int)((int64_t)rows->rows * (part + 1) / PARTS);
     for (int i = first; i < end; i++) {
-        Two product[TWOS];
-        for (int c = 0; c < TWOS; c++) product[c] = -((const Two *)(covariance->centre + from))[c];
+        Double2 product[BLOCK_VECTORS];
+        for (int c = 0; c < BLOCK_VECTORS; c++) product[c] = -((const Double2 *)(covariance->centre + from))[c];
         for (int64_t k = rows->begin[i]; k < rows->begin[i + 1]; k++) {
             const double *row = directions + (size_t)rows->column[k] * width + from;
-            add_block(product, (double)rows->value[k], (const Two *)row);
+            add_block(product, (double)rows->value[k], (const Double2 *)row);
         }
         for (int64_t k = rows->begin[i]; k < rows->begin[i + 1]; k++)
-            add_block((Two *)(sums + (size_t)rows->column[k] * width), (double)rows->value[k], product);
-        add_block((Two *)(sums + columns * width), 1, product);
+            add_block((Double2 *)(sums + (size_t)rows->column[k] * width), (double)rows->value[k], product);
+        add_block((Double2 *)(sums + columns * width), 1, product);
     }
 }
 
@@ -104,7 +104,7 @@ void sparse_covariance_multiply(SparseCovariance *covariance, const double *dire
     for (int p = 1; p < PARTS; p++) add_scaled(sums, 1, covariance->parts + (size_t)p * part_size, part_size);
     memset(image, 0, columns * width * sizeof *image);
     for (size_t j = 0; j < columns; j++) {
-        if (covariance->still[j]) continue;
+        if (covariance->constant[j]) continue;
         add_scaled(sums + j * width, -covariance->mean[j], sums + columns * width, width);
         add_scaled(image + j * width, 1.0 / covariance->rows->rows, sums + j * width, width);
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A visit of one contact, with J the rows, W the inverse masses, ^T transposed, c the coupling J_t W J_n^T:
+/* A visit of one contact, with Jacobian rows J, inverse masses W and coupling c = J_t W J_n^T:
 
-       there                                              back, x* the loss's derivative by x, w* = W v*
+       forward                                            backward, x* the derivative of the loss by x, w* = W v*
        Pn' = max(Pn - m_n (J_n v - bias), 0)              Pt'* += J_t w*,  Pn'* += J_n w*
        Pt' = clamp(Pt - m_t (J_t v + c dPn), +-mu Pn')    Pt'* into m_t J_t v, c dPn, Pt or into mu Pn'
        v'  = v + W (J_n^T dPn + J_t^T dPt)                w*  += W (J_n^T (J_n v)* + J_t^T (J_t v)*)
 
-   Carrying w* and not v* makes a velocity of it: both ways see velocities and push bodies by the same two functions. */
+   w* behaves like a velocity, so both passes share velocity_along() and push(). */
 #include "impact_training/unrolled.h"
 
 #include "common/array.h"
@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The piece that a clamp took: 3 where the normal impulse pushes, and 0, 1, 2 for a tangent impulse at the lower end of
-   the cone, within, at the upper end. A cone that is shut has no inside. */
+/* The piece that the clamps took: 3 if the normal impulse is above 0, plus 0, 1 or 2 for a tangent impulse at the lower
+   limit of the cone, inside, or at the upper limit. With a limit of 0 there is no inside. */
 static inline uint8_t piece_of(double normal, double tangent, double limit) {
     return (uint8_t)(3 * (normal > 0) + (tangent > -limit) + (tangent > limit));
 }
 
-/* Looked up, since branches would be mispredicted at impacts. */
+/* Lookup tables: branches mispredict at impacts. */
 static const double pushes[6] = {0, 0, 0, 1, 1, 1}, within[6] = {0, 1, 0, 0, 1, 0}, side[6] = {-1, 0, 1, -1, 0, 1};
 
 static inline double clamp(double value, double limit) {
@@ -45,7 +45,7 @@ static UnrolledContact make_contact(const ContactPoint *point, const ProblemBody
                                .bias = (double)point->bias};
     make_row(contact.normal, point->normal, point);
     make_row(contact.tangent, vec2_cross_scalar(point->normal, 1.0f), point);
-    /* The directions are perpendicular, so only spins couple them. */
+    /* The directions are perpendicular, so only the angular parts couple. */
     contact.coupling = (double)bodies[point->a].inv_inertia * contact.normal[2] * contact.tangent[2] +
                        (double)bodies[point->b].inv_inertia * contact.normal[3] * contact.tangent[3];
     return contact;
@@ -101,7 +101,7 @@ static size_t state_size(const UnrolledProblem *problem) {
     return 3 * (size_t)problem->body_count + 2 * (size_t)problem->contact_count;
 }
 
-/* Of b's point as seen from a's. */
+/* Relative velocity of b's contact point along a row. */
 static inline double velocity_along(const double row[4], const double *a, const double *b) {
     return row[0] * (b[0] - a[0]) + row[1] * (b[1] - a[1]) + (row[2] * a[2] + row[3] * b[2]);
 }
@@ -120,7 +120,7 @@ static inline void push(const UnrolledProblem *problem, const UnrolledContact *c
     b[2] += problem->inv_inertia[contact->b] * effect[3];
 }
 
-/* Returns the piece. */
+/* One contact update; returns the piece. */
 static inline uint8_t visit(const UnrolledProblem *problem, const UnrolledContact *contact, double *velocities,
                             double *impulse) {
     const double *a = velocities + 3 * contact->a, *b = velocities + 3 * contact->b;
@@ -135,7 +135,7 @@ static inline uint8_t visit(const UnrolledProblem *problem, const UnrolledContac
     return piece_of(normal, tangent, limit);
 }
 
-/* From the adjoints after the visit to those before it. */
+/* Turns the adjoints after the visit into those before it. */
 static inline void visit_back(const UnrolledProblem *problem, const UnrolledContact *contact, uint8_t piece,
                               double *velocities, double *impulse) {
     const double *a = velocities + 3 * contact->a, *b = velocities + 3 * contact->b;
@@ -150,7 +150,7 @@ static inline void visit_back(const UnrolledProblem *problem, const UnrolledCont
     impulse[1] = inside - along_tangent;
 }
 
-/* The loss's derivative by a contact's impulse, where the velocities go with the impulses. */
+/* The derivative by a contact's impulse, including its effect on the velocities. */
 static inline void by_impulse(const UnrolledProblem *problem, int contact, const double *adjoint, double by[2]) {
     const UnrolledContact *at = &problem->contacts[contact];
     const double *a = adjoint + 3 * at->a, *b = adjoint + 3 * at->b;
@@ -203,7 +203,7 @@ bool unrolled_run(Unrolled *unrolled, const UnrolledProblem *problem, const doub
     return true;
 }
 
-/* The derivative by the factor before sweep s > 0, from the adjoint of the state that the sweep began with. */
+/* The derivative by the factor before sweep s > 0, from the adjoint of the extrapolated state. */
 static double by_factor(const Unrolled *unrolled, const UnrolledProblem *problem, size_t s, const double *adjoint) {
     const size_t size = state_size(problem);
     const double *now = unrolled->states + s * size + 3 * problem->body_count, *before = now - size;
@@ -216,11 +216,11 @@ static double by_factor(const Unrolled *unrolled, const UnrolledProblem *problem
     return sum;
 }
 
-/* To the adjoint of the projected start. */
+/* Backward through all sweeps, to the adjoint of the projected start. */
 static void sweeps_back(Unrolled *unrolled, const UnrolledProblem *problem, double *by_factors) {
     const size_t size = state_size(problem), contacts = (size_t)problem->contact_count;
     double *adjoint = unrolled->adjoints, *impulses = adjoint + 3 * problem->body_count;
-    double *later = adjoint + size; /* what the sweep after next took from this state */
+    double *later = adjoint + size; /* contribution of the extrapolation one sweep later */
     for (size_t s = (size_t)unrolled->sweeps; s-- > 0;) {
         const uint8_t *pieces = unrolled->pieces + (s + 1) * contacts;
         for (size_t i = contacts; i-- > 0;) {

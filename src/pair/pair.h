@@ -49,7 +49,7 @@ typedef enum PairTarget {
     PAIR_TARGETS
 } PairTarget;
 
-extern const char *const pair_target_names[PAIR_TARGETS];
+extern const char *const pair_target_names[PAIR_TARGETS + 1]; /* ends in NULL */
 
 /* Finds the view by its name or its inputs; false if there is none. */
 bool pair_view_find(const char *name, PairView *view);

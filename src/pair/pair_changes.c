@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
-const char *const pair_target_names[PAIR_TARGETS] = {"pair", "net", "impulse", "points"};
+const char *const pair_target_names[PAIR_TARGETS + 1] = {"pair", "net", "impulse", "points"};
 
 int pair_change_count(PairTarget target) { return target == TARGET_POINTS ? PAIR_POINT_CHANGES : PAIR_CHANGES; }
 

@@ -4,31 +4,33 @@
 #include "picture/panel.h"
 #include "picture/pose.h"
 
-/* Shares of a box's shorter side, in words: what looks right at every size. */
+/* In units of a box's shorter side; the values are chosen by eye. */
 static const double CORNER = 0.11, OUTLINE = 0.045, BAND = 0.13, TARGET = 0.30;
-static const double LEAST_OUTLINE = 1.0;    /* pixels */
-static const double LEAST_OUTLINED = 5.0;   /* pixels; a smaller box would be all outline */
-static const double LARGEST_CORNER = 0.009; /* of the panel's shorter side */
-static const double LARGEST_OUTLINE = 0.0026;
-static const double GHOST = 0.0034;     /* thickness of an outline without a box */
-static const double LEAST_GHOST = 1.6;  /* pixels */
-static const double NESTED = 1.2;       /* thicknesses that all outlines show below the last, at most */
-static const double LEAST_NESTED = 0.7; /* the same of one below the next, where there are few */
-static const double PALE = 0.55;        /* of the panel's colour in what lies behind outlines */
+static const double MIN_OUTLINE = 1.0;       /* pixels */
+static const double MIN_OUTLINED_SIDE = 5.0; /* pixels; a smaller box has no outline */
+static const double MAX_CORNER = 0.009;      /* relative to shorter side of the panel */
+static const double MAX_OUTLINE = 0.0026;
+static const double GHOST_OUTLINE =
+    0.0034; /* thickness of an outline drawn without its box / shorter side of the panel */
+static const double MIN_GHOST_OUTLINE = 1.6; /* pixels */
+static const double NESTED_TOTAL = 1.2;      /* overlay: the first outline is at most this many thicknesses thicker than
+                                           the last */
+static const double NESTED_STEP = 0.7;       /* from one outline to the next, at most */
+static const double FADE = 0.55;             /* share of the panel's colour in boxes behind outlines */
 
-/* A box of the width and height given in pixels, upright in the middle of nowhere. */
+/* A box of the given width and height in pixels, not rotated, at (0, 0). */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
     Rect panel = picture->layout.panels[0];
     double side = fmin(width, height), limit = fmin(panel.right - panel.left, panel.bottom - panel.top);
-    double outline = fmin(fmax(OUTLINE * side, LEAST_OUTLINE), fmax(LARGEST_OUTLINE * limit, LEAST_OUTLINE));
+    double outline = fmin(fmax(OUTLINE * side, MIN_OUTLINE), fmax(MAX_OUTLINE * limit, MIN_OUTLINE));
     return (Shape){.half_width = width / 2,
                    .half_height = height / 2,
                    .cosine = 1,
-                   .radius = fmin(CORNER * side, LARGEST_CORNER * limit),
-                   .outline = side < LEAST_OUTLINED ? 0 : outline,
+                   .radius = fmin(CORNER * side, MAX_CORNER * limit),
+                   .outline = side < MIN_OUTLINED_SIDE ? 0 : outline,
                    .fill = colors->fill,
                    .line = colors->line,
-                   .band = (side < LEAST_OUTLINED ? 0 : outline) + BAND * side,
+                   .band = (side < MIN_OUTLINED_SIDE ? 0 : outline) + BAND * side,
                    .band_color = colors->band};
 }
 
@@ -44,7 +46,7 @@ static void draw_part(Shape part, const Shape *whole, double up, const Rect *cli
     drawing_add_shape(drawing, &part, clip);
 }
 
-/* A dot in a ring, and a bar from it towards the local top. */
+/* A dot in a ring, and a bar from the ring towards the local top. */
 static void draw_target(const Shape *bomb, double radius, uint32_t light, const Rect *clip, Drawing *drawing) {
     Shape bar = {.half_width = radius / 7, .half_height = 0.3 * radius, .fill = light};
     Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = radius / 3};
@@ -55,34 +57,33 @@ static void draw_target(const Shape *bomb, double radius, uint32_t light, const 
     draw_part(dot, bomb, 0, clip, drawing);
 }
 
-/* Of a colour that tells the distance, with a mark on it to be seen on the lightest and the darkest; grey where there is
-   no distance. */
+/* Filled by the colour scale of the distance; the band contrasts with both its ends. Grey if there is no distance. */
 static BodyColors distance_colors(const Picture *picture, int run, Moment moment, int body) {
     const Theme *theme = picture->theme;
-    const Trajectory *first = picture->panels[0], *other = picture->panels[run];
+    const Trajectory *first = picture->runs[0], *other = picture->runs[run];
     uint32_t line = theme->bodies[run].line;
     bool ended = moment.frame >= first->frames || moment.frame >= other->frames;
     double distance = pose_distance(pose_at(first, moment, body), pose_at(other, moment, body));
     if (ended || isnan(distance)) return (BodyColors){theme->ground, line, theme->ground_line};
     double share = scales_share(&picture->scales, distance);
     uint32_t fill = theme_ramp(theme, share), white = 0xFFFFFF;
-    bool is_light = (fill >> 8 & 255) > 140; /* green counts most */
+    bool is_light = (fill >> 8 & 255) > 140; /* green dominates luminance */
     return (BodyColors){fill, line, is_light ? theme_mix(fill, 0, 0.6) : theme_mix(fill, white, 0.7)};
 }
 
 static BodyColors colors_of(const Picture *picture, int run, Moment moment, int body) {
     const Theme *theme = picture->theme;
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     if (trajectory->fixed[body]) return (BodyColors){theme->ground, theme->ground_line, theme->ground};
     if (picture_colors_distance(picture, run)) return distance_colors(picture, run, moment, body);
     BodyColors colors = body == trajectory->bomb ? theme->bomb : theme->bodies[run];
     if (picture->look.compare != LOOK_OVERLAY) return colors;
-    return (BodyColors){theme_mix(colors.fill, theme->panel, PALE), colors.line,
-                        theme_mix(colors.band, theme->panel, PALE)};
+    return (BodyColors){theme_mix(colors.fill, theme->panel, FADE), colors.line,
+                        theme_mix(colors.band, theme->panel, FADE)};
 }
 
 static Shape body_shape(const Picture *picture, int panel, int run, Moment moment, int body, const BodyColors *colors) {
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     double scale = picture->camera.scale;
     Shape shape =
         styled_box(picture, scale * (double)trajectory->size[body].x, scale * (double)trajectory->size[body].y, colors);
@@ -92,7 +93,7 @@ static Shape body_shape(const Picture *picture, int panel, int run, Moment momen
 }
 
 void body_draw(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     const Rect *clip = &picture->layout.panels[panel];
     bool fixed = trajectory->fixed[body], bomb = body == trajectory->bomb;
     BodyColors colors = colors_of(picture, run, moment, body);
@@ -105,26 +106,26 @@ void body_draw(const Picture *picture, int panel, int run, Moment moment, int bo
 }
 
 void body_draw_all(const Picture *picture, int panel, int run, Moment moment, bool fixed, Drawing *drawing) {
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     for (int body = 0; body < trajectory->bodies; body++)
         if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
             body_draw(picture, panel, run, moment, body, drawing);
 }
 
-/* The first run's bomb keeps its colour; of the others whose it is counts more. */
+/* The first run's bomb keeps its colour; the others have the colour of their run. */
 static uint32_t outline_color(const Picture *picture, int run, Moment moment, int body) {
     const Theme *theme = picture->theme;
     if (picture_colors_distance(picture, run)) return colors_of(picture, run, moment, body).fill;
     if (run > 0) return theme->bodies[run].fill;
-    return body == picture->panels[0]->bomb ? theme->bomb.fill : theme->ghost;
+    return body == picture->runs[0]->bomb ? theme->bomb.fill : theme->ghost;
 }
 
-/* Of several outlines in one place the later are thinner, and all can be seen. */
+/* Coincident outlines of several runs: later ones are thinner, so all are visible. */
 void body_draw_outlines(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     int above = picture->look.compare == LOOK_OVERLAY ? picture->count - 1 - run : 0;
-    double thickness =
-        fmax(GHOST * panel_side(picture), LEAST_GHOST) * (1 + above * fmin(LEAST_NESTED, NESTED / picture->count));
+    double thickness = fmax(GHOST_OUTLINE * panel_side(picture), MIN_GHOST_OUTLINE) *
+                       (1 + above * fmin(NESTED_STEP, NESTED_TOTAL / picture->count));
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body]) continue;
         Shape shape = body_shape(picture, panel, run, moment, body, &picture->theme->bodies[run]);

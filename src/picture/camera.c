@@ -6,8 +6,8 @@
 #include <math.h>
 
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
-static const double LEAST_SIDE = 2.0;    /* m */
-static const double LEAST_SET = 1e-3;    /* m; the smallest view that a scene may set */
+static const double MIN_SIDE = 2.0;    /* m */
+static const double MIN_VIEW = 1e-3;    /* m; the smallest view that a scene may set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 
@@ -32,7 +32,7 @@ static Extent fitted_extent(const Trajectory *trajectory) {
     Extent all = dynamic_extent(trajectory);
     if (extent_is_empty(&all)) all = fixed_extent(trajectory);
     if (extent_is_empty(&all)) all = (Extent){0, 0, 0, 0};
-    double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), LEAST_SIDE);
+    double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), MIN_SIDE);
     return (Extent){all.left - margin, all.right + margin, all.bottom - margin / 3, all.top + margin};
 }
 
@@ -47,7 +47,7 @@ static Camera look_at(double x, double y, double scale, int width, int height) {
 
 bool camera_is_set(const Trajectory *trajectory) {
     Vec2 size = trajectory->camera_size, center = trajectory->camera_center;
-    return size.x >= LEAST_SET && size.y >= LEAST_SET && size.x < EXTENT_FARTHEST && size.y < EXTENT_FARTHEST &&
+    return size.x >= MIN_VIEW && size.y >= MIN_VIEW && size.x < EXTENT_FARTHEST && size.y < EXTENT_FARTHEST &&
            fabs(center.x) < EXTENT_FARTHEST && fabs(center.y) < EXTENT_FARTHEST;
 }
 
@@ -59,7 +59,7 @@ Camera camera_fit(const Trajectory *trajectory, int width, int height) {
     }
     Extent b = fitted_extent(trajectory);
     double scale = nice_scale(fmin(width / (b.right - b.left), height / (b.top - b.bottom)));
-    /* Spare height goes above: sky is calmer than a slab of ground. */
+    /* Spare height goes above: sky distracts less than ground. */
     double spare = height / scale - (b.top - b.bottom);
     double below = fmin(spare / 2, GROUND_SHARE * height / scale);
     return look_at((b.left + b.right) / 2, b.bottom - below + height / scale / 2, scale, width, height);

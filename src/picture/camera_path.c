@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is wanted jumps: all of it, then the bomb. Averaged three times over the frames around each it becomes smooth, in
-   speed and in acceleration, and looks ahead. */
+/* The target view jumps: first the whole scene, then the bomb. Three passes of a moving average, centred on each
+   frame, make speed and acceleration continuous and let the camera anticipate. */
 #include "picture/camera_path.h"
 
 #include "picture/extent.h"
@@ -9,19 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double AVERAGED = 0.4;      /* s, that one averaging reaches over */
-static const double BOMB_AVERAGED = 0.2; /* the same where what is followed is fast */
-static const double BEFORE = 0.7;        /* s before the divergence that the way there is to begin */
-static const double STAYS = 1.2;         /* s that the camera stays there */
-static const double CLOSER = 0.5;        /* of the whole view's size: the one that follows the bomb */
-static const double BODIES_SEEN = 6;     /* a close view is at least so many of its body's sides wide and high */
-static const double MOST_REACH = 500;    /* frames; or tiny steps would take long */
+static const double SMOOTHING = 0.4;      /* s, window of one pass */
+static const double BOMB_SMOOTHING = 0.2; /* s, the same for LOOK_BOMB: its target is fast */
+static const double LEAD_TIME = 0.7;      /* s before the divergence that the camera starts to move */
+static const double HOLD_TIME = 1.2;      /* s that the camera stays there after it */
+static const double BOMB_VIEW = 0.5;      /* size of the view that follows the bomb / size of the whole view */
+static const double BODY_SIDES = 6;       /* a close view is at least this many sides of its body wide and high */
+static const double MAX_REACH = 500;      /* frames; bounds the cost with tiny time steps */
 enum { PASSES = 3 };
 
-/* What a camera sees; unlike pixels, this can be averaged. */
+/* Unlike pixel positions, views can be averaged. */
 typedef struct View {
-    double x, y; /* m, the middle */
-    double size; /* m, of a pixel */
+    double x, y; /* m, the centre */
+    double size; /* m per pixel */
 } View;
 
 static View view_of(const Camera *camera, int width, int height) {
@@ -34,43 +34,43 @@ static Camera camera_of(const View *view, int width, int height) {
     return (Camera){scale, width / 2.0 - scale * view->x, height / 2.0 + scale * view->y};
 }
 
-/* A closer view of a point, that shows no more below than the whole one does: more ground tells nothing. */
+/* A closer view of a point. Its bottom is not below that of the whole view: more ground shows nothing. */
 static View close_view(const View *whole, double x, double y, double size, int height) {
     size = fmin(size, whole->size);
     double bottom = whole->y - whole->size * height / 2;
     return (View){x, fmax(y, bottom + size * height / 2), size};
 }
 
-static double least_size(const Trajectory *run, int body, int width, int height) {
+static double min_size(const Trajectory *run, int body, int width, int height) {
     double side = fmax((double)run->size[body].x, (double)run->size[body].y);
-    return BODIES_SEEN * side / (width < height ? width : height);
+    return BODY_SIDES * side / (width < height ? width : height);
 }
 
-static void want_bomb(View *views, const Trajectory *run, int frames, const View *whole, int width, int height) {
-    double size = fmax(CLOSER * whole->size, least_size(run, run->bomb, width, height));
-    View wanted = *whole;
+static void target_bomb(View *views, const Trajectory *run, int frames, const View *whole, int width, int height) {
+    double size = fmax(BOMB_VIEW * whole->size, min_size(run, run->bomb, width, height));
+    View target = *whole;
     for (int frame = 0; frame < frames; frame++) {
         if (frame < run->frames && trajectory_has(run, frame, run->bomb)) {
             Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb];
             if (fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
-                wanted = close_view(whole, (double)at.x, (double)at.y, size, height);
+                target = close_view(whole, (double)at.x, (double)at.y, size, height);
         }
-        views[frame] = wanted;
+        views[frame] = target;
     }
 }
 
-static void want_divergence(View *views, const Trajectory *run, int frames, const Events *events, const View *whole,
-                            int width, int height) {
-    int first = events->apart - (int)rint(BEFORE / (double)run->dt);
-    int last = events->apart + (int)rint(STAYS / (double)run->dt);
-    Vec2 at = run->position[(size_t)events->apart * (size_t)run->bodies + (size_t)events->body];
-    double size = least_size(run, events->body, width, height);
+static void target_divergence(View *views, const Trajectory *run, int frames, const Events *events, const View *whole,
+                              int width, int height) {
+    int first = events->divergence - (int)rint(LEAD_TIME / (double)run->dt);
+    int last = events->divergence + (int)rint(HOLD_TIME / (double)run->dt);
+    Vec2 at = run->position[(size_t)events->divergence * (size_t)run->bodies + (size_t)events->body];
+    double size = min_size(run, events->body, width, height);
     for (int frame = 0; frame < frames; frame++)
         views[frame] =
             frame < first || frame > last ? *whole : close_view(whole, (double)at.x, (double)at.y, size, height);
 }
 
-/* Before the first frame and after the last all is as there. */
+/* Frames before the first and after the last repeat these two. */
 static void average(View *to, const View *from, int frames, int reach) {
     for (int frame = 0; frame < frames; frame++) {
         View sum = {0, 0, 0};
@@ -84,7 +84,7 @@ static void average(View *to, const View *from, int frames, int reach) {
 }
 
 static void smooth(View *views, View *spare, int frames, double steps) {
-    double reach = fmin(fmin(steps / 2, frames), MOST_REACH);
+    double reach = fmin(fmin(steps / 2, frames), MAX_REACH);
     for (int i = 0; i < PASSES; i++) {
         average(spare, views, frames, (int)rint(reach));
         memcpy(views, spare, (size_t)frames * sizeof *views);
@@ -102,20 +102,20 @@ Camera *camera_path(const Trajectory *const *runs, int frames, LookCamera kind, 
         return NULL;
     }
     for (int frame = 0; frame < frames; frame++) views[frame] = whole;
-    if (kind == LOOK_BOMB && runs[0]->bomb >= 0) want_bomb(views, runs[0], frames, &whole, width, height);
-    if (kind == LOOK_DIVERGENCE && events->apart >= 0)
-        want_divergence(views, runs[0], frames, events, &whole, width, height);
-    double averaged = kind == LOOK_BOMB ? BOMB_AVERAGED : AVERAGED;
-    smooth(views, views + frames, frames, averaged / (double)runs[0]->dt);
+    if (kind == LOOK_BOMB && runs[0]->bomb >= 0) target_bomb(views, runs[0], frames, &whole, width, height);
+    if (kind == LOOK_DIVERGENCE && events->divergence >= 0)
+        target_divergence(views, runs[0], frames, events, &whole, width, height);
+    double smoothing = kind == LOOK_BOMB ? BOMB_SMOOTHING : SMOOTHING;
+    smooth(views, views + frames, frames, smoothing / (double)runs[0]->dt);
     for (int frame = 0; frame < frames; frame++) path[frame] = camera_of(&views[frame], width, height);
     free(views);
     return path;
 }
 
 Camera camera_at(const Camera *path, int frames, Moment moment, int width, int height) {
-    if (!(moment.part > 0) || moment.frame + 1 >= frames) return path[moment.frame];
+    if (!(moment.fraction > 0) || moment.frame + 1 >= frames) return path[moment.frame];
     View a = view_of(&path[moment.frame], width, height), b = view_of(&path[moment.frame + 1], width, height);
-    View between = {a.x + moment.part * (b.x - a.x), a.y + moment.part * (b.y - a.y),
-                    a.size + moment.part * (b.size - a.size)};
+    View between = {a.x + moment.fraction * (b.x - a.x), a.y + moment.fraction * (b.y - a.y),
+                    a.size + moment.fraction * (b.size - a.size)};
     return camera_of(&between, width, height);
 }

@@ -8,13 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double FAR_APART = 1000.0; /* m; beyond it the figures say no more */
+static const double MAX_SHOWN_DISTANCE = 1000.0; /* m; larger distances show as ">1000" */
 
 typedef struct Item {
     char label[16], number[CAPTION_SIZE], unit[8];
 } Item;
 
-/* Pads a number on the left to the width that the longest of the run will take. */
+/* Pads a number on the left to the width of the run's longest one, so that text does not move between frames. */
 static void pad(char *number, size_t size, const char *text, const char *longest) {
     size_t used = 0;
     for (size_t i = strlen(text); i < strlen(longest); i++)
@@ -25,17 +25,17 @@ static void pad(char *number, size_t size, const char *text, const char *longest
 void caption_distance(char *text, size_t size, double metres) {
     if (isnan(metres))
         snprintf(text, size, "\xE2\x80\x93");
-    else if (metres < FAR_APART)
+    else if (metres < MAX_SHOWN_DISTANCE)
         snprintf(text, size, "%.2f", metres);
     else
-        snprintf(text, size, ">%.0f", FAR_APART);
+        snprintf(text, size, ">%.0f", MAX_SHOWN_DISTANCE);
 }
 
-static Item apart_item(const char *label, double apart, double largest) {
+static Item distance_item(const char *label, double distance, double largest) {
     Item item = {.unit = " m"};
     char text[32], longest[32];
     snprintf(item.label, sizeof item.label, "%s", label);
-    caption_distance(text, sizeof text, apart);
+    caption_distance(text, sizeof text, distance);
     caption_distance(longest, sizeof longest, largest);
     pad(item.number, sizeof item.number, text, longest);
     return item;
@@ -52,9 +52,9 @@ static Item frame_item(const Picture *picture, int frame) {
 
 static Item time_item(const Picture *picture, Moment moment) {
     Item item = {.label = "t = ", .unit = " s"};
-    double dt = (double)picture->panels[0]->dt;
+    double dt = (double)picture->runs[0]->dt;
     char text[64], longest[64];
-    snprintf(text, sizeof text, "%.3f", (moment.frame + moment.part) * dt);
+    snprintf(text, sizeof text, "%.3f", (moment.frame + moment.fraction) * dt);
     snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
     pad(item.number, sizeof item.number, text, longest);
     return item;
@@ -73,16 +73,16 @@ static void draw_item(const Picture *picture, const Font *font, const Item *item
 }
 
 void caption_title(const Picture *picture, char title[CAPTION_SIZE]) {
-    snprintf(title, CAPTION_SIZE, "%s", picture->title != NULL ? picture->title : picture->panels[0]->scene);
+    snprintf(title, CAPTION_SIZE, "%s", picture->title != NULL ? picture->title : picture->runs[0]->scene);
     for (char *c = title; *c != '\0'; c++)
         if (*c == '_') *c = ' ';
     if (title[0] >= 'a' && title[0] <= 'z') title[0] = (char)(title[0] - 'a' + 'A');
 }
 
-/* Of two panels side by side one distance is said once, in the header. */
-static bool is_pair(const Picture *picture) { return picture->count == 2 && picture->shown == 2; }
+/* With two panels side by side, the header shows the only distance. */
+static bool is_pair(const Picture *picture) { return picture->count == 2 && picture->panel_count == 2; }
 
-/* The words stay as long as the motion is slow: they would flicker if they were gone in every stored frame. */
+/* Shown during the whole slow motion, also in stored frames: otherwise the text would flicker. */
 static void draw_slow(const Picture *picture, Moment moment, int x, int right, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     char text[64];
@@ -95,7 +95,7 @@ static void draw_slow(const Picture *picture, Moment moment, int x, int right, D
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Item items[3] = {time_item(picture, moment), frame_item(picture, moment.frame),
-                           apart_item("apart ", picture_apart(picture, moment), picture->largest_apart)};
+                           distance_item("apart ", picture_distance(picture, moment), picture->largest_distance)};
     int count = is_pair(picture) ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
     for (int i = 0; i < count; i++) {
         int left = x - item_width(&layout->status, &items[i]);
@@ -110,10 +110,10 @@ void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     draw_slow(picture, moment, end, x, drawing);
 }
 
-/* What the bodies do not show. */
+/* What the panel does not show. */
 static void describe_state(const Picture *picture, int panel, Moment moment, char *text, size_t size) {
-    bool ended = moment.frame >= picture->panels[picture_run(picture, panel)]->frames;
-    int unseen = panel_count_unseen(picture, panel, moment);
+    bool ended = moment.frame >= picture->runs[picture_run(picture, panel)]->frames;
+    int unseen = panel_count_out_of_view(picture, panel, moment);
     text[0] = '\0';
     if (unseen > 0)
         snprintf(text, size, "%d out of view%s", unseen, ended ? ", ended" : "");
@@ -121,7 +121,7 @@ static void describe_state(const Picture *picture, int panel, Moment moment, cha
         snprintf(text, size, "ended");
 }
 
-/* Boxes that are coloured by their distance have their run's colour in the timeline only. */
+/* Boxes coloured by their distance show their run's colour only in the timeline. */
 static int draw_swatch(const Picture *picture, int run, int x, int baseline, Drawing *drawing) {
     bool hollow = picture->look.compare == LOOK_OVERLAY && run > 0;
     if (picture_colors_distance(picture, run) && !hollow && (picture->look.show & LOOK_TIMELINE) == 0) return x;
@@ -142,7 +142,7 @@ static void draw_notes(const Picture *picture, int run, const char *note, int le
     font_add_fitting(drawing, &picture->layout.method, text, left, baseline, right - left, picture->theme->ink_soft);
 }
 
-/* All runs of an overlay in one line, with as much room each. */
+/* All runs of an overlay on one line, in columns of equal width. */
 static void draw_methods(const Picture *picture, Moment moment, int left, int right, int baseline, Drawing *drawing) {
     const Font *font = &picture->layout.method;
     int gap = picture->layout.title.pixels, width = (right - left + gap) / picture->count;
@@ -150,7 +150,7 @@ static void draw_methods(const Picture *picture, Moment moment, int left, int ri
         char title[CAPTION_SIZE], note[CAPTION_SIZE];
         int start = left + run * width, end = start + width - gap;
         caption_method(picture, run, title, note);
-        Item item = apart_item("", picture_run_apart(picture, run, moment), picture->largest[run]);
+        Item item = distance_item("", picture_run_distance(picture, run, moment), picture->run_largest[run]);
         int room = run > 0 ? item_width(font, &item) + gap / 2 : 0;
         int x = draw_name(picture, run, title, start, end - room, baseline, drawing) + gap / 2;
         if (run > 0) draw_item(picture, font, &item, x, baseline, drawing);
@@ -170,7 +170,7 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
     }
     char state[CAPTION_SIZE];
     if (run > 0 && !is_pair(picture)) {
-        Item item = apart_item("apart ", picture_run_apart(picture, run, moment), picture->largest[run]);
+        Item item = distance_item("apart ", picture_run_distance(picture, run, moment), picture->run_largest[run]);
         right -= item_width(&layout->method, &item);
         draw_item(picture, &layout->method, &item, right, baseline, drawing);
         right -= layout->method.pixels;

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What solved a run, in words. */
+/* Titles and notes of runs. */
 #include "picture/caption.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static bool is_method(const char *text, const char *name) {
-    size_t length = strlen(name);
-    return strncmp(text, name, length) == 0 && (text[length] == '\0' || text[length] == ':');
-}
-
-/* Copies a method without the folders of its files: they belong to a machine and not to a picture. */
+/* Copies a method without the folders of its files, which differ between machines. */
 static void shorten_method(char *text, size_t size, const char *method) {
     size_t used = 0;
     while (*method != '\0') {
@@ -26,19 +21,16 @@ static void shorten_method(char *text, size_t size, const char *method) {
 }
 
 void caption_method(const Picture *picture, int run, char title[CAPTION_SIZE], char note[CAPTION_SIZE]) {
-    const char *method = picture->panels[run]->method, *name = NULL;
+    const MethodDescription *method = picture->methods[run];
+    const char *name = method != NULL ? method->title : NULL, *caption = method != NULL ? method->caption : NULL;
     char text[TRAJECTORY_NAME_SIZE] = "";
-    shorten_method(text, sizeof text, method);
-    bool engine = is_method(method, "engine");
-    if (engine) name = "Physics engine";
-    if (is_method(method, "reference")) name = "Converged solution";
-    if (is_method(method, "pair-net")) name = "Neural network";
-    if (is_method(method, "scene-net")) name = "Network of the scene";
+    shorten_method(text, sizeof text, picture->runs[run]->method);
     snprintf(title, CAPTION_SIZE, "%s", name != NULL ? name : text);
-    snprintf(note, CAPTION_SIZE, "%s%s", engine ? "sequential impulses, " : "", name != NULL ? text : "");
+    snprintf(note, CAPTION_SIZE, "%s%s%s", caption != NULL ? caption : "", caption != NULL && name != NULL ? ", " : "",
+             name != NULL ? text : "");
 }
 
-/* What is cut short is the last of them: the method's settings. */
+/* The last part, the method's settings, is the one that gets cut short. */
 static void join(char *text, size_t size, const char *part) {
     size_t used = strlen(text);
     if (part != NULL && part[0] != '\0') snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", part);

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Shares of the picture's shorter side, as in layout.c. */
+/* In units of the picture's shorter side, as in layout.c. */
 static const double HEAD = 0.075, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
-static const double WIDTH = 0.78; /* of the picture's width */
+static const double WIDTH = 0.78; /* relative to the picture's width */
 
 typedef struct Card {
     const Picture *picture;
@@ -35,7 +35,7 @@ static Card begin(const Picture *picture, Drawing *drawing) {
                   layout->width - margin};
 }
 
-/* The height of a card with so many rows is centred a little above the middle, where the eye expects it. */
+/* The card is centred slightly above the middle. */
 static int first_baseline(const Card *card, int rows) {
     double height = (0.16 + LINE * rows) * card->unit;
     return (int)rint(0.46 * card->picture->layout.height - height / 2 + 0.07 * card->unit);
@@ -53,14 +53,14 @@ static int row_baseline(const Card *card, int first, int row) {
     return first + (int)rint((0.125 + LINE * row) * card->unit);
 }
 
-/* The rule under the head. */
-static void add_rule(const Card *card, int baseline) {
+/* The rule below the head. */
+static void draw_rule(const Card *card, int baseline) {
     int thickness = 2 * card->picture->layout.hairline;
     drawing_add_rect(card->drawing, (Rect){card->left, baseline, card->right, baseline + thickness},
                      card->picture->theme->grid_strong);
 }
 
-/* Swatch and name; returns where the name ends. */
+/* Adds swatch and name; returns the x where the name ends. */
 static int add_method(const Card *card, int run, int baseline, int right, char note[CAPTION_SIZE]) {
     char title[CAPTION_SIZE];
     bool hollow = card->picture->look.compare == LOOK_OVERLAY && run > 0;
@@ -78,8 +78,8 @@ static void draw_title(const Card *card) {
     int first = first_baseline(card, picture->count);
     caption_title(picture, title);
     add(card, &card->head, title, card->left, first, card->right, theme->ink);
-    snprintf(text, sizeof text, "scene %s, %.3g s", picture->panels[0]->scene,
-             (picture->frames - 1) * (double)picture->panels[0]->dt);
+    snprintf(text, sizeof text, "scene %s, %.3g s", picture->runs[0]->scene,
+             (picture->frames - 1) * (double)picture->runs[0]->dt);
     add(card, &card->subhead, text, card->left, first + (int)rint(0.055 * card->unit), card->right, theme->ink_soft);
     for (int run = 0; run < picture->count; run++) {
         int baseline = row_baseline(card, first, run) + (int)rint(0.03 * card->unit);
@@ -89,20 +89,22 @@ static void draw_title(const Card *card) {
     }
 }
 
-/* "at 0.27 s" that a run was first so far apart; a dash where it never was. */
-static void format_first(const Picture *picture, int run, char *text, size_t size) {
+/* The time of the first divergence from the first run, or a dash. */
+static void format_divergence_time(const Picture *picture, int run, char *text, size_t size) {
     int frame = 0;
-    while (frame < picture->frames && !(picture_run_apart(picture, run, moment_stored(frame)) > EVENTS_APART)) frame++;
+    while (frame < picture->frames &&
+           !(picture_run_distance(picture, run, moment_stored(frame)) > EVENTS_VISIBLE_DISTANCE))
+        frame++;
     if (frame < picture->frames)
-        snprintf(text, size, "%.2f s", frame * (double)picture->panels[0]->dt);
+        snprintf(text, size, "%.2f s", frame * (double)picture->runs[0]->dt);
     else
         snprintf(text, size, "\xE2\x80\x93");
 }
 
-/* In the last frame that it shares with the first run. */
-static double last_apart(const Picture *picture, int run) {
-    int frames = picture->panels[0]->frames, own = picture->panels[run]->frames;
-    return picture_run_apart(picture, run, moment_stored((own < frames ? own : frames) - 1));
+/* The distance in the last frame that both this run and the first have. */
+static double last_distance(const Picture *picture, int run) {
+    int frames = picture->runs[0]->frames, own = picture->runs[run]->frames;
+    return picture_run_distance(picture, run, moment_stored((own < frames ? own : frames) - 1));
 }
 
 static void format_metres(char *text, size_t size, double metres) {
@@ -111,14 +113,14 @@ static void format_metres(char *text, size_t size, double metres) {
     snprintf(text, size, "%s m", number);
 }
 
-static void draw_figures(const Card *card, int run, int baseline, const int columns[3]) {
+static void draw_distances(const Card *card, int run, int baseline, const int columns[3]) {
     const Theme *theme = card->picture->theme;
     char text[64];
-    format_metres(text, sizeof text, last_apart(card->picture, run));
+    format_metres(text, sizeof text, last_distance(card->picture, run));
     add_right(card, &card->cell, text, columns[0], baseline, theme->ink);
-    format_metres(text, sizeof text, card->picture->largest[run]);
+    format_metres(text, sizeof text, card->picture->run_largest[run]);
     add_right(card, &card->cell, text, columns[1], baseline, theme->ink);
-    format_first(card->picture, run, text, sizeof text);
+    format_divergence_time(card->picture, run, text, sizeof text);
     add_right(card, &card->cell, text, columns[2], baseline, theme->ink);
 }
 
@@ -138,17 +140,17 @@ static void draw_end(const Card *card) {
     add(card, &card->cell, text, card->left, baseline, columns[0] - column, theme->ink_soft);
     for (int i = 0; i < 3 && picture->count > 1; i++)
         add_right(card, &card->cell, heads[i], columns[i], baseline, theme->ink_soft);
-    add_rule(card, baseline + (int)rint(0.02 * card->unit));
+    draw_rule(card, baseline + (int)rint(0.02 * card->unit));
     for (int run = 0; run < picture->count; run++) {
         baseline = row_baseline(card, first, run) + (int)rint(0.02 * card->unit);
         add_method(card, run, baseline, run > 0 ? columns[0] - column : card->right, note);
-        if (run > 0) draw_figures(card, run, baseline, columns);
+        if (run > 0) draw_distances(card, run, baseline, columns);
     }
 }
 
 void card_draw(const Picture *picture, Moment moment, Drawing *drawing) {
     Card card = begin(picture, drawing);
-    drawing->still_shapes = 0;
+    drawing->static_shapes = 0;
     if (moment.kind == MOMENT_TITLE)
         draw_title(&card);
     else

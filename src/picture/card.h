@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cards before and after a run: what is shown, and what came of it. */
+/* The title card before a run and the end card with its results. */
 #pragma once
 #include "picture/picture.h"
 
-/* For a moment of kind MOMENT_TITLE or MOMENT_END. */
+/* `moment` has kind MOMENT_TITLE or MOMENT_END. */
 void card_draw(const Picture *picture, Moment moment, Drawing *drawing);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The moments of a comparison that a viewer asks for. */
+/* The key frames of a comparison: impact and first divergence. */
 #pragma once
 #include "trajectory/trajectory.h"
 
-/* m: what is less cannot be seen in a picture. */
-#define EVENTS_APART 1e-3
+/* m; smaller distances are invisible in a picture */
+#define EVENTS_VISIBLE_DISTANCE 1e-3
 
 typedef struct Events {
-    int impact; /* trajectory_impact() of the first run that has one; -1: none */
-    int apart; /* first frame in which a body of another run is more than EVENTS_APART from the first run's; -1: none */
-    int run, body; /* whose */
+    int impact;     /* trajectory_impact() of the first run that has one; -1: none */
+    int divergence; /* first frame where a body is more than this from the first run's; -1: none */
+    int run, body;  /* the run and the body that diverge first */
 } Events;
 
-/* Runs of other worlds than the first are never apart from it. */
+/* Runs whose world differs from the first run's are not compared. */
 Events events_find(const Trajectory *const *runs, int count);

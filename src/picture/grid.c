@@ -6,12 +6,12 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double LEAST_SPACING = 0.010; /* of the panel's height, between thin lines */
-static const double LEAST_PIXELS = 6;      /* the same in pixels */
-static const double MOST_SPACING = 0.6;    /* of it, between strong lines */
+static const double MIN_SPACING = 0.010; /* between thin lines / the panel's height */
+static const double MIN_PIXELS = 6;      /* the same, in pixels */
+static const double MAX_SPACING = 0.6;   /* between strong lines / the panel's height */
 #define MINUS "\xE2\x88\x92"
 
-/* Thin lines every `step` metres, each `strong`-th strong and with a number. */
+/* Thin lines every `step` metres; every `strong`-th line is strong and labelled. */
 typedef struct Steps {
     double step;
     int strong;
@@ -23,19 +23,19 @@ static Steps nth_steps(int n) {
     return (Steps){cycle[n % 3].step * pow(10, n / 3), cycle[n % 3].strong};
 }
 
-/* One metre where that suits, else the nearest that does. */
+/* Steps of 1 m if they fit, otherwise the nearest that do. */
 static Steps choose_steps(const Picture *picture) {
     Rect panel = picture->layout.panels[0];
     double height = panel.bottom - panel.top, scale = picture->grid_scale;
     int n = 3;
-    while (nth_steps(n).step * scale < fmax(LEAST_SPACING * height, LEAST_PIXELS)) n++;
-    while (n <= 3 && n > 0 && nth_steps(n).step * nth_steps(n).strong * scale > MOST_SPACING * height) n--;
+    while (nth_steps(n).step * scale < fmax(MIN_SPACING * height, MIN_PIXELS)) n++;
+    while (n <= 3 && n > 0 && nth_steps(n).step * nth_steps(n).strong * scale > MAX_SPACING * height) n--;
     return nth_steps(n);
 }
 
-/* The lines across one side of a panel: line i, of `count`, is the (first + i)-th from 0 m. */
+/* The lines across one side of a panel. Line i of `count` is number first + i, counted from 0 m. */
 typedef struct Lines {
-    double first, spacing, origin; /* pixels; where 0 m lies */
+    double first, spacing, origin; /* pixels; `origin`: 0 m */
     int count;
 } Lines;
 
@@ -50,7 +50,7 @@ static Lines vertical_lines(const Picture *picture, Steps steps) {
     return lines_between(picture->camera.left, spacing, 0, panel.right - panel.left - 1);
 }
 
-/* Counted upwards, as metres are. */
+/* Pixels counted upwards, like metres. */
 static Lines horizontal_lines(const Picture *picture, Steps steps) {
     Rect panel = picture->layout.panels[0];
     double spacing = steps.step * picture->camera.scale;
@@ -63,8 +63,8 @@ static int line_pixel(const Lines *lines, int i) { return (int)rint(line_place(l
 
 static bool is_strong(const Lines *lines, int i, Steps steps) { return fmod(lines->first + i, steps.strong) == 0; }
 
-/* Whole pixels are crisp, but lines that jump from one to the next would shake where the camera moves: `off` is what was
-   rounded away. */
+/* Lines at whole pixels are crisp, but with a moving camera they would jitter: `off` restores the fraction lost by
+   rounding. */
 static void draw_line(const Picture *picture, int panel, Rect line, Point off, uint32_t color, Drawing *drawing) {
     if (picture->path == NULL) {
         drawing_add_rect(drawing, line, color);
@@ -108,14 +108,14 @@ static void format_metres(char *text, size_t size, double metres) {
     snprintf(text, size, "%s%g", metres < 0 ? MINUS : "", fabs(metres));
 }
 
-/* The unit stands at the right end, in place of a number where there is no room for both. */
+/* The unit is at the right end and replaces a number if there is no room for both. */
 static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Font *font = &layout->axis;
     Steps steps = choose_steps(picture);
     Lines lines = vertical_lines(picture, steps);
     int line = layout->hairline, baseline = rect->bottom + layout->axis_drop, gap = font->pixels / 2;
-    int behind = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
+    int free_from = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
     font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
     for (int i = 0; i < lines.count; i++) {
         if (!is_strong(&lines, i, steps)) continue;
@@ -124,8 +124,8 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
         drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick},
                          picture->theme->frame);
-        if (left < behind || left + width + gap > unit) continue;
-        behind = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
+        if (left < free_from || left + width + gap > unit) continue;
+        free_from = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
     }
 }
 
@@ -133,7 +133,7 @@ static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *dr
     const Layout *layout = &picture->layout;
     Steps steps = choose_steps(picture);
     Lines lines = horizontal_lines(picture, steps);
-    int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a figure */
+    int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a digit */
     for (int i = 0; i < lines.count; i++) {
         if (!is_strong(&lines, i, steps)) continue;
         char text[32];

@@ -3,28 +3,28 @@
 
 #include <math.h>
 
-/* All sizes are shares of this, so that pictures of every resolution look alike. Portrait pictures count by
-   their width, or their header would not fit. */
+/* All sizes are relative to this, so that pictures of all resolutions look alike. For portrait pictures it follows
+   the width, or the header would not fit. */
 static double base_unit(int width, int height) { return fmin(height, 0.75 * width); }
 
-/* Below this even the smallest font would fill the picture. */
-static const double LEAST_TEXT_UNIT = 300;
-static const double LEAST_PIXELS = 10; /* an em */
-static const double LEAST_MARGIN = 4;  /* pixels */
-static const double TIMELINE = 0.16;   /* height of its curves */
+/* In smaller pictures even the smallest font would be too large. */
+static const double MIN_TEXT_UNIT = 300;
+static const double MIN_FONT = 10;          /* per em */
+static const double MIN_MARGIN = 4;         /* pixels */
+static const double TIMELINE_HEIGHT = 0.16; /* height of the curves / base unit */
 
 static void pick_fonts(Layout *layout, double unit) {
-    if (unit < LEAST_TEXT_UNIT) return;
-    layout->scene = font_pick(FONT_SEMIBOLD, fmax(0.0300 * unit, LEAST_PIXELS));
-    layout->status = font_pick(FONT_REGULAR, fmax(0.0225 * unit, LEAST_PIXELS));
-    layout->title = font_pick(FONT_SEMIBOLD, fmax(0.0225 * unit, LEAST_PIXELS));
-    layout->method = font_pick(FONT_REGULAR, fmax(0.0205 * unit, LEAST_PIXELS));
-    layout->axis = font_pick(FONT_REGULAR, fmax(0.0170 * unit, LEAST_PIXELS));
+    if (unit < MIN_TEXT_UNIT) return;
+    layout->scene = font_pick(FONT_SEMIBOLD, fmax(0.0300 * unit, MIN_FONT));
+    layout->status = font_pick(FONT_REGULAR, fmax(0.0225 * unit, MIN_FONT));
+    layout->title = font_pick(FONT_SEMIBOLD, fmax(0.0225 * unit, MIN_FONT));
+    layout->method = font_pick(FONT_REGULAR, fmax(0.0205 * unit, MIN_FONT));
+    layout->axis = font_pick(FONT_REGULAR, fmax(0.0170 * unit, MIN_FONT));
 }
 
 static int pixels(double value) { return (int)rint(value); }
 
-/* Six at most: one row up to three, then two. In a portrait picture the same with rows for columns. */
+/* At most six: one row up to three panels, otherwise two. In portrait, columns instead of rows. */
 static void pick_grid(Layout *layout, int width, int height, int panels) {
     int few = panels > 3 ? 2 : 1, many = (panels + few - 1) / few;
     layout->rows = height > width ? many : few;
@@ -41,12 +41,12 @@ static void place_panels(Layout *layout, Rect area, int panels, int gap, int row
     }
 }
 
-/* Takes the rows from the bottom of the area and returns what is left. Pictures too small for words have no legend. */
+/* Takes the rows from the bottom of the area and returns the rest. Pictures too small for text have no legend. */
 static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, int title, int axis) {
-    bool text = unit >= LEAST_TEXT_UNIT;
-    int bottom = area.bottom + axis; /* of what stands above the next row */
+    bool text = unit >= MIN_TEXT_UNIT;
+    int bottom = area.bottom + axis; /* of the content above the next row */
     if (rows.timeline) {
-        int top = area.bottom - pixels(TIMELINE * unit);
+        int top = area.bottom - pixels(TIMELINE_HEIGHT * unit);
         layout->timeline = (Rect){area.left, top, area.right, area.bottom};
         layout->key_baseline = top - layout->title_rise;
         bottom = top - (text ? title : layout->left);
@@ -63,8 +63,8 @@ static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, 
 Layout layout_make(int width, int height, int panels, LayoutRows rows) {
     Layout layout = {.width = width, .height = height};
     double unit = base_unit(width, height);
-    bool text = unit >= LEAST_TEXT_UNIT;
-    int margin = pixels(fmax(0.030 * unit, LEAST_MARGIN));
+    bool text = unit >= MIN_TEXT_UNIT;
+    int margin = pixels(fmax(0.030 * unit, MIN_MARGIN));
     pick_fonts(&layout, unit);
     pick_grid(&layout, width, height, panels);
     layout.left = margin;

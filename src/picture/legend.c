@@ -8,16 +8,16 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double DECADE = 3; /* ems, of the colour scale */
-/* Where the next entry begins. */
+static const double DECADE = 3; /* ems, width of a decade on the colour scale */
+/* Position of the next entry. */
 typedef struct Row {
     const Picture *picture;
     Drawing *drawing;
     const Font *font;
     int x, baseline;
-    double middle; /* of small letters: where lines lie */
+    double middle; /* middle of the x-height, where line samples are */
     Rect clip;
-    int rows; /* begun */
+    int rows; /* started */
 } Row;
 
 typedef void AddEntry(Row *row);
@@ -37,7 +37,7 @@ static void add_outline(Row *row) {
     end_entry(row);
 }
 
-/* One rectangle a pixel: as fine as the picture can be. */
+/* One rectangle per pixel column. */
 static void add_decade(Row *row, int decade, int decades) {
     int width = (int)rint(DECADE * row->font->pixels), top = row->baseline - row->font->pixels * 3 / 4;
     for (int x = 0; x < width; x++)
@@ -46,7 +46,7 @@ static void add_decade(Row *row, int decade, int decades) {
     row->x += width;
 }
 
-/* The numbers part the colours, each where its distance lies. */
+/* Each number stands between the colours of its two decades. */
 static void add_colors(Row *row) {
     int decades = row->picture->scales.last_decade - SCALE_FIRST_DECADE;
     add_text(row, "distance  0.001 ");
@@ -55,7 +55,7 @@ static void add_colors(Row *row) {
         char text[32];
         power *= 10;
         add_decade(row, i, decades);
-        const char *unit = row->picture->scales.goes_beyond ? " m or more" : " m";
+        const char *unit = row->picture->scales.exceeded ? " m or more" : " m";
         snprintf(text, sizeof text, " %g%s", power, i + 1 < decades ? " " : unit);
         add_text(row, text);
     }
@@ -67,7 +67,7 @@ static void add_trail(Row *row) {
     int width = row->font->pixels * 2;
     for (int i = 0; i < 8; i++) {
         Point from = {row->x + width * i / 8.0, row->middle}, to = {row->x + width * (i + 1) / 8.0, row->middle};
-        stroke_line(row->drawing, from, to, marks_line(picture),
+        stroke_line(row->drawing, from, to, marks_line_thickness(picture),
                     theme_mix(picture->theme->page, picture->theme->ink_soft, (i + 2) / 9.0), &row->clip);
     }
     row->x += width + row->font->pixels / 2;
@@ -76,7 +76,7 @@ static void add_trail(Row *row) {
 }
 
 static void add_dot(Row *row) {
-    double radius = marks_dot(row->picture);
+    double radius = marks_dot_radius(row->picture);
     stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
                row->picture->theme->impulse, &row->clip);
     row->x += (int)ceil(2 * radius) + row->font->pixels / 2;
@@ -85,7 +85,7 @@ static void add_dot(Row *row) {
 }
 
 static void add_arrow(Row *row, double pixels, uint32_t color, double value, const char *unit) {
-    ArrowStyle style = marks_arrow(row->picture, color);
+    ArrowStyle style = marks_arrow_style(row->picture, color);
     char text[64];
     style.halo = row->picture->theme->page;
     stroke_arrow(row->drawing, (Point){row->x + 1, row->middle}, (Point){row->x + 1 + pixels, row->middle}, false,
@@ -98,12 +98,13 @@ static void add_arrow(Row *row, double pixels, uint32_t color, double value, con
 
 static void add_impulse(Row *row) {
     const Scales *scales = &row->picture->scales;
-    add_arrow(row, scales->named_impulse * scales->impulse, row->picture->theme->impulse, scales->named_impulse, "N s");
+    add_arrow(row, scales->legend_impulse * scales->impulse, row->picture->theme->impulse, scales->legend_impulse,
+              "N s");
 }
 
 static void add_velocity(Row *row) {
     const Scales *scales = &row->picture->scales;
-    add_arrow(row, scales->named_velocity * scales->velocity, row->picture->theme->velocity, scales->named_velocity,
+    add_arrow(row, scales->legend_velocity * scales->velocity, row->picture->theme->velocity, scales->legend_velocity,
               "m/s");
 }
 
@@ -120,8 +121,8 @@ static void begin_row(Row *row) {
     row->rows++;
 }
 
-/* What turns out to reach too far is taken back, and comes first in the next row. */
-static void place(Row *row, AddEntry *add) {
+/* An entry that reaches too far right is removed and added again at the start of the next row. */
+static void place_entry(Row *row, AddEntry *add) {
     if (row->rows == 0) begin_row(row);
     Row before = *row;
     Drawing *drawing = row->drawing;
@@ -135,29 +136,29 @@ static void place(Row *row, AddEntry *add) {
     add(row);
 }
 
-static int place_all(const Picture *picture, Drawing *drawing) {
+static int place_entries(const Picture *picture, Drawing *drawing) {
     const RenderLook *look = &picture->look;
     const Layout *layout = &picture->layout;
     Row row = {.picture = picture, .drawing = drawing, .font = &layout->axis};
     row.clip = (Rect){0, 0, layout->width, layout->height};
     bool difference = look->compare == LOOK_DIFFERENCE;
-    if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) place(&row, add_outline);
-    if (difference || look->show & LOOK_DISTANCE) place(&row, add_colors);
-    if (look->show & LOOK_TRAILS) place(&row, add_trail);
-    if (look->show & LOOK_CONTACTS) place(&row, add_dot);
-    if (look->show & LOOK_IMPULSES) place(&row, add_impulse);
-    if (look->show & LOOK_VELOCITIES) place(&row, add_velocity);
-    if (look->show & (LOOK_IMPULSES | LOOK_VELOCITIES)) place(&row, add_heads);
+    if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) place_entry(&row, add_outline);
+    if (difference || look->show & LOOK_DISTANCE) place_entry(&row, add_colors);
+    if (look->show & LOOK_TRAILS) place_entry(&row, add_trail);
+    if (look->show & LOOK_CONTACTS) place_entry(&row, add_dot);
+    if (look->show & LOOK_IMPULSES) place_entry(&row, add_impulse);
+    if (look->show & LOOK_VELOCITIES) place_entry(&row, add_velocity);
+    if (look->show & (LOOK_IMPULSES | LOOK_VELOCITIES)) place_entry(&row, add_heads);
     return row.rows;
 }
 
 int legend_rows(const Picture *picture) {
     Drawing scratch = {0};
-    int rows = place_all(picture, &scratch);
+    int rows = place_entries(picture, &scratch);
     drawing_free(&scratch);
     return rows;
 }
 
 void legend_draw(const Picture *picture, Drawing *drawing) {
-    if (picture->layout.legend_baseline > 0) place_all(picture, drawing);
+    if (picture->layout.legend_baseline > 0) place_entries(picture, drawing);
 }

@@ -10,7 +10,7 @@ const char *const look_theme_names[] = {"light", "dark", NULL};
 const char *const look_show_names[] = {"ghosts",   "distance",   "trails",   "contacts",
                                        "impulses", "velocities", "timeline", NULL};
 
-/* What of a look takes bodies of several runs for the same; NULL where nothing does. */
+/* The part of a look that compares bodies of several runs; NULL if none does. */
 static const char *compares(const RenderLook *look) {
     if (look->compare != LOOK_SPLIT) return look_compare_names[look->compare];
     if (look->camera == LOOK_DIVERGENCE) return look_camera_names[LOOK_DIVERGENCE];
@@ -23,13 +23,12 @@ bool look_check(const RenderLook *look, const Trajectory *const *runs, int count
     const char *what = compares(look);
     char difference[256];
     if (look->camera == LOOK_BOMB && runs[0]->bomb < 0)
-        return error_input(error, "render", "there is no bomb for the camera to follow");
+        return error_input(error, "render", "the camera cannot follow the bomb: the first run has none");
     if (what == NULL) return true;
-    if (count < 2) return error_input(error, "render", "'%s' compares runs, and there is but one", what);
+    if (count < 2) return error_input(error, "render", "'%s' compares runs, but there is only one", what);
     for (int i = 1; i < count; i++)
         if (trajectory_different_worlds(runs[0], runs[i], difference, sizeof difference))
-            return error_input(error, "render",
-                               "'%s' compares run %d with the first, but they are of other worlds (%s)", what, i + 1,
-                               difference);
+            return error_input(error, "render", "'%s' compares run %d with the first, but their worlds differ (%s)",
+                               what, i + 1, difference);
     return true;
 }

@@ -27,7 +27,7 @@ static void draw_frame(const Rect *r, int thickness, uint32_t color, Drawing *dr
     drawing_add_rect(drawing, (Rect){r->right, r->top, right, r->bottom}, color);
 }
 
-void panel_draw_still(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+void panel_draw_static(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Rect *rect = &picture->layout.panels[panel];
     drawing_add_rect(drawing, *rect, picture->theme->panel);
     grid_draw_lines(picture, panel, drawing);
@@ -36,7 +36,7 @@ void panel_draw_still(const Picture *picture, int panel, Moment moment, Drawing 
     grid_draw_axes(picture, panel, drawing);
 }
 
-/* The runs whose outlines lie over the panel's bodies. */
+/* Outlines of other runs over the panel's bodies. */
 static void draw_outlines(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const RenderLook *look = &picture->look;
     if (look->compare == LOOK_OVERLAY)
@@ -46,7 +46,7 @@ static void draw_outlines(const Picture *picture, int panel, Moment moment, Draw
 }
 
 void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
-    int run = picture_run(picture, panel), bomb = picture->panels[run]->bomb;
+    int run = picture_run(picture, panel), bomb = picture->runs[run]->bomb;
     marks_draw_below(picture, panel, moment, drawing);
     body_draw_all(picture, panel, run, moment, false, drawing);
     if (bomb >= 0) body_draw(picture, panel, run, moment, bomb, drawing);
@@ -54,9 +54,9 @@ void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing
     marks_draw_above(picture, panel, moment, drawing);
 }
 
-int panel_count_unseen(const Picture *picture, int panel, Moment moment) {
+int panel_count_out_of_view(const Picture *picture, int panel, Moment moment) {
     int run = picture_run(picture, panel), count = 0;
-    const Trajectory *trajectory = picture->panels[run];
+    const Trajectory *trajectory = picture->runs[run];
     const Rect *rect = &picture->layout.panels[panel];
     int frame = pose_moment(trajectory, moment).frame;
     for (int body = 0; body < trajectory->bodies; body++) {

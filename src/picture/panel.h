@@ -4,17 +4,17 @@
 #include "gl/stroke.h"
 #include "picture/picture.h"
 
-/* What keeps still: grid, static bodies, axes. Shapes of it lie behind all others. */
-void panel_draw_still(const Picture *picture, int panel, Moment moment, Drawing *drawing);
+/* The static layer: grid, static bodies, axes. Its shapes are behind all others. */
+void panel_draw_static(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
-/* The bodies that move, the bomb before them, and what the look adds. */
+/* The dynamic bodies, the bomb on top, and the marks. */
 void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
-/* Where a point in metres lies in the picture. */
+/* Converts a point from metres to pixels of the picture. */
 Point panel_point(const Picture *picture, int panel, double x, double y);
 
-/* The shorter side of a panel in pixels: what lines are thick by. */
+/* The shorter side of a panel in pixels; line thicknesses are relative to it. */
 double panel_side(const Picture *picture);
 
-/* How many dynamic bodies that are there lie with their centre outside the panel. */
-int panel_count_unseen(const Picture *picture, int panel, Moment moment);
+/* The number of dynamic bodies whose centre is outside the panel. */
+int panel_count_out_of_view(const Picture *picture, int panel, Moment moment);

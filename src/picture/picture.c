@@ -13,31 +13,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool check_panels(const Trajectory *const *panels, int count, Error *error) {
+static bool check_runs(const Trajectory *const *runs, int count, Error *error) {
     if (count < 1 || count > RENDER_PANELS_MAX)
-        return error_input(error, "render", "%d panels asked for; 1 to %d can be shown", count, RENDER_PANELS_MAX);
+        return error_input(error, "render", "the number of panels must be 1 to %d (got %d)", RENDER_PANELS_MAX, count);
     for (int i = 1; i < count; i++)
-        if (panels[i]->dt != panels[0]->dt)
+        if (runs[i]->dt != runs[0]->dt)
             return error_input(error, "render",
-                               "panel %d (%s) has time steps of %g s and the first of %g s: their frames are not of "
-                               "the same times",
-                               i + 1, panels[i]->method, (double)panels[i]->dt, (double)panels[0]->dt);
+                               "panel %d (%s) has time steps of %g s, but the first panel has %g s; they must be equal",
+                               i + 1, runs[i]->method, (double)runs[i]->dt, (double)runs[0]->dt);
     return true;
 }
 
 static bool check_size(int width, int height, Error *error) {
-    if (width >= RENDER_LEAST_SIDE && height >= RENDER_LEAST_SIDE && width <= RENDER_LARGEST_SIDE &&
-        height <= RENDER_LARGEST_SIDE)
+    if (width >= RENDER_SIDE_MIN && height >= RENDER_SIDE_MIN && width <= RENDER_SIDE_MAX && height <= RENDER_SIDE_MAX)
         return true;
-    return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be %d to %d", width,
-                       height, RENDER_LEAST_SIDE, RENDER_LARGEST_SIDE);
+    return error_input(error, "render", "each side of the picture must be %d to %d pixels (got %d x %d)",
+                       RENDER_SIDE_MIN, RENDER_SIDE_MAX, width, height);
 }
 
-static void find_largest(Picture *picture) {
+static void find_largest_distances(Picture *picture) {
     for (int i = 1; i < picture->count; i++) {
-        for (int frame = 0; frame < picture->panels[i]->frames; frame++)
-            picture->largest[i] = fmax(picture->largest[i], picture_run_apart(picture, i, moment_stored(frame)));
-        picture->largest_apart = fmax(picture->largest_apart, picture->largest[i]);
+        for (int frame = 0; frame < picture->runs[i]->frames; frame++)
+            picture->run_largest[i] =
+                fmax(picture->run_largest[i], picture_run_distance(picture, i, moment_stored(frame)));
+        picture->largest_distance = fmax(picture->largest_distance, picture->run_largest[i]);
     }
 }
 
@@ -45,32 +44,32 @@ static int panels_of(LookCompare compare, int count) {
     return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
 }
 
-/* Panels, and a camera for their size. */
+/* Sets the panels and a camera that fits them. */
 static void arrange(Picture *picture, int width, int height, int legend) {
-    picture->shown = panels_of(picture->look.compare, picture->count);
+    picture->panel_count = panels_of(picture->look.compare, picture->count);
     LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
-    picture->layout = layout_make(width, height, picture->shown, rows);
+    picture->layout = layout_make(width, height, picture->panel_count, rows);
     Rect first = picture->layout.panels[0];
-    picture->camera = camera_fit(picture->panels[0], first.right - first.left, first.bottom - first.top);
+    picture->camera = camera_fit(picture->runs[0], first.right - first.left, first.bottom - first.top);
     picture->grid_scale = picture->camera.scale;
 }
 
-bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error) {
-    if (!check_size(width, height, error) || !check_panels(panels, count, error)) return false;
+bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, int width, int height, Error *error) {
+    if (!check_size(width, height, error) || !check_runs(runs, count, error)) return false;
     *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT)};
     for (int i = 0; i < count; i++) {
-        picture->panels[i] = panels[i];
-        if (panels[i]->frames > picture->frames) picture->frames = panels[i]->frames;
+        picture->runs[i] = runs[i];
+        if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
     }
     arrange(picture, width, height, 0);
-    find_largest(picture);
+    find_largest_distances(picture);
     return true;
 }
 
 static bool plan_path(Picture *picture, Error *error) {
     if (picture->look.camera == LOOK_FIT) return true;
     Rect panel = picture->layout.panels[0];
-    picture->path = camera_path(picture->panels, picture->frames, picture->look.camera, &picture->events,
+    picture->path = camera_path(picture->runs, picture->frames, picture->look.camera, &picture->events,
                                 &picture->camera, panel.right - panel.left, panel.bottom - panel.top, error);
     if (picture->path == NULL) return false;
     double closest = picture->camera.scale;
@@ -79,26 +78,28 @@ static bool plan_path(Picture *picture, Error *error) {
     return true;
 }
 
-/* How many rows the legend takes depends on the scales that it explains, and these on the room that it leaves: the first
-   guess is none. */
+/* The rows of the legend depend on the scales, and the scales on the room that the rows leave: start with 0 rows. */
 static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
     for (int pass = 0; pass < 2; pass++) {
         arrange(picture, options->width, options->height, pass == 0 ? 0 : legend_rows(picture));
-        if (!scales_choose(&picture->scales, picture->panels[0], &picture->layout, picture->largest_apart, error))
+        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->largest_distance, error))
             return false;
     }
     return true;
 }
 
-bool picture_dress(Picture *picture, const RenderOptions *options, Error *error) {
+bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error) {
     const RenderLook plain = {0};
     picture->title = options->title;
-    for (int i = 0; i < picture->count; i++) picture->notes[i] = options->notes[i];
+    for (int i = 0; i < picture->count; i++) {
+        picture->notes[i] = options->notes[i];
+        if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
+    }
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
-    if (!look_check(&picture->look, picture->panels, picture->count, error)) return false;
-    picture->events = events_find(picture->panels, picture->count);
+    if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
+    picture->events = events_find(picture->runs, picture->count);
     return arrange_rows(picture, options, error) && plan_path(picture, error) && timeline_plan(picture, error);
 }
 
@@ -109,8 +110,8 @@ void picture_free(Picture *picture) {
     picture->curves = NULL;
 }
 
-int picture_panel_frame(const Picture *picture, int run, int frame) {
-    return pose_moment(picture->panels[run], moment_stored(frame)).frame;
+int picture_run_frame(const Picture *picture, int run, int frame) {
+    return pose_moment(picture->runs[run], moment_stored(frame)).frame;
 }
 
 int picture_run(const Picture *picture, int panel) {
@@ -118,8 +119,8 @@ int picture_run(const Picture *picture, int panel) {
 }
 
 bool picture_colors_distance(const Picture *picture, int run) {
-    bool asked = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
-    return asked && run > 0;
+    bool enabled = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
+    return enabled && run > 0;
 }
 
 static double distance_between(const Trajectory *a, const Trajectory *b, Moment moment) {
@@ -132,25 +133,26 @@ static double distance_between(const Trajectory *a, const Trajectory *b, Moment 
     return largest;
 }
 
-double picture_run_apart(const Picture *picture, int run, Moment moment) {
-    const Trajectory *first = picture->panels[0], *other = picture->panels[run];
+double picture_run_distance(const Picture *picture, int run, Moment moment) {
+    const Trajectory *first = picture->runs[0], *other = picture->runs[run];
     if (run == 0 || moment.frame >= first->frames || moment.frame >= other->frames) return NAN;
-    return moment.part > 0 ? distance_between(first, other, moment) : trajectory_distance(first, other, moment.frame);
+    return moment.fraction > 0 ? distance_between(first, other, moment)
+                               : trajectory_distance(first, other, moment.frame);
 }
 
-double picture_apart(const Picture *picture, Moment moment) {
+double picture_distance(const Picture *picture, Moment moment) {
     double largest = NAN;
-    for (int i = 1; i < picture->count; i++) largest = fmax(largest, picture_run_apart(picture, i, moment));
+    for (int i = 1; i < picture->count; i++) largest = fmax(largest, picture_run_distance(picture, i, moment));
     return largest;
 }
 
 static void draw_panels(const Picture *picture, Moment moment, Drawing *drawing) {
-    for (int i = 0; i < picture->shown; i++) panel_draw_still(picture, i, moment, drawing);
+    for (int i = 0; i < picture->panel_count; i++) panel_draw_static(picture, i, moment, drawing);
     legend_draw(picture, drawing);
-    timeline_draw_still(picture, drawing);
-    drawing->still_shapes = drawing->shape_count;
+    timeline_draw_static(picture, drawing);
+    drawing->static_shapes = drawing->shape_count;
     caption_header(picture, moment, drawing);
-    for (int i = 0; i < picture->shown; i++) {
+    for (int i = 0; i < picture->panel_count; i++) {
         caption_panel(picture, i, moment, drawing);
         panel_draw_moving(picture, i, moment, drawing);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a frame of a comparison looks like: panels side by side under one header. No OpenGL here. */
+/* The picture of one frame of a comparison: panels side by side below one header. Independent of OpenGL. */
 #pragma once
 #include "picture/camera.h"
 #include "picture/events.h"
@@ -8,56 +8,58 @@
 #include "picture/scales.h"
 #include "picture/theme.h"
 
-/* All that is decided once for a sequence, from the whole run, so that nothing moves between frames but
- * bodies. */
+/* Everything that is chosen once per sequence, from the whole run, so that only bodies move between frames. */
 typedef struct Picture {
-    const Trajectory *panels[RENDER_PANELS_MAX]; /* the runs: each has its panel, unless the look says otherwise */
+    const Trajectory *runs[RENDER_PANELS_MAX]; /* one panel per run, unless the look requires otherwise */
     int count;
     int frames; /* of the longest run */
     Layout layout;
-    Camera camera;                     /* for a panel whose upper left corner is (0, 0) */
-    double grid_scale;                 /* pixels a metre that the grid is chosen for: it does not change on the way */
-    double largest_apart;              /* m, over the run */
-    double largest[RENDER_PANELS_MAX]; /* the same of each run from the first */
-    const char *title;                 /* as in RenderOptions; outlive the picture */
+    Camera camera;           /* for a panel whose upper left corner is (0, 0) */
+    double grid_scale;       /* pixels per metre used to choose the grid; constant while the camera moves */
+    double largest_distance; /* m, over the whole run */
+    double run_largest[RENDER_PANELS_MAX]; /* the same, per run */
+    const char *title;                     /* as in RenderOptions; must outlive the picture */
     const char *notes[RENDER_PANELS_MAX];
+    const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
     RenderLook look;
     const Theme *theme;
-    int shown; /* panels that are drawn */
+    int panel_count; /* number of panels drawn */
     Events events;
     Scales scales;
-    Camera *path;  /* [frames], where the camera moves; else NULL */
-    float *curves; /* [count][curve_points] m, the largest distance from the first run in each part of the run; NAN once
-                       the run has ended. NULL without a timeline. */
+    Camera *path;  /* [frames], or NULL if the camera is fixed */
+    float *curves; /* [count][curve_points], m: the largest distance from the first run in each interval; NaN after
+                      the run's end. NULL without a timeline. */
     int curve_points;
 } Picture;
 
-/* Refuses (ERROR_INPUT) what cannot be shown side by side. The trajectories must outlive the picture. */
-bool picture_plan(Picture *picture, const Trajectory *const *panels, int count, int width, int height, Error *error);
+/* Plans a picture with the default look. ERROR_INPUT if the runs cannot be shown side by side. The trajectories must
+   outlive the picture. */
+bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, int width, int height, Error *error);
 
-/* Takes over the options' words and look, or refuses what look_check() does. What it makes is freed by picture_free, also
+/* Takes the texts and the look from the options, or fails like look_check(). picture_free() frees the result, also
    after an error. */
-bool picture_dress(Picture *picture, const RenderOptions *options, Error *error);
+bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error);
 void picture_free(Picture *picture);
 
-/* Refuses (ERROR_INPUT) a look that the runs do not have: comparing other bodies, following a bomb where there is none. */
+/* ERROR_INPUT if the runs do not support the look: it compares different bodies, or follows a bomb that does not
+   exist. */
 bool look_check(const RenderLook *look, const Trajectory *const *runs, int count, Error *error);
 
-/* Puts a moment into a cleared drawing. */
+/* Draws a moment into a cleared drawing. */
 void picture_draw(const Picture *picture, Moment moment, Drawing *drawing);
 
-/* The frame that a run shows: its last one once it has ended. */
-int picture_panel_frame(const Picture *picture, int run, int frame);
+/* The frame that a run shows: its last one after it has ended. */
+int picture_run_frame(const Picture *picture, int run, int frame);
 
-/* Which run a panel shows; of an overlay the first. */
+/* The run that a panel shows; for an overlay the first. */
 int picture_run(const Picture *picture, int panel);
 
-/* True where the run's bodies are coloured by their distance from the first run's. */
+/* Whether the run's bodies are coloured by their distance from the first run's. */
 bool picture_colors_distance(const Picture *picture, int run);
 
-/* The largest distance (m) of a body in a run from the same body in the first; NaN where nothing can be compared: it is
-   the first, or one of the two has ended. */
-double picture_run_apart(const Picture *picture, int run, Moment moment);
+/* The largest distance (m) of a body from the same body in the first run; NaN for the first run and after the end of
+   either. */
+double picture_run_distance(const Picture *picture, int run, Moment moment);
 
-/* The same over all runs. */
-double picture_apart(const Picture *picture, Moment moment);
+/* The largest over all runs. */
+double picture_distance(const Picture *picture, Moment moment);

@@ -4,19 +4,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Shares of a panel's shorter side. */
-static const double LONGEST = 0.28;
-static const double FASTEST = 0.20;        /* the arrow of the first run's fastest body */
-static const double COMMON_IMPULSE = 0.10; /* the arrow of an impulse that 9 in 10 are below */
-static const double NAMED = 0.07;          /* an arrow in the legend, at most */
-static const double FASTEST_COUNTED = 1e4; /* m/s; what explodes is no measure */
-enum { MOST_DECADE = 1 };                  /* 10 m: what is farther is just gone */
+/* In units of a panel's shorter side. */
+static const double MAX_ARROW = 0.28;
+static const double FASTEST_ARROW = 0.20; /* the arrow of the first run's fastest body */
+static const double COMMON_ARROW = 0.10;  /* the arrow of the 90th percentile of impulses */
+static const double LEGEND_ARROW = 0.07;  /* an arrow in the legend, at most */
+static const double MAX_SPEED = 1e4;      /* m/s; faster bodies, of an exploding run, do not count */
+enum { MAX_DECADE = 1 };                  /* 10 m, the end of the colour scale */
 
 static double fastest(const Trajectory *run) {
     double square = 0;
     for (size_t i = 0; i < (size_t)run->frames * (size_t)run->bodies; i++) {
         double x = (double)run->velocity[i].x, y = (double)run->velocity[i].y, v = x * x + y * y;
-        if (v > square && v < FASTEST_COUNTED * FASTEST_COUNTED) square = v;
+        if (v > square && v < MAX_SPEED * MAX_SPEED) square = v;
     }
     return sqrt(square);
 }
@@ -26,7 +26,7 @@ static int compare_floats(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* An impulse that 9 in 10 of those that push are below; 0 where none does. */
+/* Finds the 90th percentile of the positive impulses; 0 if there are none. */
 static bool common_impulse(const Trajectory *run, double *impulse, Error *error) {
     size_t total = (size_t)run->contact_start[run->frames], count = 0;
     float *impulses = malloc((total + 1) * sizeof *impulses);
@@ -41,7 +41,7 @@ static bool common_impulse(const Trajectory *run, double *impulse, Error *error)
     return true;
 }
 
-/* The largest 1, 2 or 5 times a power of ten that is not above. */
+/* The largest 1, 2 or 5 times a power of ten that is at most `most`. */
 static double round_number(double most) {
     double power = 1;
     while (power > most && power > 1e-12) power /= 10;
@@ -49,23 +49,23 @@ static double round_number(double most) {
     return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
 }
 
-/* Pixels for one unit, and the arrow that the legend shows. */
-static void choose(double *scale, double *named, double value, double pixels, double most_named) {
+/* Sets the pixels per unit, and the value of the legend's arrow. */
+static void choose(double *scale, double *legend, double value, double pixels, double max_legend) {
     *scale = value > 1e-9 ? pixels / value : pixels;
-    *named = round_number(most_named / *scale);
+    *legend = round_number(max_legend / *scale);
 }
 
-bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double largest_apart, Error *error) {
+bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double largest_distance, Error *error) {
     Rect panel = layout->panels[0];
     double side = fmin(panel.right - panel.left, panel.bottom - panel.top), impulse = 0;
     if (!common_impulse(run, &impulse, error)) return false;
-    scales->longest = LONGEST * side;
-    choose(&scales->impulse, &scales->named_impulse, impulse, COMMON_IMPULSE * side, NAMED * side);
-    choose(&scales->velocity, &scales->named_velocity, fastest(run), FASTEST * side, NAMED * side);
+    scales->max_arrow = MAX_ARROW * side;
+    choose(&scales->impulse, &scales->legend_impulse, impulse, COMMON_ARROW * side, LEGEND_ARROW * side);
+    choose(&scales->velocity, &scales->legend_velocity, fastest(run), FASTEST_ARROW * side, LEGEND_ARROW * side);
     double power = 1;
-    for (scales->last_decade = 0; power < largest_apart && scales->last_decade < MOST_DECADE; power *= 10)
+    for (scales->last_decade = 0; power < largest_distance && scales->last_decade < MAX_DECADE; power *= 10)
         scales->last_decade++;
-    scales->goes_beyond = power < largest_apart;
+    scales->exceeded = power < largest_distance;
     return true;
 }
 

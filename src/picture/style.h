@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colours of the picture, 0xRRGGBB. Those of the bodies follow Okabe and Ito, whose set is told apart
-   under every common colour blindness; blue is the darkest and the bomb darker than any network's boxes, so
-   that grey prints work. */
+/* The light theme's colours, 0xRRGGBB. The colours of bodies follow Okabe and Ito, distinguishable with all common
+   kinds of colour blindness. Blue is the darkest, and the bomb is darker than any network's boxes, so that grey
+   prints work. */
 #pragma once
 #include <stdint.h>
 
@@ -11,7 +11,7 @@ static const uint32_t INK = 0x1B2330, INK_SOFT = 0x667080;
 static const uint32_t GROUND = 0xD3D8DF, GROUND_LINE = 0x5A6472;
 
 typedef struct BodyColors {
-    uint32_t fill, line, band; /* the band along the local top tells how a box has turned */
+    uint32_t fill, line, band; /* the band along the local top shows the rotation */
 } BodyColors;
 
 #define BOMB_COLORS \

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Blue is the darkest of the runs and yellow the lightest. */
+/* Of the runs' colours, blue is the darkest and yellow the lightest. */
 static const Theme light = {
     .page = PAGE,
     .panel = PANEL,
@@ -21,18 +21,18 @@ static const Theme light = {
     .bomb = BOMB_COLORS,
     .bodies =
         {
-            {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the physics, or whatever comes first */
+            {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the first run, usually the engine */
             {0xE69F00, 0x7A4F00, 0xFFD47A}, /* orange */
             {0x009E73, 0x004D38, 0x5CCBAA}, /* bluish green */
             {0xCC79A7, 0x6E2F52, 0xEBBBD5}, /* reddish purple */
             {0x56B4E9, 0x1D5F87, 0xB5DFF7}, /* sky blue */
-            {0xD8CB2B, 0x6B640E, 0xF4EDA0}, /* yellow, darkened to stand out from white */
+            {0xD8CB2B, 0x6B640E, 0xF4EDA0}, /* yellow, darkened for contrast with white */
         },
     .ramp_near = 0,
     .ramp_far = 1,
 };
 
-/* The same hues; lines and bands change places, as on a dark page what is light stands out. */
+/* The same hues; line and band colours are exchanged, as light colours stand out on a dark page. */
 static const Theme dark = {
     .page = 0x12161C,
     .panel = 0x1A2028,
@@ -73,7 +73,7 @@ uint32_t theme_mix(uint32_t from, uint32_t to, double share) {
 }
 
 uint32_t theme_ramp(const Theme *theme, double share) {
-    /* Oklab: hue 104 to 295 degrees, chroma 0.135 or what sRGB can show, each as light as CIE L* is to be. */
+    /* Oklab: hue 104 to 295 degrees, chroma 0.135 or the most that sRGB can show, lightness fitted to CIE L*. */
     static const uint32_t stops[] = {0xFEF483, 0xC6E57E, 0x8AD482, 0x46C18C, 0x02A995, 0x0B8F95,
                                      0x08778E, 0x005E89, 0x04438D, 0x272879, 0x2E085E};
     enum { LAST = sizeof stops / sizeof stops[0] - 1 };

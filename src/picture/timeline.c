@@ -8,13 +8,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LOWEST_DECADE = -6, HIGHEST_DECADE = 3, LEAST_DECADES = 3, MOST_TIMES = 200 };
-static const double CURVE = 0.0024, LEAST_CURVE = 1.3; /* thickness, of the picture's height; pixels */
-static const double LEAST_TICKS = 5;                   /* ems between two times on the axis */
-static const double EVEN = 0.2;                        /* pixels */
+enum { LOWEST_DECADE = -6, HIGHEST_DECADE = 3, MIN_DECADES = 3, MAX_TICKS = 200 };
+static const double CURVE = 0.0024, MIN_CURVE = 1.3; /* thickness / the picture's height; pixels */
+static const double TICK_SPACING = 5;                /* ems between two times on the axis */
+static const double TOLERANCE = 0.2;                 /* pixels; largest deviation of a segment from the curve */
 #define MICRO "\xC2\xB5"
 
-/* For grey prints; the first is the run that the others are measured from. */
+/* Distinguishes runs in grey prints; the first run has no curve. */
 static const Dash dashes[RENDER_PANELS_MAX] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {5, 3, 0, 0},
                                                {1, 2, 0, 0}, {7, 2, 1, 2}, {3, 2, 3, 5}};
 
@@ -33,7 +33,7 @@ bool timeline_plan(Picture *picture, Error *error) {
             int end = (int)((long long)picture->frames * (i + 1) / points);
             double largest = NAN;
             for (int frame = first; frame < end; frame++)
-                largest = fmax(largest, picture_run_apart(picture, run, moment_stored(frame)));
+                largest = fmax(largest, picture_run_distance(picture, run, moment_stored(frame)));
             picture->curves[run * points + i] = (float)largest;
         }
     return true;
@@ -42,8 +42,8 @@ bool timeline_plan(Picture *picture, Error *error) {
 static int highest_decade(const Picture *picture) {
     double power = 1;
     int decade = 0;
-    while (power < picture->largest_apart && decade < HIGHEST_DECADE) power *= 10, decade++;
-    while (power / 10 >= picture->largest_apart && decade > LOWEST_DECADE + LEAST_DECADES) power /= 10, decade--;
+    while (power < picture->largest_distance && decade < HIGHEST_DECADE) power *= 10, decade++;
+    while (power / 10 >= picture->largest_distance && decade > LOWEST_DECADE + MIN_DECADES) power /= 10, decade--;
     return decade;
 }
 
@@ -53,32 +53,32 @@ static double x_at(const Picture *picture, double frame) {
     return plot->left + 0.5 + (plot->right - plot->left - 1) * frame / last;
 }
 
-/* Above the curves, for the names of the events. */
-static int lane(const Picture *picture) { return picture->layout.axis.pixels * 3 / 2; }
+/* Height of the lane above the curves, for the names of events. */
+static int lane_height(const Picture *picture) { return picture->layout.axis.pixels * 3 / 2; }
 
 static double y_of_decade(const Picture *picture, double decade) {
     const Rect *plot = &picture->layout.timeline;
     int highest = highest_decade(picture);
     double share = (fmin(decade, highest) - LOWEST_DECADE) / (highest - LOWEST_DECADE);
-    return plot->bottom - (plot->bottom - plot->top - lane(picture)) * share;
+    return plot->bottom - (plot->bottom - plot->top - lane_height(picture)) * share;
 }
 
 static double y_at(const Picture *picture, double metres) {
     return y_of_decade(picture, metres > 1e-6 ? log10(metres) : LOWEST_DECADE);
 }
 
-static double thickness(const Picture *picture) { return fmax(CURVE * picture->layout.height, LEAST_CURVE); }
+static double thickness(const Picture *picture) { return fmax(CURVE * picture->layout.height, MIN_CURVE); }
 
-/* The point of a curve after `i` up to which a straight line from there is off by less than EVEN: fewer pieces have fewer
-   joints, where their soft edges add up. */
-static int straight_to(const Picture *picture, const float *curve, int i) {
+/* The last point after `i` that a straight segment reaches with an error below TOLERANCE. Fewer segments have fewer
+   joints, where antialiased edges add up. */
+static int segment_end(const Picture *picture, const float *curve, int i) {
     double least = -HUGE_VAL, most = HUGE_VAL, y = y_at(picture, (double)curve[i]);
     int end = i + 1;
     for (int k = end; k < picture->curve_points && !isnan(curve[k]); k++) {
         double rise = y_at(picture, (double)curve[k]) - y, slope = rise / (k - i);
         if (slope < least || slope > most) break;
-        least = fmax(least, (rise - EVEN) / (k - i));
-        most = fmin(most, (rise + EVEN) / (k - i));
+        least = fmax(least, (rise - TOLERANCE) / (k - i));
+        most = fmin(most, (rise + TOLERANCE) / (k - i));
         end = k;
     }
     return end;
@@ -91,15 +91,15 @@ static void draw_curve(const Picture *picture, int run, Drawing *drawing) {
     clip.top -= 2, clip.bottom += 2;
     double every = (double)picture->frames / picture->curve_points;
     for (int i = 0, end; i + 1 < picture->curve_points && !isnan(curve[i]) && !isnan(curve[i + 1]); i = end) {
-        end = straight_to(picture, curve, i);
+        end = segment_end(picture, curve, i);
         Point from = {x_at(picture, i * every), y_at(picture, (double)curve[i])};
         Point to = {x_at(picture, end * every), y_at(picture, (double)curve[end])};
         stroke_dashed(drawing, from, to, &line, &clip);
     }
 }
 
-/* Every decade has a line, and every third one a name. No logarithm: half pixels must be rounded alike everywhere. */
-static void draw_decades(const Picture *picture, Drawing *drawing) {
+/* A line per decade, a label every third. No logarithm: rounding to pixels must be the same on every machine. */
+static void draw_distance_axis(const Picture *picture, Drawing *drawing) {
     static const char *const names[] = {"1 " MICRO "m", "1 mm", "1 m", "1 km"};
     const Layout *layout = &picture->layout;
     const Rect *plot = &layout->timeline;
@@ -116,12 +116,12 @@ static void draw_decades(const Picture *picture, Drawing *drawing) {
     }
 }
 
-/* s between two numbers on the axis: 0.1, 0.2, 0.5, 1, ... */
+/* s between two labels on the axis: 0.1, 0.2, 0.5, 1, ... */
 static double time_step(const Picture *picture) {
     static const double steps[] = {1, 2, 5};
     const Rect *plot = &picture->layout.timeline;
-    double duration = (picture->frames - 1) * (double)picture->panels[0]->dt, power = 1e-3;
-    double least = LEAST_TICKS * picture->layout.axis.pixels * duration / (plot->right - plot->left);
+    double duration = (picture->frames - 1) * (double)picture->runs[0]->dt, power = 1e-3;
+    double least = TICK_SPACING * picture->layout.axis.pixels * duration / (plot->right - plot->left);
     for (int i = 0; i < 30; i++) {
         if (steps[i % 3] * power >= least) return steps[i % 3] * power;
         if (i % 3 == 2) power *= 10;
@@ -129,14 +129,14 @@ static double time_step(const Picture *picture) {
     return HUGE_VAL;
 }
 
-static void draw_times(const Picture *picture, Drawing *drawing) {
+static void draw_time_axis(const Picture *picture, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *plot = &layout->timeline;
     if (layout->axis.glyphs == NULL) return;
-    double step = time_step(picture), dt = (double)picture->panels[0]->dt;
+    double step = time_step(picture), dt = (double)picture->runs[0]->dt;
     int baseline = plot->bottom + layout->axis_drop, unit = plot->right - font_width(&layout->axis, "s");
     font_add(drawing, &layout->axis, "s", unit, baseline, picture->theme->ink_soft);
-    for (int i = 0; i < MOST_TIMES && i * step / dt <= picture->frames - 1 + 1e-6; i++) {
+    for (int i = 0; i < MAX_TICKS && i * step / dt <= picture->frames - 1 + 1e-6; i++) {
         int x = (int)floor(x_at(picture, i * step / dt)), line = layout->hairline;
         char text[32];
         snprintf(text, sizeof text, "%g", i * step);
@@ -148,7 +148,7 @@ static void draw_times(const Picture *picture, Drawing *drawing) {
     }
 }
 
-/* A line over the whole height, and its name beside it: to its left where it would reach beyond `right`. */
+/* A line over the full height with its name at the right, or at the left if it would reach beyond `right`. */
 static void draw_event(const Picture *picture, int frame, const char *name, int right, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *plot = &layout->timeline;
@@ -160,15 +160,17 @@ static void draw_event(const Picture *picture, int frame, const char *name, int 
         font_add(drawing, &layout->axis, name, left, plot->top + layout->axis.pixels * 9 / 8, picture->theme->ink);
 }
 
-/* The earlier one keeps its name out of the later one's way. */
+/* The name of the earlier event must not reach the later one's line. */
 static void draw_events(const Picture *picture, Drawing *drawing) {
-    int impact = picture->events.impact, apart = picture->events.apart, end = picture->layout.timeline.right;
-    int x_impact = impact < 0 ? end : (int)x_at(picture, impact), x_apart = apart < 0 ? end : (int)x_at(picture, apart);
-    if (impact >= 0) draw_event(picture, impact, "impact", impact < apart ? x_apart : end, drawing);
-    if (apart >= 0) draw_event(picture, apart, "first body 1 mm apart", apart <= impact ? x_impact : end, drawing);
+    int impact = picture->events.impact, divergence = picture->events.divergence, end = picture->layout.timeline.right;
+    int x_impact = impact < 0 ? end : (int)x_at(picture, impact),
+        x_divergence = divergence < 0 ? end : (int)x_at(picture, divergence);
+    if (impact >= 0) draw_event(picture, impact, "impact", impact < divergence ? x_divergence : end, drawing);
+    if (divergence >= 0)
+        draw_event(picture, divergence, "first body 1 mm apart", divergence <= impact ? x_impact : end, drawing);
 }
 
-/* What the curves are, each run with a piece of its own. */
+/* The title of the curves, and a sample line for each run. */
 static void draw_key(const Picture *picture, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Font *font = &layout->method;
@@ -191,16 +193,16 @@ static void draw_key(const Picture *picture, Drawing *drawing) {
     }
 }
 
-void timeline_draw_still(const Picture *picture, Drawing *drawing) {
+void timeline_draw_static(const Picture *picture, Drawing *drawing) {
     if (!is_shown(picture)) return;
     const Rect *plot = &picture->layout.timeline;
     int line = picture->layout.hairline;
     drawing_add_rect(drawing, *plot, picture->theme->panel);
-    draw_decades(picture, drawing);
+    draw_distance_axis(picture, drawing);
     draw_events(picture, drawing);
     drawing_add_rect(drawing, (Rect){plot->left, plot->bottom, plot->right, plot->bottom + line},
                      picture->theme->frame);
-    draw_times(picture, drawing);
+    draw_time_axis(picture, drawing);
     for (int run = 1; run < picture->count; run++) draw_curve(picture, run, drawing);
     draw_key(picture, drawing);
 }
@@ -208,14 +210,14 @@ void timeline_draw_still(const Picture *picture, Drawing *drawing) {
 void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawing) {
     if (!is_shown(picture)) return;
     const Rect *plot = &picture->layout.timeline;
-    double x = x_at(picture, moment.frame + moment.part), radius = 1.6 * thickness(picture);
+    double x = x_at(picture, moment.frame + moment.fraction), radius = 1.6 * thickness(picture);
     const Rect clip = {plot->left - 8, plot->top - 8, plot->right + 8, plot->bottom + 8};
-    stroke_line(drawing, (Point){x, plot->top + lane(picture)}, (Point){x, plot->bottom},
+    stroke_line(drawing, (Point){x, plot->top + lane_height(picture)}, (Point){x, plot->bottom},
                 1.5 * picture->layout.hairline, picture->theme->ink, &clip);
     for (int run = 1; run < picture->count; run++) {
-        double apart = picture_run_apart(picture, run, moment);
-        if (isnan(apart)) continue;
-        stroke_dot(drawing, (Point){x, y_at(picture, apart)}, radius, picture->theme->bodies[run].fill,
+        double distance = picture_run_distance(picture, run, moment);
+        if (isnan(distance)) continue;
+        stroke_dot(drawing, (Point){x, y_at(picture, distance)}, radius, picture->theme->bodies[run].fill,
                    picture->theme->ink, &clip);
     }
 }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest distance of each run from the first over time, below the panels; logarithmic, as errors grow by powers. */
+/* Below the panels: the largest distance of each run from the first over time; logarithmic, as errors grow by powers
+   of ten. */
 #pragma once
 #include "picture/picture.h"
 
-/* Fills the picture's curves where the look shows them. */
+/* Fills the picture's curves if the look shows them. */
 bool timeline_plan(Picture *picture, Error *error);
 
-/* Axes, curves and marks of the events; the words above. */
-void timeline_draw_still(const Picture *picture, Drawing *drawing);
+/* Axes, curves, event lines, title and key. */
+void timeline_draw_static(const Picture *picture, Drawing *drawing);
 
-/* Where the moment is, and each run there. */
+/* The current time and the runs' current distances. */
 void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawing);

@@ -15,23 +15,23 @@ static void add(FrameTexts *texts, const char *key, const char *value) {
 }
 
 void frame_part_text(char *text, size_t size, Moment moment) {
-    snprintf(text, size, "%.0f/%d", moment.part * moment.slow, moment.slow);
+    snprintf(text, size, "%.0f/%d", moment.fraction * moment.slow, moment.slow);
 }
 
 void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) {
     texts->methods[0] = texts->states[0] = '\0';
     texts->count = 0;
     for (int i = 0; i < picture->count; i++) {
-        const Trajectory *run = picture->panels[i];
+        const Trajectory *run = picture->runs[i];
         char hash[20];
-        int shown = picture_panel_frame(picture, i, moment.frame);
+        int shown = picture_run_frame(picture, i, moment.frame);
         snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
         append(texts->methods, sizeof texts->methods, run->method);
         append(texts->states, sizeof texts->states, hash);
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
-    add(texts, "Scene", picture->panels[0]->scene);
+    add(texts, "Scene", picture->runs[0]->scene);
     add(texts, "Method", texts->methods);
     add(texts, "Frame", texts->frame);
     if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the file of a picture tells of its origin. No date: the same picture gives the same file. */
+/* Text entries of a picture's PNG file that state its origin. No date: the same picture gives the same file. */
 #pragma once
 #include "image/image.h"
 #include "picture/picture.h"
@@ -10,15 +10,16 @@ enum {
     FRAME_STATES_SIZE = RENDER_PANELS_MAX * 20
 };
 
-/* The entries point into it. */
+/* `entries` point into this struct. */
 typedef struct FrameTexts {
     char methods[FRAME_METHODS_SIZE], frame[16], part[16], states[FRAME_STATES_SIZE];
     ImageText entries[FRAME_TEXTS_MAX];
     int count;
 } FrameTexts;
 
-/* All panels joined: Scene, Method, Frame, State, Software; "Part" of the way to the next frame, or which "Card" it is. */
+/* Fills in Scene, Method, Frame, State (all panels joined) and Software; for interpolated pictures also "Part", for
+   cards "Card". */
 void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment);
 
-/* "1/4" */
+/* The interpolated position, as "1/4". */
 void frame_part_text(char *text, size_t size, Moment moment);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the manifest says. */
+/* The content of the manifest. */
 #include "render/manifest_print.h"
 
 #include "common/file.h"
 #include "common/hash.h"
-#include "common/json.h"
+#include "common/json_write.h"
 #include "render/frame_texts.h"
 #include "render/sink.h"
 
@@ -17,7 +17,7 @@ static uint64_t add(uint64_t hash, const void *data, size_t size) {
     return hash_xxh3(parts, sizeof parts);
 }
 
-/* All of a run that a picture may show. */
+/* Hashes everything of a run that a picture can show. */
 static uint64_t hash_run(const Trajectory *run) {
     size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
     uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
@@ -32,10 +32,10 @@ static uint64_t hash_run(const Trajectory *run) {
     return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
 }
 
-static void put_runs(JsonWriter *json, const Manifest *manifest) {
+static void write_runs(JsonWriter *json, const Manifest *manifest) {
     json_begin_array(json, "runs", JSON_LINES);
     for (int i = 0; i < manifest->picture->count; i++) {
-        const Trajectory *run = manifest->picture->panels[i];
+        const Trajectory *run = manifest->picture->runs[i];
         json_begin_object(json, NULL, JSON_ONE_LINE);
         json_put_text(json, "scene", run->scene);
         json_put_hash(json, "scene_hash", run->scene_hash);
@@ -50,7 +50,7 @@ static void put_runs(JsonWriter *json, const Manifest *manifest) {
     json_end(json);
 }
 
-static void put_look(JsonWriter *json, const RenderLook *look) {
+static void write_look(JsonWriter *json, const RenderLook *look) {
     json_begin_object(json, "look", JSON_LINES);
     json_put_text(json, "compare", look_compare_names[look->compare]);
     json_put_text(json, "camera", look_camera_names[look->camera]);
@@ -62,8 +62,8 @@ static void put_look(JsonWriter *json, const RenderLook *look) {
     json_end(json);
 }
 
-/* Frames of the run, and how many pictures of all else. */
-static void put_order(JsonWriter *json, const Manifest *manifest) {
+/* The range of frames, and the number of pictures of everything else. */
+static void write_order(JsonWriter *json, const Manifest *manifest) {
     const MomentPlan *plan = manifest->plan;
     json_begin_object(json, "order", JSON_LINES);
     json_put_int(json, "first", plan->first);
@@ -79,7 +79,7 @@ static void put_order(JsonWriter *json, const Manifest *manifest) {
     json_end(json);
 }
 
-static void put_head(JsonWriter *json, const Manifest *manifest) {
+static void write_head(JsonWriter *json, const Manifest *manifest) {
     const RenderOptions *options = manifest->options;
     json_begin_object(json, NULL, JSON_LINES);
     json_put_text(json, "twinbox", TWINBOX_VERSION);
@@ -88,17 +88,17 @@ static void put_head(JsonWriter *json, const Manifest *manifest) {
     json_put_int(json, NULL, options->width);
     json_put_int(json, NULL, options->height);
     json_end(json);
-    json_put_number(json, "dt", (double)manifest->picture->panels[0]->dt);
+    json_put_number(json, "dt", (double)manifest->picture->runs[0]->dt);
     json_put_text(json, "png", options->small ? "small" : "fast");
     json_put_text(json, "title", options->title);
     json_put_text(json, "end", options->look.end);
-    put_runs(json, manifest);
-    put_look(json, &options->look);
-    put_order(json, manifest);
+    write_runs(json, manifest);
+    write_look(json, &options->look);
+    write_order(json, manifest);
     json_begin_array(json, "pictures", JSON_LINES);
 }
 
-static void put_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
+static void write_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
     static const char *const kinds[] = {"frame", "between", "title", "end"};
     const Picture *picture = manifest->picture;
     Moment moment = moments_at(manifest->plan, index);
@@ -112,8 +112,7 @@ static void put_picture(JsonWriter *json, const Manifest *manifest, int index, P
     if (moment.kind == MOMENT_BETWEEN) json_put_text(json, "part", text);
     json_begin_array(json, "states", JSON_ONE_LINE);
     for (int i = 0; i < picture->count; i++)
-        json_put_hash(json, NULL,
-                      trajectory_frame_hash(picture->panels[i], picture_panel_frame(picture, i, moment.frame)));
+        json_put_hash(json, NULL, trajectory_frame_hash(picture->runs[i], picture_run_frame(picture, i, moment.frame)));
     json_end(json);
     json_put_hash(json, "pixels", hashes.pixels);
     json_put_hash(json, "file_hash", hashes.file);
@@ -122,13 +121,13 @@ static void put_picture(JsonWriter *json, const Manifest *manifest, int index, P
 
 void manifest_print_head(FILE *out, const void *manifest) {
     JsonWriter json = {.out = out};
-    put_head(&json, manifest);
+    write_head(&json, manifest);
 }
 
 void manifest_print_line(FILE *out, const void *context) {
     const ManifestLine *line = context;
     JsonWriter json = {.out = out};
-    put_picture(&json, line->manifest, line->index, line->hashes);
+    write_picture(&json, line->manifest, line->index, line->hashes);
 }
 
 void manifest_print_journal(FILE *out, const void *context) {
@@ -142,9 +141,9 @@ void manifest_print_journal(FILE *out, const void *context) {
 void manifest_print_whole(FILE *out, const void *context) {
     const Manifest *manifest = context;
     JsonWriter json = {.out = out};
-    put_head(&json, manifest);
+    write_head(&json, manifest);
     for (int i = manifest->first; i <= manifest->last; i++)
-        put_picture(&json, manifest, i, manifest->hashes[i - manifest->first]);
+        write_picture(&json, manifest, i, manifest->hashes[i - manifest->first]);
     json_end(&json);
     json_end(&json);
 }

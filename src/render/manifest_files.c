@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The manifest on the disk: as it grows, and what of an earlier one still holds. */
+/* The manifest on disk: its journal, and what remains valid of an earlier one. */
 #include "render/manifest_print.h"
 
 #include "common/file.h"
@@ -17,8 +17,8 @@ enum { LINE_MAX_SIZE = 512 };
 /* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
 enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
 
-/* Every manifest begins so. */
-static const char beginning[] = "{\n  \"twinbox\": \"";
+/* The start of every manifest. */
+static const char signature[] = "{\n  \"twinbox\": \"";
 
 static char *join(const char *directory, const char *name) {
     size_t size = strlen(directory) + strlen(name) + 2;
@@ -58,23 +58,23 @@ static int index_of(const char *line) {
     return index <= INT32_MAX ? (int)index : -1;
 }
 
-/* Takes the hashes from the end of a line, where the line is the one that belongs there with these hashes. */
+/* Takes the hashes from a line, if the line equals the expected one with these hashes. */
 static void recall_line(Manifest *manifest, const char *line, size_t length) {
     int index = index_of(line);
     if (index < manifest->first || index > manifest->last || length < PIXELS_FROM_END) return;
     const char *end = line + length;
     PictureHashes hashes = {strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
     size_t size;
-    char *wanted = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
-    /* The wanted one ends in a line end. */
-    if (wanted != NULL && size == length + 1 && memcmp(wanted, line, length) == 0) {
+    char *expected = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
+    /* `expected` ends with a newline. */
+    if (expected != NULL && size == length + 1 && memcmp(expected, line, length) == 0) {
         manifest->hashes[index - manifest->first] = hashes;
         manifest->known[index - manifest->first] = true;
     }
-    free(wanted);
+    free(expected);
 }
 
-/* A last line without its end was being written when the program was killed. */
+/* An incomplete last line was cut off by a kill and is ignored. */
 static void recall_lines(Manifest *manifest, char *text) {
     for (char *line = text, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         while (*line == ' ') line++;
@@ -91,7 +91,7 @@ static int line_of_difference(const char *a, const char *b) {
     return line;
 }
 
-/* False, and why, where the file is not there or is of other pictures. */
+/* False, with `why` set, if the file is missing or of other pictures. */
 static bool recall_file(Manifest *manifest, const char *path, char *why, size_t why_size) {
     Error error = {0};
     size_t size, head = strlen(manifest->head), count = (size_t)(manifest->last - manifest->first) + 1;
@@ -100,7 +100,7 @@ static bool recall_file(Manifest *manifest, const char *path, char *why, size_t 
     if (same)
         recall_lines(manifest, text + head);
     else if (text != NULL)
-        snprintf(why, why_size, "%s:%d is of other runs, options or another version", path,
+        snprintf(why, why_size, "%s:%d differs: other runs, options or version", path,
                  line_of_difference(text, manifest->head));
     else
         snprintf(why, why_size, "%s", error.message);
@@ -110,33 +110,33 @@ static bool recall_file(Manifest *manifest, const char *path, char *why, size_t 
 
 void manifest_recall(Manifest *manifest, char *why, size_t size) {
     char other[256];
-    manifest->holds = recall_file(manifest, manifest->path, why, size);
+    manifest->valid = recall_file(manifest, manifest->path, why, size);
     bool grows = access(manifest->journal, F_OK) == 0 && recall_file(manifest, manifest->journal, other, sizeof other);
-    if (manifest->holds || grows) why[0] = '\0';
+    if (manifest->valid || grows) why[0] = '\0';
 }
 
-/* What is no manifest may be somebody's work. */
-static bool check_own(const char *path, Error *error) {
+/* A file that is not a manifest belongs to the user and must not be overwritten. */
+static bool check_overwritable(const char *path, Error *error) {
     struct stat status;
-    char text[sizeof beginning] = "";
+    char text[sizeof signature] = "";
     if (lstat(path, &status) != 0 && errno == ENOENT) return true;
     int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     ssize_t size = file >= 0 ? read(file, text, sizeof text - 1) : -1;
     if (file >= 0) close(file);
     if (size == 0 && S_ISREG(status.st_mode)) return true;
-    return (size > 0 && strcmp(text, beginning) == 0) ||
-           error_input(error, path, "is no manifest of twinbox: move it away, or choose another folder");
+    return (size > 0 && strcmp(text, signature) == 0) ||
+           error_input(error, path, "is not a manifest of twinbox; move it away or choose another folder");
 }
 
 bool manifest_begin(Manifest *manifest, Error *error) {
-    if (!check_own(manifest->path, error) || !check_own(manifest->journal, error)) return false;
+    if (!check_overwritable(manifest->path, error) || !check_overwritable(manifest->journal, error)) return false;
     size_t size;
     char *text = file_print(manifest_print_journal, manifest, &size);
     bool ok =
         text != NULL ? file_write_soon(manifest->journal, text, size, error) : error_memory(error, manifest->journal);
     free(text);
     if (!ok) return false;
-    if (!manifest->holds) unlink(manifest->path);
+    if (!manifest->valid) unlink(manifest->path);
     manifest->out = fopen(manifest->journal, "a");
     return manifest->out != NULL || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
 }

@@ -4,10 +4,10 @@
 #include <limits.h>
 #include <math.h>
 
-/* s of the run: enough to see the bomb come, and the boxes fly. */
+/* s of simulated time: enough to see the bomb arrive and the boxes fly */
 static const double slow_before = 0.15, slow_after = 0.6;
 
-/* s that a card of few words takes to read */
+/* s, time to read a card */
 static const double card_seconds = 2;
 
 static int first_impact(const Trajectory *const *panels, int count) {
@@ -21,12 +21,12 @@ static int first_impact(const Trajectory *const *panels, int count) {
 
 static double frames_of(double seconds, double dt) { return floor(seconds / dt + 0.5); }
 
-/* At least one: steps may be longer than what they are to show. */
-static double some_frames_of(double seconds, double dt) { return fmax(1, frames_of(seconds, dt)); }
+/* At least 1, as time steps may be longer than `seconds`. */
+static double at_least_one_frame(double seconds, double dt) { return fmax(1, frames_of(seconds, dt)); }
 
 static void plan_slow(MomentPlan *plan, int impact, int slow, double dt) {
-    plan->slow_first = (int)fmax(plan->first, impact - some_frames_of(slow_before, dt));
-    plan->slow_last = (int)fmin(plan->last, impact + some_frames_of(slow_after, dt));
+    plan->slow_first = (int)fmax(plan->first, impact - at_least_one_frame(slow_before, dt));
+    plan->slow_last = (int)fmin(plan->last, impact + at_least_one_frame(slow_after, dt));
     if (plan->slow_first >= plan->slow_last)
         plan->slow_last = plan->slow_first = plan->first;
     else
@@ -35,21 +35,21 @@ static void plan_slow(MomentPlan *plan, int impact, int slow, double dt) {
 
 static bool check(const RenderOptions *options, Error *error) {
     if (options->slow < 0 || options->slow > RENDER_SLOW_MAX)
-        return error_input(error, "render", "%d times slower asked for; it can be up to %d", options->slow,
-                           RENDER_SLOW_MAX);
+        return error_input(error, "render", "the slow-motion factor must be 0 to %d (got %d)", RENDER_SLOW_MAX,
+                           options->slow);
     if (!(options->hold >= 0) || options->hold > RENDER_HOLD_MAX)
-        return error_input(error, "render", "the end to be held for %g s; it can be up to %d", options->hold,
-                           RENDER_HOLD_MAX);
+        return error_input(error, "render", "the last frame can be held for 0 to %d s (got %g)", RENDER_HOLD_MAX,
+                           options->hold);
     return true;
 }
 
 bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_count, int first, int last,
                   const RenderOptions *options, Error *error) {
-    double dt = (double)panels[0]->dt, hold = frames_of(options->hold, dt), card = some_frames_of(card_seconds, dt);
+    double dt = (double)panels[0]->dt, hold = frames_of(options->hold, dt), card = at_least_one_frame(card_seconds, dt);
     *plan = (MomentPlan){.first = first, .last = last, .slow = 1, .slow_first = first, .slow_last = first};
     if (!check(options, error)) return false;
     if (hold + 2 * card + (double)RENDER_SLOW_MAX * (last + 1.0) > INT_MAX)
-        return error_input(error, "render", "more pictures than a sequence can have: steps of %g s are too short", dt);
+        return error_input(error, "render", "too many pictures for one sequence: time steps of %g s are too short", dt);
     plan->title = options->title_card ? (int)card : 0;
     plan->end = options->end_card ? (int)card : 0;
     plan->hold = (int)hold;

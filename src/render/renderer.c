@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A picture, a context and a canvas: single frames. */
+/* Combines a picture, a context and a canvas. */
 #include "render/renderer.h"
 
 #include "gl/canvas.h"
@@ -15,8 +15,8 @@ struct Renderer {
     Context context;
     GlFunctions gl;
     Canvas *canvas;
-    Drawing drawing, before; /* of this frame and of the one before */
-    bool follows;            /* the canvas and the caller's image hold `drawing` */
+    Drawing drawing, before; /* of this frame and of the previous one */
+    bool in_sync;            /* the canvas and the caller's image show `drawing` */
     bool *changed;           /* [height] */
 };
 
@@ -47,7 +47,7 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
     Picture picture;
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
     Renderer *renderer = NULL;
-    if (picture_dress(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
+    if (picture_apply_options(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
     if (renderer == NULL)
         picture_free(&picture);
     else
@@ -55,7 +55,7 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
     return renderer;
 }
 
-/* `changed` is NULL where everything is to be painted. */
+/* `changed` NULL: paint everything. */
 static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
     return context_make_current(&renderer->context, error) &&
            canvas_paint(renderer->canvas, &renderer->drawing, renderer->picture.theme->page, changed, image, error);
@@ -64,7 +64,7 @@ static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *
 static bool compose(Renderer *renderer, Moment moment, Error *error) {
     const int frame = moment.frame;
     if (frame < 0 || frame >= renderer->picture.frames)
-        return error_input(error, "render", "frame %d asked for; the frames are 0 to %d", frame,
+        return error_input(error, "render", "there is no frame %d; the frames are 0 to %d", frame,
                            renderer->picture.frames - 1);
     drawing_clear(&renderer->drawing);
     picture_draw(&renderer->picture, moment, &renderer->drawing);
@@ -72,22 +72,22 @@ static bool compose(Renderer *renderer, Moment moment, Error *error) {
 }
 
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
-    renderer->follows = false;
+    renderer->in_sync = false;
     return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
 }
 
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
     const Drawing before = renderer->drawing;
-    bool follows = renderer->follows;
-    renderer->follows = false; /* until all has gone well */
+    bool in_sync = renderer->in_sync;
+    renderer->in_sync = false; /* until this frame has succeeded */
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
     if (!compose(renderer, moment, error)) return false;
-    bool part = follows && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
+    bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
     if (!part) memset(renderer->changed, true, (size_t)image->height);
-    renderer->follows = paint(renderer, part ? renderer->changed : NULL, image, error);
-    return renderer->follows;
+    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
+    return renderer->in_sync;
 }
 
 void renderer_destroy(Renderer *renderer) {

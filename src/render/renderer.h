@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the processes of a sequence need of renderer.c. */
+/* The part of renderer.c that the workers of a sequence use. */
 #pragma once
 #include "picture/picture.h"
 #include "render/render.h"
 
-/* renderer_create() for a picture that is planned already, so that not every process has to. */
+/* Like renderer_create(), for a picture that is already planned. */
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error);
 
-/* Draws into the image that the last call drew into, for moments that follow each other: only rows that differ
-   from the one before are drawn and read, and *changed, of one flag a row, tells which. The first call draws all. */
+/* Draws the next moment of a sequence into the image of the previous call. Only rows that differ are painted and
+   read back; *changed has a flag per row. The first call draws all. */
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shares the frames of a sequence out to worker processes and listens to them. They are forked before any
-   OpenGL context is made: a context does not survive a fork. */
+/* Distributes the frames of a sequence over worker processes and reads their reports. Workers are forked before any
+   OpenGL context is created: a context does not survive a fork. */
 #include "common/file.h"
 #include "render/worker.h"
 
@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 typedef struct Worker {
-    pid_t process; /* 0 once it has ended */
-    int pipe;      /* -1 once it is closed */
+    pid_t process; /* 0 after it has ended */
+    int pipe;      /* -1 after it was closed */
 } Worker;
 
 typedef struct Sequence {
@@ -28,11 +28,11 @@ static bool choose_range(const RenderOptions *options, const Picture *picture, i
     *first = options->first;
     *last = options->last < 0 ? picture->frames - 1 : options->last;
     if (*first >= 0 && *first <= *last && *last < picture->frames) return true;
-    return error_input(error, "render", "frames %d to %d asked for; the frames are 0 to %d", *first, *last,
-                       picture->frames - 1);
+    return error_input(error, "render", "the frames must be a range within 0 to %d (got %d to %d)", picture->frames - 1,
+                       *first, *last);
 }
 
-/* In the child the pipes of workers forked before would keep these alive when the parent has gone. */
+/* The child closes the pipes of the workers forked before it; otherwise they would stay open after the parent's end. */
 static void run_child(const Sequence *sequence, int index, const WorkerJob *job, int pipe) {
     for (int i = 0; i < index; i++) close(sequence->workers[i].pipe);
     bool ok = worker_run(job, pipe);
@@ -41,7 +41,7 @@ static void run_child(const Sequence *sequence, int index, const WorkerJob *job,
 
 static bool start_worker(Sequence *sequence, int index, const WorkerJob *job, Error *error) {
     int ends[2];
-    if (pipe(ends) != 0) return error_system(error, "render", "cannot make a pipe: %s", strerror(errno));
+    if (pipe(ends) != 0) return error_system(error, "render", "cannot create a pipe: %s", strerror(errno));
     pid_t process = fork();
     if (process == 0) {
         close(ends[0]);
@@ -57,7 +57,7 @@ static bool start_worker(Sequence *sequence, int index, const WorkerJob *job, Er
     return true;
 }
 
-/* Neighbouring pictures go to the same worker, and no two shares differ by more than one picture. */
+/* Each worker gets consecutive pictures; the counts differ by at most one. */
 static bool start_workers(Sequence *sequence, WorkerJob job, int first, Error *error) {
     for (int i = 0; i < sequence->jobs; i++) {
         job.first = first + (int)((long long)sequence->total * i / sequence->jobs);
@@ -67,7 +67,7 @@ static bool start_workers(Sequence *sequence, WorkerJob job, int first, Error *e
     return true;
 }
 
-/* A worker still at work notices at its next report. */
+/* A running worker notices at its next report. */
 static void stop_listening(Sequence *sequence, Worker *worker) {
     if (worker->pipe < 0) return;
     close(worker->pipe);
@@ -81,9 +81,9 @@ static void await_end(Worker *worker, Error *error) {
     while (waitpid(worker->process, &status, 0) < 0 && errno == EINTR) continue;
     worker->process = 0;
     if (WIFSIGNALED(status))
-        error_system(error, "render", "a drawing process was ended by signal %d", WTERMSIG(status));
+        error_system(error, "render", "a drawing process was killed by signal %d", WTERMSIG(status));
     else if (WEXITSTATUS(status) != 0)
-        error_system(error, "render", "a drawing process ended without a word");
+        error_system(error, "render", "a drawing process failed without an error message");
 }
 
 static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
@@ -114,7 +114,7 @@ static bool wait_for_workers(Sequence *sequence, const Progress *progress, Error
     return true;
 }
 
-/* After an error the others end too; they are asked all before the first is waited for. */
+/* After an error, close all pipes first, then wait for the workers. */
 static void end_all(Sequence *sequence) {
     Error ignored = {0};
     if (sequence->workers == NULL) return;
@@ -134,7 +134,7 @@ static bool draw_all(Sequence *sequence, const WorkerJob *job, int first, const 
     return ok;
 }
 
-/* The pictures of the frames that the options ask for, drawn or kept; the manifest is open. */
+/* Draws or keeps the selected pictures; the manifest is open. */
 static bool make_pictures(WorkerJob *job, Manifest *manifest, RenderResult *result, const Progress *progress,
                           Error *error) {
     Sequence sequence = {.total = manifest->last - manifest->first + 1, .manifest = manifest};
@@ -149,14 +149,14 @@ static bool make_pictures(WorkerJob *job, Manifest *manifest, RenderResult *resu
     return true;
 }
 
-/* What is decided before the first picture; the picture is planned. */
+/* Everything before the first picture; `picture` is planned. */
 static bool make_sequence(Picture *picture, const RenderOptions *options, RenderResult *result,
                           const Progress *progress, Error *error) {
     MomentPlan plan;
     int first, last;
     if (!choose_range(options, picture, &first, &last, error) ||
-        !moments_plan(&plan, picture->panels, picture->count, first, last, options, error) ||
-        !picture_dress(picture, options, error) || !file_make_directory(options->directory, error))
+        !moments_plan(&plan, picture->runs, picture->count, first, last, options, error) ||
+        !picture_apply_options(picture, options, error) || !file_make_directory(options->directory, error))
         return false;
     result->first = first;
     result->last = moments_last(&plan);
@@ -172,14 +172,15 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
                      RenderResult *result, const Progress *progress, Error *error) {
     Picture picture;
-    RenderResult unheard;
-    if (result == NULL) result = &unheard;
+    RenderResult ignored;
+    if (result == NULL) result = &ignored;
     *result = (RenderResult){0};
     if (options->jobs < 1 || options->jobs > RENDER_JOBS_MAX)
-        return error_input(error, "render", "%d jobs asked for; there can be 1 to %d", options->jobs, RENDER_JOBS_MAX);
+        return error_input(error, "render", "the number of jobs must be 1 to %d (got %d)", RENDER_JOBS_MAX,
+                           options->jobs);
     if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return false;
     bool ok = make_sequence(&picture, options, result, progress, error);
     picture_free(&picture);
-    if (result == &unheard) free(unheard.hashes);
+    if (result == &ignored) free(ignored.hashes);
     return ok;
 }

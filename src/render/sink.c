@@ -11,10 +11,9 @@
 typedef struct PngSink {
     const char *directory;
     PngEncoder *encoder;
-    char *path; /* room for that of any frame */
+    char *path; /* buffer for any frame's path */
     size_t path_size;
-    int first,
-        behind; /* what was written lies from the first to the one before `behind`: others there are on the disk */
+    int first, end; /* frames first <= index < end were written here; others in the folder are older */
 } PngSink;
 
 void sink_frame_name(char name[SINK_NAME_SIZE], int index) { snprintf(name, SINK_NAME_SIZE, "frame_%06d.png", index); }
@@ -35,20 +34,20 @@ static bool write_png(void *context, int index, const Image *image, const bool *
         !file_write_soon(sink->path, data, size, error))
         return false;
     *hash = hash_xxh3(data, size);
-    if (sink->behind == 0) sink->first = index;
-    sink->behind = index + 1;
+    if (sink->end == 0) sink->first = index;
+    sink->end = index + 1;
     return true;
 }
 
-/* Once for all: the disk takes many files nearly as fast as one. */
+/* Once, at the end: syncing many files takes hardly longer than one. */
 static bool close_png(void *context, Error *error) {
     PngSink *sink = context;
     bool ok = true;
-    for (int index = sink->first; ok && index < sink->behind; index++) {
+    for (int index = sink->first; ok && index < sink->end; index++) {
         sink_frame_path(sink->path, sink->path_size, sink->directory, index);
         ok = file_sync(sink->path, error);
     }
-    ok = ok && (sink->behind == 0 || file_sync(sink->directory, error));
+    ok = ok && (sink->end == 0 || file_sync(sink->directory, error));
     png_encoder_destroy(sink->encoder);
     free(sink->path);
     free(sink);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The renderer's frames are opaque: drawn once on black and once on white, the difference is what nothing covers. */
+/* Frames are opaque: drawing on black and on white gives alpha from the difference. */
 #include "render/still.h"
 
 #include "gl/canvas.h"
@@ -17,9 +17,9 @@ struct Still {
 };
 
 static bool set_up(Still *still, int width, int height, Error *error) {
-    if (width < 1 || height < 1 || width > RENDER_LARGEST_SIDE || height > RENDER_LARGEST_SIDE)
-        return error_input(error, "render", "a picture of %d x %d pixels asked for; each side can be 1 to %d", width,
-                           height, RENDER_LARGEST_SIDE);
+    if (width < 1 || height < 1 || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
+        return error_input(error, "render", "each side of the picture must be 1 to %d pixels (got %d x %d)",
+                           RENDER_SIDE_MAX, width, height);
     if ((still->on_white = image_create(width, height, error)) == NULL ||
         !context_create(&still->context, CONTEXT_AUTO, error) ||
         !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
@@ -48,12 +48,12 @@ void still_destroy(Still *still) {
     free(still);
 }
 
-/* A picture of the panel that has the colours, alone and without margins. */
+/* A picture of one panel without margins, in the requested run's colours. */
 static Picture plan(const Still *still, const StillShot *shot) {
     Picture picture = {.count = shot->colours + 1, .frames = shot->run->frames, .camera = shot->camera};
     for (int i = 0; i <= shot->colours; i++) {
         picture.layout.panels[i] = (Rect){0, 0, still->on_white->width, still->on_white->height};
-        picture.panels[i] = shot->run;
+        picture.runs[i] = shot->run;
     }
     picture.theme = theme_get(LOOK_LIGHT);
     return picture;
@@ -68,7 +68,7 @@ static void draw_bodies(const Picture *picture, const StillShot *shot, Drawing *
     if (shot->run->bomb >= 0) body_draw(picture, run, run, moment, shot->run->bomb, drawing);
 }
 
-/* Of a pixel on black and on white. */
+/* Computes colour and alpha of a pixel from its values on black and on white. */
 static void take_alpha(uint8_t *black, const uint8_t *white) {
     int alpha = 255 - (white[1] - black[1]);
     for (int i = 0; i < 3; i++) {

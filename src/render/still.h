@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bodies of one frame without anything around them, on nothing: for figures, which bring their own words. */
+/* The bodies of one frame on a transparent background, without grid, axes or text: for figures. */
 #pragma once
 #include "picture/camera.h"
 #include "render/render.h"
 
-/* What of a frame is drawn. */
+/* The bodies to draw. */
 typedef enum StillParts { STILL_FIXED = 1, STILL_MOVING = 2, STILL_ALL = 3 } StillParts;
 
 typedef struct StillShot {
     const Trajectory *run;
-    int frame, colours; /* colours: those of the panel of this number, 0 .. RENDER_PANELS_MAX - 1 */
+    int frame, colours; /* colours: of the run with this index, 0 .. RENDER_PANELS_MAX - 1 */
     StillParts parts;
-    Camera camera; /* of the whole image */
+    Camera camera; /* for the whole image */
 } StillShot;
 
 typedef struct Still Still;
 
-/* For images of this size, each side 1 .. RENDER_LARGEST_SIDE pixels. Sets Mesa's environment variables (context.c). */
+/* For images of this size, each side 1 .. RENDER_SIDE_MAX pixels. Sets Mesa's environment variables (context.c). */
 Still *still_create(int width, int height, Error *error);
 void still_destroy(Still *still);
 
-/* Draws into an image of that size; its alpha tells how much of a pixel bodies cover. */
+/* Draws into an image of that size, with straight alpha. */
 bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error);

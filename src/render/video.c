@@ -13,16 +13,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 64, REST = 32 /* bytes that a name of ours is longer */ };
+enum { ARGUMENTS_MAX = 64, SUFFIX_SIZE = 32 /* bytes that temporary names add */ };
 
 typedef struct VideoFormat {
     const char *ending;
-    bool halves_colour;      /* 4:2:0: both sides must be even */
-    double fastest;          /* Hz; 0: any */
-    const char *encoder[24]; /* arguments of ffmpeg */
+    bool subsampled;         /* 4:2:0 subsampling: both sides must be even */
+    double max_rate;         /* highest frame rate, Hz; 0: any */
+    const char *encoder[24]; /* arguments for ffmpeg */
 } VideoFormat;
 
-/* BT.709 said and meant: players otherwise guess the matrix by the size of the picture. */
+/* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
 #define BT709 \
     "-vf", "scale=out_color_matrix=bt709", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"
 
@@ -32,7 +32,7 @@ static const VideoFormat formats[] = {
      true,
      0,
      {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"}},
-    /* Viewers show a frame of one hundredth of a second for ten. Areas of one colour stay so without dithering. */
+    /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform. */
     {".gif", false, 50, {"-lavfi", "paletteuse=dither=none", "-fps_mode", "passthrough"}},
 };
 
@@ -45,13 +45,13 @@ static const VideoFormat *find_format(const char *path) {
     return NULL;
 }
 
-/* A folder that is missing is made now: after all has been drawn is no time to hear that it cannot be. */
-static bool check_place(const char *path, Error *error) {
+/* Creates a missing folder now, so that an error appears before the drawing. */
+static bool check_destination(const char *path, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
     size_t length = strlen(path), folder_length = file_folder_length(path);
-    if (length >= PATH_MAX - REST) return error_input(error, path, "the name is too long");
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is no regular file");
+    if (length >= PATH_MAX - SUFFIX_SIZE) return error_input(error, path, "the name is too long");
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is not a regular file");
     snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
     if (access(folder, W_OK) == 0) return true;
     if (errno == ENOENT) return file_make_directory(folder, error);
@@ -60,10 +60,11 @@ static bool check_place(const char *path, Error *error) {
 
 bool video_check(const char *path, int width, int height, Error *error) {
     const VideoFormat *format = find_format(path);
-    if (format == NULL) return error_input(error, path, "the name of a video ends in .mp4, .webm or .gif");
-    if (format->halves_colour && (width % 2 != 0 || height % 2 != 0))
-        return error_input(error, path, "such a video needs even width and height (got %dx%d)", width, height);
-    return check_place(path, error);
+    if (format == NULL) return error_input(error, path, "the name of a video must end in .mp4, .webm or .gif");
+    if (format->subsampled && (width % 2 != 0 || height % 2 != 0))
+        return error_input(error, path, "width and height must be even for this video format (got %dx%d)", width,
+                           height);
+    return check_destination(path, error);
 }
 
 bool video_check_programs(Error *error) {
@@ -77,7 +78,7 @@ bool video_check_programs(Error *error) {
     return true;
 }
 
-/* Arguments of a program, the last NULL. */
+/* Arguments of a program, terminated by NULL. */
 typedef struct Arguments {
     const char *list[ARGUMENTS_MAX];
     int count;
@@ -90,12 +91,12 @@ static void add(Arguments *arguments, const char *const *more) {
 
 #define ADD(arguments, ...) add((arguments), (const char *const[]){__VA_ARGS__, NULL})
 
-/* Of one video. */
+/* State of one encoding. */
 typedef struct Encoding {
     const VideoOptions *options;
     const VideoFormat *format;
-    int width, height, every;
-    /* What is written beside the video. With "file:" a name is never taken for an option or an address. */
+    int width, height, stride;
+    /* Temporary files beside the video. The prefix "file:" prevents ffmpeg from reading a name as option or URL. */
     char part[PATH_MAX], palette[PATH_MAX];
     const Progress *progress;
 } Encoding;
@@ -105,27 +106,28 @@ typedef struct RawTarget {
     uint8_t *rgb;
 } RawTarget;
 
-static bool put_raw(void *context, const Image *image) {
+static bool write_raw(void *context, const Image *image) {
     RawTarget *target = context;
     size_t pixels = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < pixels; i++) memcpy(target->rgb + 3 * i, image->pixels + 4 * i, 3);
     return process_write(&target->process, target->rgb, 3 * pixels);
 }
 
-/* Feeds all pictures to an ffmpeg that makes of its input what the further arguments say. */
-static bool run_ffmpeg(const Encoding *encoding, const char *const *further, const char *output, Error *error) {
+/* Feeds all pictures to an ffmpeg with these further arguments. */
+static bool run_ffmpeg(const Encoding *encoding, const char *const *format_arguments, const char *output,
+                       Error *error) {
     char size[32], rate[32];
     Arguments arguments = {0};
     snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
-    snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->every);
+    snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
     ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
     ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
-    add(&arguments, further);
+    add(&arguments, format_arguments);
     ADD(&arguments, output);
     RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);
     bool stopped, ok = process_start(&target.process, arguments.list, error);
-    if (ok && !video_feed(encoding->options, encoding->every, encoding->width, encoding->height, put_raw, &target,
+    if (ok && !video_feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
                           &stopped, encoding->progress, error)) {
         process_kill(&target.process);
         ok = false;
@@ -136,7 +138,7 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *further, con
     return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", text);
 }
 
-/* A GIF has 256 colours: first those are found, then used. */
+/* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
 static bool run_for_gif(const Encoding *encoding, Error *error) {
     static const char *const find[] = {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-update", "1", NULL};
     Arguments use = {0};
@@ -146,7 +148,7 @@ static bool run_for_gif(const Encoding *encoding, Error *error) {
            run_ffmpeg(encoding, use.list, encoding->part, error);
 }
 
-/* Frames that a decoder finds in the video. */
+/* Counts the frames by decoding the video. */
 static bool count_frames(const char *path, int *count, Error *error) {
     Arguments arguments = {0};
     ADD(&arguments, "ffprobe", "-v", "error", "-select_streams", "v:0", "-count_frames", "-show_entries");
@@ -161,26 +163,27 @@ static bool count_frames(const char *path, int *count, Error *error) {
 
 static bool encode(const Encoding *encoding, Error *error) {
     const VideoOptions *options = encoding->options;
-    int wanted = (options->last - options->first) / encoding->every + 1, count;
+    int wanted = (options->last - options->first) / encoding->stride + 1, count;
     bool gif = strcmp(encoding->format->ending, ".gif") == 0;
     if (!(gif ? run_for_gif(encoding, error)
               : run_ffmpeg(encoding, encoding->format->encoder, encoding->part, error)) ||
         !count_frames(encoding->part, &count, error))
         return false;
-    if (count != wanted) return error_system(error, options->path, "the video has %d frames of %d", count, wanted);
+    if (count != wanted)
+        return error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
     return rename(strchr(encoding->part, ':') + 1, options->path) == 0 ||
            error_system(error, options->path, "%s", strerror(errno));
 }
 
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error) {
-    Encoding encoding = {.options = options, .every = 1, .progress = progress};
+    Encoding encoding = {.options = options, .stride = 1, .progress = progress};
     if (!video_frame_size(options, &encoding.width, &encoding.height, error) ||
         !video_check(options->path, encoding.width, encoding.height, error))
         return false;
     encoding.format = find_format(options->path);
-    /* A hair more is rounding. */
-    if (encoding.format->fastest > 0)
-        encoding.every = (int)fmax(1, ceil(options->frame_rate / encoding.format->fastest - 1e-3));
+    /* 1e-3: tolerance for rounding of the frame rate. */
+    if (encoding.format->max_rate > 0)
+        encoding.stride = (int)fmax(1, ceil(options->frame_rate / encoding.format->max_rate - 1e-3));
     snprintf(encoding.part, PATH_MAX, "file:%s.%ld.part%s", options->path, (long)getpid(), encoding.format->ending);
     snprintf(encoding.palette, PATH_MAX, "file:%s.%ld.part.png", options->path, (long)getpid());
     bool ok = encode(&encoding, error);

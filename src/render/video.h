@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A PNG sequence -> video: H.264, VP9 and GIF by ffmpeg, or raw frames (y4m.h) for programs of the reader's own. */
+/* Converts a PNG sequence to a video: H.264, VP9 and GIF by ffmpeg, or raw frames (y4m.h) for other programs. */
 #pragma once
 #include "render/render.h"
 
 typedef struct VideoOptions {
     const char *directory;       /* of frame_000000.png ... */
-    int first, last;             /* pictures, both included */
+    int first, last;             /* pictures, inclusive */
     double frame_rate;           /* Hz */
-    const PictureHashes *hashes; /* [last - first + 1], as drawn; NULL: whatever is there counts */
+    const PictureHashes *hashes; /* [last - first + 1], as drawn; NULL: not checked */
     const char *path;            /* ends in .mp4, .webm or .gif */
 } VideoOptions;
 
-/* True where a video may have that name and size: its folder is there, or could be made, no folder has its name.
-   ERROR_INPUT or ERROR_SYSTEM says why not. */
+/* Checks name and size of a video, and creates its folder if missing. ERROR_INPUT or ERROR_SYSTEM states the reason. */
 bool video_check(const char *path, int width, int height, Error *error);
 
-/* True where ffmpeg and ffprobe can be run. */
+/* Checks that ffmpeg and ffprobe can be run. */
 bool video_check_programs(Error *error);
 
-/* Every picture is decoded and checked here and handed on raw, since ffmpeg passes over PNGs that are missing or damaged;
-   the frames of the video are counted before it is put in place. A GIF, whose frames last whole hundredths of a second,
-   and two at least, shows every second picture of 60 Hz. */
+/* Every picture is decoded and checked here and passed on raw, as ffmpeg skips missing or damaged PNGs. The video's
+   frames are counted before the file appears. A GIF, whose frames last at least 2/100 s, shows every second picture
+   of 60 Hz. */
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error);
 
-/* The same pictures as y4m into an open file; `path` of the options is its name for messages. Only regular files, pipes
-   and the like: it is not put in place whole. A pipe that nobody reads is an error where SIGPIPE is ignored. */
+/* Writes the same pictures as y4m to an open file; options->path is its name in messages. The output is written in
+   place, not renamed when complete. A closed pipe is an error if SIGPIPE is ignored. */
 bool video_write_y4m(const VideoOptions *options, int file, const Progress *progress, Error *error);

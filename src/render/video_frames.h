@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pictures of a video, read back and checked, one after the other. */
+/* Reads back and checks the pictures of a video, one after another. */
 #pragma once
 #include "image/image.h"
 #include "render/video.h"
 
-/* Takes a picture; false where no more are wanted. */
-typedef bool (*VideoPut)(void *context, const Image *image);
+/* Consumes a picture; false if it needs no more. */
+typedef bool (*VideoWrite)(void *context, const Image *image);
 
-/* The size of all pictures: that of the first. */
+/* The size of the first picture, which all must have. */
 bool video_frame_size(const VideoOptions *options, int *width, int *height, Error *error);
 
-/* Puts every so many pictures from the first on, each whole, of this size and as it was drawn. *stopped is set where no
-   more were wanted. */
-bool video_feed(const VideoOptions *options, int every, int width, int height, VideoPut put, void *context,
+/* Passes every stride-th picture to `write_frame`, after checking its size and pixels. Sets *stopped if it returned
+   false. */
+bool video_feed(const VideoOptions *options, int stride, int width, int height, VideoWrite write_frame, void *context,
                 bool *stopped, const Progress *progress, Error *error);

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 typedef struct Y4mTarget {
-    int file, cause; /* errno of what failed */
+    int file, cause; /* cause: errno of the failed write */
     size_t size;
     uint8_t *frame;
 } Y4mTarget;
@@ -27,7 +27,7 @@ static bool write_all(Y4mTarget *target, const void *data, size_t size) {
     return true;
 }
 
-static bool put_y4m(void *context, const Image *image) {
+static bool write_y4m_frame(void *context, const Image *image) {
     Y4mTarget *target = context;
     y4m_frame(image, target->frame);
     return write_all(target, target->frame, target->size);
@@ -42,7 +42,7 @@ bool video_write_y4m(const VideoOptions *options, int file, const Progress *prog
     if (target.frame == NULL) return error_memory(error, options->path);
     y4m_header(header, width, height, options->frame_rate);
     bool stopped = !write_all(&target, header, strlen(header)), ok = true;
-    if (!stopped) ok = video_feed(options, 1, width, height, put_y4m, &target, &stopped, progress, error);
+    if (!stopped) ok = video_feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
     free(target.frame);
     return ok && (!stopped || error_system(error, options->path, "cannot write: %s", strerror(target.cause)));
 }

@@ -11,10 +11,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Bytes: far more than the file of a picture takes. */
+/* Bytes; far more than the largest picture file. */
 static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
-/* What a worker draws with. */
+/* State of a worker. */
 typedef struct Worker {
     const WorkerJob *job;
     Renderer *renderer;
@@ -26,8 +26,8 @@ typedef struct Worker {
 
 static bool send(int pipe, const WorkerReport *report) { return write(pipe, report, sizeof *report) == sizeof *report; }
 
-/* The file of an earlier call, byte by byte. */
-static bool is_there(const Worker *worker, int index, PictureHashes *hashes) {
+/* Whether the file of an earlier call exists with unchanged bytes. */
+static bool is_unchanged(const Worker *worker, int index, PictureHashes *hashes) {
     const Manifest *manifest = worker->job->manifest;
     char path[PATH_MAX];
     size_t size;
@@ -53,7 +53,7 @@ static bool prepare(Worker *worker, Error *error) {
 
 static bool draw_one(Worker *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
     const bool *changed;
-    /* Not before: there may be nothing to draw. */
+    /* Created on demand: possibly every picture is kept. */
     if (worker->renderer == NULL && !prepare(worker, error)) return false;
     frame_texts_fill(&worker->texts, worker->job->picture, moment);
     if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
@@ -68,15 +68,15 @@ static bool draw_all(Worker *worker, int pipe, Error *error) {
     const WorkerJob *job = worker->job;
     for (int index = job->first; index <= job->last; index++) {
         WorkerReport report = {.index = index};
-        report.kept = is_there(worker, index, &report.hashes);
+        report.kept = is_unchanged(worker, index, &report.hashes);
         if (!report.kept && !draw_one(worker, moments_at(job->plan, index), index, &report.hashes, error)) return false;
-        if (!send(pipe, &report)) return false; /* the parent has gone, or wants no more */
+        if (!send(pipe, &report)) return false; /* the parent has ended or cancelled */
     }
     return true;
 }
 
-/* An interrupt reaches the parent, which then stops listening; the worker ends between two frames and leaves
-   no half-written file. */
+/* An interrupt goes to the parent, which then closes the pipes; the worker ends between two frames and leaves no
+   partial file. */
 static void prepare_process(void) {
     signal(SIGINT, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);

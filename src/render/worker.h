@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A process that draws a range of pictures. Mesa rasterises one screen at a time in a process, so processes and
-   not threads share the work. */
+/* A process that draws a range of pictures. Processes rather than threads, as Mesa rasterises one screen at a time
+   per process. */
 #pragma once
 #include "render/manifest.h"
 
@@ -10,20 +10,20 @@ typedef struct WorkerJob {
     const Picture *picture;
     const RenderOptions *options;
     const MomentPlan *plan;
-    const Manifest *manifest; /* of an earlier call: pictures that it knows and that are still so are not drawn */
-    int first, last;          /* pictures, both included */
+    const Manifest *manifest; /* of an earlier call: known pictures whose files are unchanged are kept */
+    int first, last;          /* pictures, inclusive */
 } WorkerJob;
 
-/* What a worker writes to its pipe: of each picture, and the error that ends it. */
+/* What a worker writes to its pipe: one report per picture, or a final one with an error. */
 typedef struct WorkerReport {
-    Error error; /* ERROR_NONE: the picture is there */
+    Error error; /* ERROR_NONE: the picture is finished */
     int index;
-    bool kept; /* it was there before */
+    bool kept; /* the file is of an earlier call */
     PictureHashes hashes;
 } WorkerReport;
 
-_Static_assert(sizeof(WorkerReport) <= PIPE_BUF, "a report arrives whole");
+_Static_assert(sizeof(WorkerReport) <= PIPE_BUF, "write() of at most PIPE_BUF bytes is atomic");
 
-/* Draws the pictures of the job. Ends early when nobody listens any more. Runs in a process of its own, whose environment
-   it changes. True when all is done. */
+/* Draws the pictures of the job; ends early if the pipe is closed. Runs in its own process and changes its
+   environment. Returns true if all pictures are finished. */
 bool worker_run(const WorkerJob *job, int pipe);

@@ -17,7 +17,7 @@ void y4m_header(char header[Y4M_HEADER_SIZE], int width, int height, double fram
 
 size_t y4m_frame_size(int width, int height) { return FRAME_LINE_SIZE + 3 * (size_t)width * (size_t)height; }
 
-/* The nearest whole number to a / b; b > 0 and even. */
+/* a / b rounded to the nearest integer; b > 0 and even. */
 static int nearest(int a, int b) { return (a + b / 2 + 256 * b) / b - 256; }
 
 void y4m_frame(const Image *image, uint8_t *frame) {

@@ -2,8 +2,8 @@
 #include "report/approve_read.h"
 
 #include "common/array.h"
-#include "common/json.h"
 #include "image/sequence.h"
+#include "report/json_read.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,92 +11,142 @@
 
 enum { MAX_SIZE = 1 << 25 };
 
+/* The members that are needed. Others (verdict, fuzzy, masks) are skipped. */
+enum { FORMAT, EXPECTED, ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
+static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
+
 static bool is_plain_name(const char *name) {
     const char *ending = strrchr(name, '.');
     return name[0] != '.' && strchr(name, '/') == NULL && name_is_text(name) && ending != NULL &&
            (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
 }
 
-/* Copies a text that must be there, not be empty and fit. */
-static bool read_text(const Json *json, const JsonValue *object, const char *key, char *text, size_t size,
-                      Error *error) {
-    const JsonValue *value = json_need(json, object, key, JSON_STRING, error);
-    if (value == NULL) return false;
-    const size_t length = strlen(value->text);
-    if (length == 0 || length >= size)
-        return json_error(json, value, error, "'%s' must have 1 to %zu bytes", key, size - 1);
-    memcpy(text, value->text, length + 1);
-    return true;
+/* A string of 1 to `max` bytes, else NULL with error set; valid as long as the value is. */
+static const char *read_text(const JsonReader *json, const json_t *value, const char *key, size_t max, Error *error) {
+    const char *text = json_string_value(value);
+    size_t length = json_string_length(value);
+    if (length > 0 && length <= max) return text;
+    json_read_error(json, error, "'%s' must be a string of 1 to %zu bytes", key, max);
+    return NULL;
 }
 
-static bool read_flag(const Json *json, const JsonValue *object, const char *key, bool *flag, Error *error) {
-    const JsonValue *value = json_member(object, key);
-    *flag = value != NULL && value->kind == JSON_TRUE;
-    return (value != NULL && (value->kind == JSON_TRUE || value->kind == JSON_FALSE)) ||
-           json_error(json, value != NULL ? value : object, error, "'%s' must be true or false", key);
+static bool read_flag(const JsonReader *json, const json_t *item, const char *key, bool *flag, Error *error) {
+    const json_t *value = json_object_get(item, key);
+    *flag = json_is_true(value);
+    return json_is_true(value) || json_is_false(value) ||
+           json_read_error(json, error, "'%s' must be true or false", key);
 }
 
 /* null, or name, size and hash. */
-static bool read_file(const Json *json, const JsonValue *item, const char *key, ApprovalFile *file, Error *error) {
-    char digits[24];
-    const JsonValue *value = json_member(item, key);
-    if (value == NULL || value->kind == JSON_NULL) return true;
-    if (value->kind != JSON_OBJECT) return json_error(json, value, error, "'%s' must be null or a file", key);
-    if (!read_text(json, value, "name", file->name, sizeof file->name, error) ||
-        !read_text(json, value, "xxh3", digits, sizeof digits, error))
-        return false;
+static bool read_file(const JsonReader *json, const json_t *item, const char *key, ApprovalFile *file, Error *error) {
+    const json_t *value = json_object_get(item, key);
+    *file = (ApprovalFile){.name = ""};
+    if (value == NULL || json_is_null(value)) return true;
+    if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
+    file->name = read_text(json, json_object_get(value, "name"), "name", NAME_MAX, error);
+    if (file->name == NULL) return false;
     if (!is_plain_name(file->name))
-        return json_error(json, value, error, "a name must be that of a .png or .npz file, without a folder");
-    if (strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
-        return json_error(json, value, error, "a hash has 16 digits from 0 to f");
+        return json_read_error(json, error, "a name must be that of a .png or .npz file, without a folder");
+    const char *digits = json_string_value(json_object_get(value, "xxh3"));
+    if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
+        return json_read_error(json, error, "a hash has 16 digits from 0 to f");
     file->hash = strtoull(digits, NULL, 16);
     return true;
 }
 
-static bool read_item(const Json *json, const JsonValue *value, ApprovalItem *item, Error *error) {
-    *item = (ApprovalItem){.failed = false};
-    if (value->kind != JSON_OBJECT) return json_error(json, value, error, "a frame or trajectory must be an object");
+static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
+    if (!json_is_object(value)) return json_read_error(json, error, "a frame or trajectory must be an object");
     if (!read_flag(json, value, "failed", &item->failed, error) ||
         !read_flag(json, value, "shown", &item->shown, error) ||
         !read_file(json, value, "expected", &item->expected, error) ||
         !read_file(json, value, "actual", &item->actual, error))
         return false;
     return item->expected.name[0] != '\0' || item->actual.name[0] != '\0' ||
-           json_error(json, value, error, "neither an expected nor an actual file");
+           json_read_error(json, error, "neither an expected nor an actual file");
 }
 
-static bool read_items(const Json *json, const char *key, ApprovalList *list, Error *error) {
-    const JsonValue *items = json_need(json, json->values, key, JSON_ARRAY, error);
-    if (items == NULL) return false;
-    for (const JsonValue *value = json_first(items); value != NULL; value = json_next(items, value)) {
-        ApprovalItem item;
-        if (!read_item(json, value, &item, error)) return false;
-        if (!item.failed) continue;
-        if (!array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item))
-            return error_memory(error, json->path);
+static void free_names(const ApprovalItem *item) {
+    free((void *)item->expected.name);
+    free((void *)item->actual.name);
+}
+
+/* Appends a copy whose names outlive the value that they were read from. */
+static bool add_item(ApprovalList *list, ApprovalItem item) {
+    item.expected.name = strdup(item.expected.name);
+    item.actual.name = strdup(item.actual.name);
+    bool ok = item.expected.name != NULL && item.actual.name != NULL &&
+              array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item);
+    if (ok)
         list->items[list->count++] = item;
+    else
+        free_names(&item);
+    return ok;
+}
+
+static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
+    if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
+    for (bool more = !json_read_char(json, ']'); more;) {
+        ApprovalItem item;
+        const json_t *value = json_read_value(json, error);
+        if (value == NULL || !read_item(json, value, &item, error)) return false;
+        if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
+        if (!json_read_more(json, ']', &more, error)) return false;
     }
     return true;
 }
 
-static bool read_list(const Json *json, ApprovalList *list, Error *error) {
-    const JsonValue *whole = json->values, *format = NULL;
-    if (whole->kind == JSON_OBJECT) format = json_member(whole, "format");
-    if (format == NULL || format->kind != JSON_STRING || strcmp(format->text, "twinbox compare 1") != 0)
-        return json_error(json, whole, error, "this is no report of twinbox compare");
-    return read_text(json, whole, "expected", list->expected, sizeof list->expected, error) &&
-           read_text(json, whole, "actual", list->actual, sizeof list->actual, error) &&
-           read_items(json, "frames", list, error) && read_items(json, "trajectories", list, error);
+static bool read_member(JsonReader *json, int member, ApprovalList *list, Error *error) {
+    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, error);
+    const json_t *value = json_read_value(json, error);
+    if (value == NULL || member == MEMBERS) return value != NULL;
+    const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
+    if (text == NULL) return false;
+    if (member == FORMAT)
+        return strcmp(text, "twinbox compare 1") == 0 ||
+               json_read_error(json, error, "this is no report of twinbox compare");
+    strcpy(member == EXPECTED ? list->expected : list->actual, text);
+    return true;
+}
+
+/* The next member's key and colon. *member is MEMBERS for a key that is not in the list. */
+static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *error) {
+    const json_t *key = json_read_value(json, error);
+    if (key == NULL) return false;
+    if (!json_is_string(key)) return json_read_error(json, error, "a key must be a string");
+    *member = 0;
+    while (*member < MEMBERS && strcmp(json_string_value(key), members[*member]) != 0) ++*member;
+    if (*member < MEMBERS && seen[*member]) return json_read_error(json, error, "duplicate key");
+    if (*member < MEMBERS) seen[*member] = true;
+    return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
+}
+
+static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
+    bool seen[MEMBERS] = {false};
+    if (!json_read_char(json, '{')) return json_read_error(json, error, "this is no report of twinbox compare");
+    for (bool more = true; more;) {
+        int member = MEMBERS;
+        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
+            !json_read_more(json, '}', &more, error))
+            return false;
+    }
+    if (!json_read_end(json, error)) return false;
+    for (int i = 0; i < MEMBERS; i++)
+        if (!seen[i])
+            return error_input(error, json->path, "'%s' is missing: this is no report of twinbox compare", members[i]);
+    return true;
 }
 
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
-    Json json;
-    if (!json_read(&json, path, MAX_SIZE, error)) return false;
+    JsonReader json;
+    if (!json_read_open(&json, path, MAX_SIZE, error)) return false;
     *list = (ApprovalList){.count = 0};
     bool ok = read_list(&json, list, error);
-    json_free(&json);
+    json_read_close(&json);
     if (!ok) approval_free(list);
     return ok;
 }
 
-void approval_free(ApprovalList *list) { free(list->items); }
+void approval_free(ApprovalList *list) {
+    for (size_t i = 0; i < list->count; i++) free_names(&list->items[i]);
+    free(list->items);
+}

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The failures that results.json tells of. Only approve.c includes this. */
+/* The failures that results.json lists. Only approve.c includes this. */
 #pragma once
 #include "common/error.h"
 
@@ -7,10 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { APPROVAL_NAME = NAME_MAX + 1 };
-
 typedef struct ApprovalFile {
-    char name[APPROVAL_NAME]; /* empty: there was none */
+    const char *name; /* malloc'ed; empty: there was no file */
     uint64_t hash;
 } ApprovalFile;
 
@@ -25,7 +23,7 @@ typedef struct ApprovalList {
     size_t count, capacity;
 } ApprovalList;
 
-/* ERROR_INPUT, with path:line, for what compare would not have written: above all a name with a folder in it, a hidden one,
-   or one of neither .png nor .npz. On failure nothing is to be freed. */
+/* ERROR_INPUT, with path:line:column, for what compare would not have written: above all a name with a folder in it, a
+   hidden one, or one of neither .png nor .npz. On failure nothing is to be freed. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* results.json: also within the page, which reads it. */
-#include "common/json.h"
+#include "common/json_write.h"
 #include "report/regression_parts.h"
 
 #include <math.h>

@@ -58,7 +58,7 @@ static bool draw(const Regression *regression, RegressionFrame *frame, const Ima
         (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
         return false;
     Image *difference = room ? difference_picture(expected, actual, masked, error) : NULL;
-    image_cover(expected, actual, masked);
+    image_copy_masked(expected, actual, masked);
     bool ok = (!room || (difference != NULL && encode(difference, &pictures[DIFFERENCE], error))) &&
               measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     image_destroy(difference);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Launches: start conditions of the bomb, and tables of them for training and studies. */
 #pragma once
-#include "common/csv.h"
+#include "common/csv_table.h"
 #include "scene/scene.h"
 
-enum { LAUNCHES_MAX = 10000, LAUNCH_COLUMNS = 5 };
+enum { LAUNCHES_MAX = 10000 };
 
 typedef struct Launch {
     float x, rotation, spin, mass; /* m, rad, rad/s, kg */
@@ -18,21 +18,18 @@ Launch launch_of(const Scene *scene);
    velocity law (scene_bomb_body) gets its velocity from the new position. */
 Scene launch_scene(const Scene *scene, const Launch *launch);
 
-/* A table of launches. */
 typedef struct LaunchTable {
-    Csv csv;
+    CsvTable csv; /* rows of Launch */
     int count;
-    int column[LAUNCH_COLUMNS]; /* column of x, rotation, spin, mass, frame; -1: missing */
-    Launch *launches;           /* [count], 0 for a missing column */
 } LaunchTable;
 
-/* Reads a CSV whose header names any of x, rotation, spin, mass, frame in any order, with 1 to LAUNCHES_MAX lines.
-   Numbers have the ranges of a scene file. On failure error is "path:line:column: error: reason" and the table needs no
-   free. path must outlive the table. */
+/* Reads a CSV file with any of the columns x, rotation, spin, mass, frame in any order, and 1 to LAUNCHES_MAX rows.
+   Numbers have the ranges of a scene file. On failure error is "path:line:column: error: reason" and nothing is to be
+   freed. */
 bool launches_read(LaunchTable *table, const char *path, Error *error);
 void launches_free(LaunchTable *table);
 
-/* Writes the table's launches for one scene to out[count]; missing columns have the scene's values. Refused: a scene
+/* The table's launches for one scene into out[count]; values of missing columns are the scene's. Refused: a scene
    without a bomb, a bomb after the scene's last frame, a bomb that would start too fast. */
 bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Error *error);
 

@@ -2,41 +2,28 @@
 #include "simulate/method.h"
 
 #include "common/names.h"
-#include "solvers/solvers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const SteppingKind *const stepping_kinds[] = {&stepping_substepping, &stepping_playback, NULL};
-
-bool method_info(int i, MethodInfo *info) {
-    int solvers = 0, others = 0;
-    for (; solver_kinds[solvers] != NULL; solvers++)
-        if (solvers == i) {
-            const ContactSolverKind *kind = solver_kinds[i];
-            *info = (MethodInfo){kind->name, kind->summary, kind->settings};
-            return true;
-        }
-    for (; stepping_kinds[others] != NULL; others++)
-        if (solvers + others == i) {
-            const SteppingKind *kind = stepping_kinds[others];
-            *info = (MethodInfo){kind->name, kind->summary, kind->settings};
-            return true;
-        }
-    return false;
+/* The method in `name` or `name:key=value,...`, or NULL. */
+static const MethodKind *find(const char *text) {
+    size_t length = strcspn(text, ":");
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+        if (strlen(kind->description->name) == length && strncmp(kind->description->name, text, length) == 0)
+            return kind;
+    return NULL;
 }
 
-static const SteppingKind *stepping_find(const char *name) {
-    for (int i = 0; stepping_kinds[i] != NULL; i++)
-        if (strcmp(stepping_kinds[i]->name, name) == 0) return stepping_kinds[i];
-    return NULL;
+const MethodDescription *method_describe(const char *text) {
+    const MethodKind *kind = find(text);
+    return kind != NULL ? kind->description : NULL;
 }
 
 static bool unknown_method(const char *text, Error *error) {
     NameList known = {0};
-    MethodInfo info;
-    for (int i = 0; method_info(i, &info); i++) name_list_add(&known, info.name);
+    for (int i = 0; method_kinds[i].description != NULL; i++) name_list_add(&known, method_kinds[i].description->name);
     return error_unknown(error, "method", text, "a method", &known);
 }
 
@@ -48,11 +35,10 @@ bool method_parse(Method *method, const char *text, Error *error) {
     char name[METHOD_TEXT_SIZE];
     memcpy(name, text, length);
     name[length] = '\0';
-    method->solver = solver_find(name);
-    method->stepping = stepping_find(name);
-    if (method->solver == NULL && method->stepping == NULL) return unknown_method(name, error);
-    const SettingSpec *known = method->solver != NULL ? method->solver->settings : method->stepping->settings;
-    return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "", known, name, error);
+    method->kind = find(text);
+    if (method->kind == NULL) return unknown_method(name, error);
+    return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "",
+                          method->kind->description->settings, name, error);
 }
 
 bool method_with_network(Method *method, const char *name, const char *path, Error *error) {
@@ -60,16 +46,9 @@ bool method_with_network(Method *method, const char *name, const char *path, Err
                                                  error_input(error, path, "the name is too long for a setting"));
 }
 
-static bool has_setting(const ContactSolverKind *kind, const char *key) {
-    for (const SettingSpec *spec = kind->settings; spec->key != NULL; spec++)
-        if (strcmp(spec->key, key) == 0) return true;
-    return false;
-}
-
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
-    if (method->solver == NULL)
-        return error_input(error, method->text, "no contact solver, but another way of stepping");
-    const ContactSolverKind *kind = method->solver;
+    const ContactSolverKind *kind = method->kind->solver;
+    if (kind == NULL) return error_input(error, method->text, "is not a contact solver; this needs one");
     Settings settings = method->settings;
     char iterations[16];
     snprintf(iterations, sizeof iterations, "%d", scene->iterations);
@@ -77,9 +56,10 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         const char *key, *value;
     } scene_settings[] = {{"k", iterations},
                           {"accumulate", scene->accumulate_impulses ? "on" : "off"},
-                          {"network", scene_network(scene, kind->name)}};
+                          {"network", scene_network(scene, kind->description.name)}};
     for (size_t i = 0; i < sizeof scene_settings / sizeof scene_settings[0]; i++) {
-        if (scene_settings[i].value == NULL || !has_setting(kind, scene_settings[i].key)) continue;
+        if (scene_settings[i].value == NULL || !settings_known(kind->description.settings, scene_settings[i].key))
+            continue;
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
@@ -89,13 +69,14 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
 }
 
 bool method_lacks_network(const Method *method, const Scene *scene) {
-    return method->solver != NULL && has_setting(method->solver, "network") &&
-           settings_get(&method->settings, "network") == NULL && scene_network(scene, method->solver->name) == NULL;
+    const MethodDescription *description = method->kind->description;
+    return description->needs_network && settings_get(&method->settings, "network") == NULL &&
+           scene_network(scene, description->name) == NULL;
 }
 
 struct Stepper {
-    ContactSolver solver;         /* in the standard step, */
-    const SteppingKind *stepping; /* or another way of stepping */
+    ContactSolver solver;         /* in the standard step */
+    const SteppingKind *stepping; /* or NULL */
     void *state;
 };
 
@@ -105,9 +86,9 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) 
         error_memory(error, method->text);
         return NULL;
     }
-    stepper->stepping = method->stepping;
-    if (method->stepping != NULL) {
-        stepper->state = method->stepping->create(&method->settings, scene, error);
+    stepper->stepping = method->kind->stepping;
+    if (stepper->stepping != NULL) {
+        stepper->state = stepper->stepping->create(&method->settings, scene, error);
         if (stepper->state != NULL) return stepper;
     } else if (method_create_solver(method, scene, &stepper->solver, error)) {
         return stepper;
@@ -139,7 +120,7 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
     return solved;
 }
 
-static const ContactSolverKind metered_kind = {.name = "metered", .solve = solve_metered};
+static const ContactSolverKind metered_kind = {.solve = solve_metered};
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);

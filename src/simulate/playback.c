@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Playback: the velocities of the nearest launch recorded, frame by frame. No physics at all: what a learned method
-   has to beat to have learned anything.
+/* Playback: replays the velocities of the nearest recorded launch, frame by frame, without physics. A baseline: a
+   method has learned something only if it is more accurate.
 
-   Recorded are launches of the training family, from the frame of the bomb on, by a solver close to convergence; what
-   comes before the bomb is the same in all of them and recorded once. Nearest is by position, rotation, spin and mass
-   of the bomb, each in its own unit. A recording begins at the frame of the bomb, whichever that is.
+   It records launches of the training family, solved close to convergence, from the frame of the bomb on. The frames
+   before the bomb are the same in all of them and recorded once. The nearest launch has the smallest sum of differences
+   in position, rotation, spin and mass of the bomb, each in its own unit. A recording starts at the frame of the bomb,
+   whichever that is.
 
-   Fails away from the launches recorded: it does not see where the boxes are. */
+   Fails on launches far from the recorded ones: it does not use the positions of the boxes. */
 #include "scene/launch.h"
 #include "simulate/method.h"
 
@@ -14,22 +15,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Velocities that one playback may hold: 600 MB. */
+/* The limit of recorded velocities, 600 MB. */
 enum { PLAYBACK_MAX_STATES = 50000000 };
 
 static const char recorder[] = "momentum:k=100";
 
 typedef struct Playback {
-    int launch_count, bodies;         /* with the bomb */
-    int frames_before, frames;        /* before and after the bomb is put in */
+    int launch_count, bodies;         /* bodies: with the bomb */
+    int frames_before, frames;        /* before and after the bomb appears */
     Launch *launches;                 /* [launch_count] */
     BodyVelocity *before;             /* [frames_before, bodies - 1] */
     BodyVelocity *after;              /* [launch_count, frames, bodies] */
-    Launch last;                      /* the launch asked for last, */
-    const BodyVelocity *last_nearest; /* and the nearest to it, [frames, bodies] */
+    Launch last;                      /* the last launch played back, */
+    const BodyVelocity *last_nearest; /* and its nearest recording, [frames, bodies] */
 } Playback;
 
-static const SettingSpec settings[] = {{"launches", "recorded, spread over the training family (100)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"launches", "recorded launches, spread over the training family (default: 100)"}, {NULL, NULL}};
 
 static void destroy(void *state) {
     Playback *playback = state;
@@ -84,7 +86,7 @@ static bool allocate(Playback *playback, const Scene *scene, Error *error) {
     return true;
 }
 
-/* Fills the recordings. */
+/* Makes the recordings. */
 static bool fill(Playback *playback, const Scene *scene, Error *error) {
     Method method;
     Scene without = *scene;
@@ -109,7 +111,7 @@ static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     playback->launch_count = 100;
     bool ok = settings_int(chosen, "launches", 1, 10000, &playback->launch_count, error);
     if (ok && (!scene->bomb.present || scene->bomb.frame > scene->frames))
-        ok = error_input(error, "playback", "scene %s has no bomb: nothing to play", scene->name);
+        ok = error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
     if (ok && allocate(playback, scene, error) && fill(playback, scene, error)) return playback;
     destroy(playback);
     return NULL;
@@ -131,7 +133,7 @@ static const BodyVelocity *nearest(Playback *playback, const Launch *launch) {
     return playback->last_nearest;
 }
 
-/* What was recorded for a step; behind the end of a recording its last frame. */
+/* The recorded velocities of a step; after the end of a recording those of its last frame. */
 static const BodyVelocity *recorded(Playback *playback, const Step *which, int *bodies) {
     bool before = which->frame <= which->scene->bomb.frame;
     int frame = before ? which->frame : which->frame - which->scene->bomb.frame;
@@ -159,4 +161,13 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 }
 
 const SteppingKind stepping_playback = {
-    "playback", "no physics: the velocities of the nearest launch recorded", settings, create, step, destroy};
+    .description = {.name = "playback",
+                    .summary = "baseline without physics: replays the velocities of the nearest recorded launch",
+                    .settings = settings,
+                    .role = METHOD_BASELINE,
+                    .chart = METHOD_RUNS("launches=25", "launches=100"),
+                    .chart_quick = METHOD_RUNS("launches=25"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A run in progress: the world, and what steps it. */
+/* A run in progress. */
 typedef struct Run {
     const Scene *scene;
     World *world;
@@ -25,14 +25,14 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
     return false;
 }
 
-/* The bomb comes, and a body goes, after the step that the scene says. */
-static bool add_and_remove_bodies(const Scene *scene, World *world, int frame, Error *error) {
+/* The bomb appears, and the last body disappears, after the steps that the scene sets. */
+static bool update_bodies(const Scene *scene, World *world, int frame, Error *error) {
     if (frame == scene->last_body_until) world_remove_last_body(world);
     return !scene->bomb.present || scene->bomb.frame != frame || scene_add_bomb(scene, world, error);
 }
 
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    if (stepper_step(stepper, world, step, error)) return add_and_remove_bodies(step->scene, world, step->frame, error);
+    if (stepper_step(stepper, world, step, error)) return update_bodies(step->scene, world, step->frame, error);
     size_t length = strlen(error->message);
     snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", step->frame,
              step->scene->name);
@@ -86,7 +86,7 @@ static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) 
     trajectory->fixed[body] = def->fixed;
 }
 
-/* An empty trajectory with all that is known before the first step. */
+/* A trajectory without frames yet. */
 static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, Error *error) {
     bool bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
     int64_t states = ((int64_t)scene->frames + 1) * (scene->body_count + bomb);

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ways of stepping other than a contact solver in the standard step. */
+/* Steppers: methods that need more than one solver call per step, or none. */
 #pragma once
-#include "dynamics/contact_solver.h"
 #include "scene/scene.h"
+#include "solvers/solvers.h"
 
 #include <stdint.h>
 
-/* Counts what a step costs beyond its contact problem, for who asks. */
+/* Measures the cost of the solver in a step. */
 typedef struct StepMeter {
-    int64_t (*now)(void); /* time, instructions, whatever is counted */
-    int64_t solving;      /* out: what passed from the contact problem to the solution */
+    int64_t (*now)(void); /* current count: time, instructions, ... */
+    int64_t solving;      /* out: the count between contact problem and solution */
 } StepMeter;
 
-/* What a method is told of the step that it takes. */
+/* The step that a method takes. */
 typedef struct Step {
-    const Scene *scene; /* with the launch of this run */
-    int frame;          /* number of the step: 1 .. frames */
-    StepMeter *meter;   /* NULL: nobody asks */
+    const Scene *scene; /* with the launch of the run */
+    int frame;          /* number of the step, 1 .. frames */
+    StepMeter *meter;   /* or NULL */
 } Step;
 
 static inline void step_solving_begins(const Step *step) {
@@ -28,15 +28,16 @@ static inline void step_solving_ends(const Step *step) {
 }
 
 typedef struct SteppingKind {
-    const char *name, *summary;
-    const SettingSpec *settings; /* the keys that create() reads, ended by a NULL key */
-    /* Returns the state for a scene (its launch does not matter), NULL with error set where it is refused. */
+    MethodDescription description;
+    /* Returns the state for a scene with any launch; NULL with error set if the scene or a setting is refused. */
     void *(*create)(const Settings *settings, const Scene *scene, Error *error);
-    /* Advances the world by one step of the scene: begins, solves, ends it (dynamics/world.h). Allocates nothing once
-       it has seen a problem of that size. */
+    /* Advances the world by one step of the scene: begins, solves and ends it (dynamics/world.h). Allocates
+       nothing once it has seen a problem of that size. */
     bool (*step)(void *state, World *world, const Step *step, Error *error);
     void (*destroy)(void *state);
 } SteppingKind;
 
-extern const SteppingKind stepping_substepping;
-extern const SteppingKind stepping_playback;
+/* Listed in solvers/solvers.h. */
+#define STEPPING_DECLARED(name) extern const SteppingKind stepping_##name;
+METHODS(METHOD_OMITTED, STEPPING_DECLARED)
+#undef STEPPING_DECLARED

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Substepping: one collision pass, then n small steps of dt / n, each with its share of gravity, k sweeps of sequential
-   impulses and integration (Macklin et al., "Small Steps in Physics Simulation", 2019; temporal Gauss-Seidel).
+   impulses, and integration (Macklin et al., "Small Steps in Physics Simulation", 2019; temporal Gauss-Seidel).
 
    Normals, lever arms and effective masses stay those of the collision pass; a separation changes by the velocity along
-   its normal. Impulses add up over the whole step and are clamped as a sum, so that what stops a fall in one small step
-   is not applied again in the next; the warm start comes in n equal shares, as gravity does. The velocity that pushes an
-   overlap apart is that of the whole step: then the step ends with the velocities of a converged solve of the whole.
+   its normal. Impulses accumulate over the whole step and are clamped as a sum, so that an impulse that stops a fall in
+   one small step is not applied again in the next. The warm start is applied in n equal shares, as gravity is. The bias
+   velocity that corrects penetration is that of the whole step: so the step ends with the velocities of a converged
+   solve of the whole step.
 
-   Fails like n k sweeps of one whole step: an impact that has to travel through a stack gets no further. It is dearer, as
-   sweeps of different small steps cannot overlap. */
+   Fails as n k sweeps of one whole step do: a shock travels no further through a stack. It is slower, because sweeps of
+   different small steps cannot overlap. */
 #include "common/array.h"
 #include "dynamics/contacts.h"
 #include "simulate/stepping.h"
@@ -20,14 +21,14 @@ typedef struct Substepping {
     int substeps, sweeps_each;
     Sweeps sweeps;
     BodyPose *poses;       /* [bodies] */
-    BodyVelocity *pushes;  /* [bodies] what gravity and the warm start change in each small step */
-    ContactImpulse *share; /* [contacts] of the warm start, for each small step */
-    float *separations;    /* [contacts] now */
+    BodyVelocity *pushes;  /* [bodies] change by gravity and warm start in each small step */
+    ContactImpulse *share; /* [contacts] share of the warm start in each small step */
+    float *separations;    /* [contacts] current */
     size_t pose_capacity, push_capacity, share_capacity, separation_capacity;
 } Substepping;
 
 static const SettingSpec settings[] = {
-    {"substeps", "small steps a step (4)"}, {"k", "sweeps a small step (1)"}, {NULL, NULL}};
+    {"substeps", "small steps per step (default: 4)"}, {"k", "sweeps per small step (default: 1)"}, {NULL, NULL}};
 
 static void destroy(void *state) {
     Substepping *stepping = state;
@@ -64,7 +65,7 @@ static bool reserve(Substepping *stepping, const ContactProblem *problem) {
                          sizeof *stepping->separations);
 }
 
-/* The same in every small step: arms and masses do not change in between. */
+/* The same for every small step, as arms and masses do not change. */
 static void find_pushes(Substepping *stepping, Vec2 gravity) {
     Sweeps *sweeps = &stepping->sweeps;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -82,7 +83,7 @@ static void find_pushes(Substepping *stepping, Vec2 gravity) {
     }
 }
 
-/* The bodies before gravity, with the first small step's push; the contacts as the collision pass found them. */
+/* Bodies before gravity, plus the push of the first small step; contacts from the collision pass. */
 static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
     if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1))
         return false;
@@ -102,7 +103,7 @@ static bool begin(Substepping *stepping, const World *world, const ContactProble
     return true;
 }
 
-/* Gravity and the warm start of one more small step. */
+/* Applies gravity and warm start of one more small step. */
 static void push(Substepping *stepping) {
     Sweeps *sweeps = &stepping->sweeps;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -128,7 +129,7 @@ static void integrate(Substepping *stepping, float dt) {
     }
 }
 
-/* Velocity along the normal, of b's point as seen from a's. */
+/* Velocity of b's point relative to a's, along the normal. */
 static float normal_velocity(const Sweeps *sweeps, const ContactPoint *contact) {
     const SweepBody *a = &sweeps->bodies[contact->a], *b = &sweeps->bodies[contact->b];
     Vec2 of_a = vec2_add(vec2(a->x, a->y), scalar_cross_vec2(a->spin, contact->arm_a));
@@ -136,7 +137,7 @@ static float normal_velocity(const Sweeps *sweeps, const ContactPoint *contact) 
     return vec2_dot(vec2_sub(of_b, of_a), contact->normal);
 }
 
-/* What the small step left of the overlaps is what the next pushes apart. inverse_dt: of the whole step. */
+/* The next small step corrects the penetration that remains. inverse_dt: of the whole step. */
 static void update_biases(Substepping *stepping, const ContactProblem *problem, float dt, float inverse_dt) {
     Sweeps *sweeps = &stepping->sweeps;
     for (int i = 0, contact = 0; i < sweeps->pair_count; i++)
@@ -164,7 +165,7 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
     if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
     step_solving_begins(which);
     bool solved = begin(stepping, world, &problem, which->scene->gravity) && solve(stepping, which->scene, &problem);
-    /* Where it is not finite the world refuses the step. */
+    /* The world refuses a NaN or infinite result. */
     if (solved) sweeps_end(&stepping->sweeps, solution);
     step_solving_ends(which);
     if (!solved) return error_memory(error, "substepping");
@@ -172,4 +173,12 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 }
 
 const SteppingKind stepping_substepping = {
-    "substepping", "one collision pass, then small steps of sequential impulses", settings, create, step, destroy};
+    .description = {.name = "substepping",
+                    .summary = "one collision pass, then small steps of sequential impulses",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=10", "substeps=20", "substeps=50"),
+                    .chart_quick = METHOD_RUNS("substeps=10"),
+                    .stability_place = 4},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

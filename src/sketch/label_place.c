@@ -15,7 +15,7 @@ static bool boxes_touch(const PageBox *a, const PageBox *b) {
     return a->left < b->right && b->left < a->right && a->bottom < b->top && b->bottom < a->top;
 }
 
-/* Narrows [*from, *to], the part of a segment p + t d within [low, high] along one axis. */
+/* Clips [*from, *to], the range of t for which p + t d is in [low, high], along one axis. */
 static void clip(double p, double d, double low, double high, double *from, double *to) {
     if (d == 0) {
         if (p < low || p > high) *to = -1;
@@ -43,7 +43,7 @@ static bool is_free(const LabelField *field, const PageBox *box) {
     return true;
 }
 
-/* Lines have a width. */
+/* mm, for the width of lines. */
 static const double clearance = 0.35;
 
 static int crossed(const LabelField *field, const PageBox *box) {
@@ -53,11 +53,11 @@ static int crossed(const LabelField *field, const PageBox *box) {
     return count;
 }
 
-/* Right, left, above, below, then the corners; -1, 0, 1: which side of the mark the box lies on. */
+/* Right, left, above, below, then the corners. -1, 0, 1: the side of the mark. */
 static const struct { int x, y; } sides[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
 static PageBox box_beside(double x, double y, int side, double distance, double width, double height) {
-    /* Towards a corner both coordinates count, so either may be less. */
+    /* Diagonally, both offsets contribute. */
     double reach = sides[side].x != 0 && sides[side].y != 0 ? 0.6 * distance : distance;
     double centre_x = x + sides[side].x * (reach + width / 2), centre_y = y + sides[side].y * (reach + height / 2);
     return (PageBox){centre_x - width / 2, centre_y - height / 2, centre_x + width / 2, centre_y + height / 2};
@@ -65,7 +65,7 @@ static PageBox box_beside(double x, double y, int side, double distance, double 
 
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place) {
-    /* Farther off a label would seem to belong to another mark. */
+    /* A label farther away would seem to belong to another mark. */
     double farthest = must ? 6 * distance : 1.5 * distance;
     int fewest = -1;
     for (double d = distance; d <= farthest; d += 0.25 * distance)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Places for labels beside marks, where they cover nothing. All lengths in mm on the page. */
+/* Places labels beside marks without covering anything. All lengths in mm on the page. */
 #pragma once
 #include <stdbool.h>
 
@@ -13,20 +13,20 @@ typedef struct Segment {
 
 enum { LABEL_MAX_BOXES = 1024, LABEL_MAX_SEGMENTS = 2048 };
 
-/* What is drawn already. */
+/* Everything already drawn. */
 typedef struct LabelField {
     PageBox frame; /* labels stay inside */
     int box_count, segment_count;
-    PageBox boxes[LABEL_MAX_BOXES];       /* marks and labels: never covered */
-    Segment segments[LABEL_MAX_SEGMENTS]; /* lines: crossed only by a label that must be there */
+    PageBox boxes[LABEL_MAX_BOXES];       /* marks and labels, never covered */
+    Segment segments[LABEL_MAX_SEGMENTS]; /* lines, crossed only by labels that must be placed */
 } LabelField;
 
-/* Beyond the limits boxes and segments are dropped: labels may then cover them. */
+/* Beyond the limits boxes and segments are ignored, and labels may cover them. */
 void label_add_box(LabelField *field, PageBox box);
 void label_add_segment(LabelField *field, Segment segment);
 
-/* The box for a label of this size near (x, y), at least `distance` from it: the nearest that covers no box and
-   crosses no line. False where there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
+/* Finds the box for a label of this size near (x, y), at least `distance` away: the nearest that covers no box and
+   crosses no line. False if there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
    field. */
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place);

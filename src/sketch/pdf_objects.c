@@ -8,7 +8,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* Of Inter, in thousandths of an em: what viewers need only where the font in the file fails. */
+/* Metrics of Inter, in 1/1000 em: viewers use them only if the embedded font fails. */
 enum { FONT_ASCENT = 969, FONT_DESCENT = -241, FONT_CAPS = 727 };
 
 void pdf_begin_object(Pdf *pdf, int number) {
@@ -16,7 +16,7 @@ void pdf_begin_object(Pdf *pdf, int number) {
     fprintf(pdf->file, "%d 0 obj\n", number);
 }
 
-bool pdf_put_stream(Pdf *pdf, int number, const char *keys, const void *data, size_t size) {
+bool pdf_write_stream(Pdf *pdf, int number, const char *keys, const void *data, size_t size) {
     uLongf packed_size = compressBound((uLong)size);
     Bytef *packed = malloc(packed_size);
     bool done = packed != NULL && compress2(packed, &packed_size, data, (uLong)size, 9) == Z_OK;
@@ -36,7 +36,7 @@ static unsigned read_big_endian(const unsigned char *bytes, int count) {
     return value;
 }
 
-/* The table of an OpenType file that holds the outlines; PDF wants it alone. */
+/* The table of an OpenType file that holds the outlines; PDF embeds it alone. */
 static const unsigned char *find_outlines(size_t *size) {
     unsigned tables = read_big_endian(font_inter_regular_subset_otf + 4, 2);
     for (unsigned i = 0; i < tables; i++) {
@@ -48,9 +48,9 @@ static const unsigned char *find_outlines(size_t *size) {
     return NULL;
 }
 
-/* Which character each glyph stands for, so that text can be copied. */
-static bool put_to_unicode(Pdf *pdf) {
-    enum { AT_ONCE = 100 }; /* that a list may have */
+/* The character of each glyph, so that text can be copied. */
+static bool write_to_unicode(Pdf *pdf) {
+    enum { MAX_ENTRIES = 100 }; /* the maximum length of a list */
     char *text = NULL;
     size_t size = 0;
     FILE *map = open_memstream(&text, &size);
@@ -59,18 +59,18 @@ static bool put_to_unicode(Pdf *pdf) {
                  "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");
     for (int i = 0; i < type_glyph_count; i++) {
         int left = type_glyph_count - i;
-        if (i % AT_ONCE == 0) fprintf(map, "%d beginbfchar\n", left < AT_ONCE ? left : AT_ONCE);
+        if (i % MAX_ENTRIES == 0) fprintf(map, "%d beginbfchar\n", left < MAX_ENTRIES ? left : MAX_ENTRIES);
         fprintf(map, "<%04X> <%04X>\n", type_glyphs[i].index, type_glyphs[i].code);
-        if (i % AT_ONCE == AT_ONCE - 1 || left == 1) fprintf(map, "endbfchar\n");
+        if (i % MAX_ENTRIES == MAX_ENTRIES - 1 || left == 1) fprintf(map, "endbfchar\n");
     }
     fprintf(map, "endcmap\nend\nend\n");
     bool whole = !ferror(map);
-    whole = fclose(map) == 0 && whole && pdf_put_stream(pdf, TO_UNICODE, "", text, size);
+    whole = fclose(map) == 0 && whole && pdf_write_stream(pdf, TO_UNICODE, "", text, size);
     free(text);
     return whole;
 }
 
-bool pdf_put_font(Pdf *pdf) {
+bool pdf_write_font(Pdf *pdf) {
     size_t size;
     const unsigned char *outlines = find_outlines(&size);
     pdf_begin_object(pdf, FONT);
@@ -91,6 +91,6 @@ bool pdf_put_font(Pdf *pdf) {
             "<</Type/FontDescriptor/FontName/TWNBOX+Inter/Flags 4/FontBBox[-1000 -400 2000 1200]/ItalicAngle 0"
             "/Ascent %d/Descent %d/CapHeight %d/StemV 80/FontFile3 %d 0 R>>\nendobj\n",
             FONT_ASCENT, FONT_DESCENT, FONT_CAPS, FONT_FILE);
-    return outlines != NULL && pdf_put_stream(pdf, FONT_FILE, "/Subtype/CIDFontType0C", outlines, size) &&
-           put_to_unicode(pdf);
+    return outlines != NULL && pdf_write_stream(pdf, FONT_FILE, "/Subtype/CIDFontType0C", outlines, size) &&
+           write_to_unicode(pdf);
 }

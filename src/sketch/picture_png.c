@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pixels as PNG with alpha and resolution, which frames need not. */
+/* PNG with alpha and resolution, which frames do not need. */
 #include "sketch/sketch_formats.h"
 
 #include <math.h>
 #include <png.h>
 #include <stdlib.h>
 
-static void put_rows(png_structp png, const Image *image, bool alpha) {
+static void write_rows(png_structp png, const Image *image, bool alpha) {
     if (!alpha) png_set_filler(png, 0, PNG_FILLER_AFTER);
     for (int y = 0; y < image->height; y++) png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
 }
 
-/* libpng jumps out of it where it fails. */
-static bool put_png(FILE *file, const Image *image, double dpi) {
+/* libpng returns here by longjmp if it fails. */
+static bool write_png(FILE *file, const Image *image, double dpi) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png != NULL ? png_create_info_struct(png) : NULL;
     const bool alpha = has_alpha(image);
@@ -28,7 +28,7 @@ static bool put_png(FILE *file, const Image *image, double dpi) {
     const png_uint_32 dots = (png_uint_32)lrint(dpi / 0.0254);
     if (dpi > 0) png_set_pHYs(png, info, dots, dots, PNG_RESOLUTION_METER);
     png_write_info(png, info);
-    put_rows(png, image, alpha);
+    write_rows(png, image, alpha);
     png_write_end(png, NULL);
     png_destroy_write_struct(&png, &info);
     return true;
@@ -37,7 +37,7 @@ static bool put_png(FILE *file, const Image *image, double dpi) {
 char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error) {
     char *data = NULL;
     FILE *file = open_memstream(&data, size);
-    bool whole = file != NULL && put_png(file, image, dpi) && !ferror(file);
+    bool whole = file != NULL && write_png(file, image, dpi) && !ferror(file);
     if (file != NULL) whole = fclose(file) == 0 && whole;
     if (whole) return data;
     free(data);

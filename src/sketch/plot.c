@@ -7,7 +7,7 @@
 #include <math.h>
 
 static const double tic = 1;                                   /* mm */
-static const double exponent_size = 0.75, exponent_rise = 0.4; /* of the type's */
+static const double exponent_size = 0.75, exponent_rise = 0.4; /* relative to the text's em */
 
 static double em(double points) { return points * MM_PER_POINT; }
 
@@ -28,14 +28,14 @@ Point plot_place(const Plot *plot, double x, double y) {
     return (Point){plot->low.x + fmin(fmax(share, 0), 1) * (plot->high.x - plot->low.x), up};
 }
 
-/* So far apart that at most eight numbers stand below. */
+/* A round step that gives at most eight labels. */
 static double linear_step(double length) {
     const double most_steps = 8, least = length / most_steps, power = pow(10, floor(log10(least)));
     const double share = least / power;
     return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
-static void put_linear(const Plot *plot, Sketch *sketch, const char *name) {
+static void draw_linear_axis(const Plot *plot, Sketch *sketch, const char *name) {
     const double step = linear_step(plot->end - plot->begin), slack = 1e-9 * step, size = em(plot->points);
     const int decimals = step >= 0.99 ? 0 : (int)ceil(-log10(step) - 1e-9);
     const Pen pen = pen_line(INK, 1.2, NULL);
@@ -50,8 +50,8 @@ static void put_linear(const Plot *plot, Sketch *sketch, const char *name) {
                 name);
 }
 
-/* 10 with its exponent, ending at (right, y). */
-static void put_power(const Plot *plot, Sketch *sketch, double right, double y, int power) {
+/* 10 with a superscript exponent, right-aligned at (right, y). */
+static void draw_power_of_ten(const Plot *plot, Sketch *sketch, double right, double y, int power) {
     const double small = exponent_size * plot->points;
     const TextStyle base = {plot->points, TEXT_RIGHT, INK, 0, false}, exponent = {small, TEXT_RIGHT, INK, 0, false};
     const ShownDecimals shown = show_decimals(power, 0);
@@ -59,7 +59,7 @@ static void put_power(const Plot *plot, Sketch *sketch, double right, double y, 
     sketch_text(sketch, (Point){right - type_width(shown.text, small) - 0.05 * em(plot->points), y}, &base, "10");
 }
 
-static void put_logarithmic(const Plot *plot, Sketch *sketch, const char *name) {
+static void draw_log_axis(const Plot *plot, Sketch *sketch, const char *name) {
     const LogAxis *axis = &plot->axis;
     const int first = (int)ceil(log10(axis->low) - 1e-9), last = (int)floor(log10(axis->high) + 1e-9);
     const double decade = (axis->to - axis->from) / log10(axis->high / axis->low);
@@ -70,16 +70,16 @@ static void put_logarithmic(const Plot *plot, Sketch *sketch, const char *name) 
         if (power % step != 0) continue;
         sketch_line(sketch, (Point){plot->low.x, y}, (Point){plot->high.x, y}, &guide);
         sketch_line(sketch, (Point){plot->low.x - tic, y}, (Point){plot->low.x, y}, &pen);
-        put_power(plot, sketch, plot->low.x - tic - 0.4, y, power);
+        draw_power_of_ten(plot, sketch, plot->low.x - tic - 0.4, y, power);
     }
     const double x = plot->low.x - plot_left_margin(plot->points) + 0.6 * em(plot->points);
     sketch_text(sketch, (Point){x, (plot->low.y + plot->high.y) / 2},
                 &(TextStyle){plot->points, TEXT_CENTER, INK, 90, false}, "%s", name);
 }
 
-void plot_put_axes(const Plot *plot, Sketch *sketch, const char *x_name, const char *y_name) {
-    put_logarithmic(plot, sketch, y_name);
-    put_linear(plot, sketch, x_name);
+void plot_draw_axes(const Plot *plot, Sketch *sketch, const char *x_name, const char *y_name) {
+    draw_log_axis(plot, sketch, y_name);
+    draw_linear_axis(plot, sketch, x_name);
     const Point line[] = {{plot->low.x, plot->high.y}, plot->low, {plot->high.x, plot->low.y}};
     const Pen pen = pen_line(INK, 1.2, NULL);
     sketch_path(sketch, line, 3, &pen);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inter as an OpenType file; written at build time from src/render/font. */
+/* Inter as an OpenType file, embedded at build time from src/gl/font. */
 #pragma once
 #include <stddef.h>
 

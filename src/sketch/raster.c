@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LINES = 16 }; /* scan lines a pixel; along a line the share is exact */
+enum { LINES = 16 }; /* scan lines per pixel; coverage along a scan line is exact */
 
 void raster_free(Raster *raster) {
     free(raster->edges);
@@ -34,13 +34,13 @@ static int by_top(const void *a, const void *b) {
     return (p->y0 > q->y0) - (p->y0 < q->y0);
 }
 
-/* Where an edge crosses a scan line. */
+/* The intersection of an edge and a scan line. */
 typedef struct Crossing {
     double x;
     int winding;
 } Crossing;
 
-/* Few on a line, and nearly in order. */
+/* Insertion sort: there are few crossings, almost in order. */
 static void sort_crossings(Crossing *crossings, size_t count) {
     for (size_t i = 1; i < count; i++) {
         Crossing moved = crossings[i];
@@ -50,7 +50,7 @@ static void sort_crossings(Crossing *crossings, size_t count) {
     }
 }
 
-/* How much of each pixel of a row is inside, in scan lines; beyond [low, high) it is 0. */
+/* Coverage of each pixel of a row, in scan lines; 0 outside [low, high). */
 typedef struct CoverRow {
     double *cover; /* [width + 1] */
     int width, low, high;
@@ -71,7 +71,7 @@ static void add_span(CoverRow *row, double from, double to) {
     row->cover[last] += to - last;
 }
 
-/* Edges by their upper end; those before `next` have begun. */
+/* Edges sorted by their upper end; those before `next` have started. */
 typedef struct Scan {
     const RasterEdge *edges;
     size_t count, next, open_count, *open;
@@ -98,7 +98,7 @@ static void scan_line(Scan *scan, double y, CoverRow *row) {
     }
 }
 
-/* Colours a row of pixels, and leaves the cover empty. */
+/* Blends a row of pixels and clears its coverage. */
 static void blend_row(CoverRow *row, uint32_t colour, double opacity, uint8_t *pixels) {
     const uint8_t channels[3] = {(uint8_t)(colour >> 16), (uint8_t)(colour >> 8), (uint8_t)colour};
     for (int x = row->low; x < row->high; x++) {

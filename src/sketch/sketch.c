@@ -25,13 +25,13 @@ void sketch_free(Sketch *sketch) {
     *sketch = (Sketch){0};
 }
 
-/* On the page or near it. Runs can go anywhere, and no page is so large. */
-static bool has_place(Point p) {
+/* Near the page. Runs can reach any coordinate, pages cannot. */
+static bool is_near_page(Point p) {
     const double farthest = 1e5; /* mm */
     return fabs(p.x) < farthest && fabs(p.y) < farthest;
 }
 
-/* False when memory is short. */
+/* False if out of memory. */
 static bool add_mark(Sketch *sketch, const SketchMark *mark) {
     if (!array_reserve((void **)&sketch->marks, &sketch->mark_capacity, sketch->mark_count + 1, sizeof *mark)) {
         sketch->failed = true;
@@ -52,10 +52,10 @@ void sketch_image(Sketch *sketch, const Image *image, Point low, double width) {
     if (!add_mark(sketch, &mark)) image_destroy(copy);
 }
 
-static void put_path(Sketch *sketch, SketchLayer layer, const Point *points, size_t count, bool closed,
+static void add_path(Sketch *sketch, SketchLayer layer, const Point *points, size_t count, bool closed,
                      const Pen *pen) {
     for (size_t i = 0; i < count; i++)
-        if (!has_place(points[i])) return;
+        if (!is_near_page(points[i])) return;
     if (!array_reserve((void **)&sketch->points, &sketch->point_capacity, sketch->point_count + count,
                        sizeof *points)) {
         sketch->failed = true;
@@ -69,11 +69,11 @@ static void put_path(Sketch *sketch, SketchLayer layer, const Point *points, siz
 }
 
 void sketch_path(Sketch *sketch, const Point *points, int count, const Pen *pen) {
-    if (count > 1) put_path(sketch, LAYER_SHAPES, points, (size_t)count, false, pen);
+    if (count > 1) add_path(sketch, LAYER_SHAPES, points, (size_t)count, false, pen);
 }
 
 void sketch_shape(Sketch *sketch, const Point *points, int count, const Pen *pen) {
-    if (count > 2) put_path(sketch, LAYER_SHAPES, points, (size_t)count, true, pen);
+    if (count > 2) add_path(sketch, LAYER_SHAPES, points, (size_t)count, true, pen);
 }
 
 void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen) {
@@ -94,33 +94,33 @@ void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen) {
     sketch_shape(sketch, points, CORNERS, pen);
 }
 
-/* A filled head with its tip at `to`; the line is to end `head` mm before it. */
-static void put_head(Sketch *sketch, Point from, Point to, double head, uint32_t colour) {
-    const double slimness = 0.325; /* tangent of half the angle at the tip: 18 degrees */
+/* A filled arrow head with its tip at `to`, `head` mm long. */
+static void add_arrow_head(Sketch *sketch, Point from, Point to, double head, uint32_t colour) {
+    const double slimness = 0.325; /* tangent of half the tip's angle, 18 degrees */
     double length = hypot(to.x - from.x, to.y - from.y);
     Point along = {(to.x - from.x) / length, (to.y - from.y) / length};
     Point foot = {to.x - head * along.x, to.y - head * along.y};
     double half = slimness * head;
     const Point corners[] = {
         to, {foot.x - half * along.y, foot.y + half * along.x}, {foot.x + half * along.y, foot.y - half * along.x}};
-    put_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+    add_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
 }
 
 void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width) {
     const double longest_head = 2.2;
     double length = hypot(to.x - from.x, to.y - from.y), head = fmin(longest_head, 0.6 * length);
     if (!(length > 0)) return;
-    /* The line ends inside its heads, which are sharper than it is. */
+    /* The line ends inside its heads, so that the tips stay sharp. */
     double in_x = 0.7 * head * (to.x - from.x) / length, in_y = 0.7 * head * (to.y - from.y) / length;
     bool both = heads == HEADS_AT_BOTH;
     const Point line[] = {{from.x + (both ? in_x : 0), from.y + (both ? in_y : 0)}, {to.x - in_x, to.y - in_y}};
     const Pen pen = pen_line(colour, width, NULL);
-    put_path(sketch, LAYER_ARROWS, line, 2, false, &pen);
-    put_head(sketch, from, to, head, colour);
-    if (both) put_head(sketch, to, from, head, colour);
+    add_path(sketch, LAYER_ARROWS, line, 2, false, &pen);
+    add_arrow_head(sketch, from, to, head, colour);
+    if (both) add_arrow_head(sketch, to, from, head, colour);
 }
 
-/* Keeps what lies where sign * coordinate <= limit (Sutherland and Hodgman 1974). Room for one corner more. */
+/* Keeps the part with sign * coordinate <= limit (Sutherland and Hodgman 1974). Adds at most one corner. */
 static int clip_half(Point *out, const Point *in, int count, bool along_y, double sign, double limit) {
     int kept = 0;
     for (int i = 0; i < count; i++) {
@@ -149,7 +149,7 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
 }
 
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) {
-    if (!has_place(at)) return;
+    if (!is_near_page(at)) return;
     char text[SKETCH_TEXT_SIZE];
     va_list arguments;
     va_start(arguments, format);
@@ -160,7 +160,7 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
         sketch->failed = true;
         return;
     }
-    const SketchMark mark = {LAYER_WORDS, MARK_TEXT, .at = at, .style = *style, .text = sketch->text_size};
+    const SketchMark mark = {LAYER_TEXTS, MARK_TEXT, .at = at, .style = *style, .text = sketch->text_size};
     memcpy(sketch->texts + sketch->text_size, text, size);
     sketch->text_size += size;
     add_mark(sketch, &mark);
@@ -175,7 +175,7 @@ ShownDecimals show_decimals(double value, int decimals) {
     return shown;
 }
 
-void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points) {
+void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points) {
     const double up = 0.3 * points * MM_PER_POINT;
     const Point right = {left.x + scale * amount, left.y};
     const Pen pen = pen_line(INK, 1.6, NULL);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawings made of boxes, lines, arrows and words, for a page: kept as a list, then written as PNG, SVG or PDF
-   (sketch_files.h). All lengths on the page in mm, from its lower left corner; what comes later lies above what came
-   before, pictures below all and arrows and words above all. */
+/* A page of boxes, lines, arrows and text, recorded as a list and then written as PNG, SVG or PDF (sketch_files.h).
+   Lengths in mm from the page's lower left corner. Later marks are above earlier ones; pictures are below and arrows
+   and text above all else. */
 #pragma once
 #include "collision/manifold.h"
 #include "common/error.h"
@@ -13,8 +13,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* 0xRRGGBB, as in picture/style.h. Boxes are blue and the network is orange in the renderer's pictures, too; ACCENT is
-   what the eye is to find: black in a grey print and beside Okabe and Ito's colours. */
+/* 0xRRGGBB, as in picture/style.h, where boxes are also blue and the network orange. ACCENT marks the point of a
+   figure: black stands out in grey prints and beside Okabe and Ito's colours. */
 #define BOX_COLOUR 0x0072B2u
 #define BOX_INK 0x00395Cu
 #define NETWORK_COLOUR 0xE69F00u
@@ -24,13 +24,14 @@
 
 #define LINE_UNIT 0.17 /* mm */
 
-/* How a shape is drawn. */
+/* The style of a shape. */
 typedef struct Pen {
     uint32_t fill; /* NO_COLOUR: not filled */
     double opacity;
     uint32_t line;      /* NO_COLOUR: no line */
-    double width;       /* of the line, LINE_UNIT */
-    const char *dashes; /* "(6,5)": dash and gap, twice at most, in LINE_UNIT; NULL: solid. Outlives the sketch */
+    double width;       /* of the line, in LINE_UNIT */
+    const char *dashes; /* "(6,5)": dash and gap, up to two of each, in LINE_UNIT; NULL: solid. Must outlive the
+                           sketch */
 } Pen;
 
 static inline Pen pen_line(uint32_t line, double width, const char *dashes) {
@@ -41,11 +42,11 @@ static inline Pen pen_fill(uint32_t fill, double opacity, uint32_t line) {
     return (Pen){fill, opacity, line, 1.2, NULL};
 }
 
-/* A window of the page onto the world: metre (center) lies in its middle. */
+/* A window of the page onto the world: world point `center` is in its middle. */
 typedef struct View {
     Point low, high; /* corners of the window, mm */
     Point center;    /* m */
-    double scale;    /* mm a metre */
+    double scale;    /* mm per metre */
 } View;
 
 Point view_place(const View *view, Vec2 position);
@@ -55,30 +56,30 @@ enum { SKETCH_TEXT_SIZE = 200 };
 typedef enum TextAlign { TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT } TextAlign;
 
 typedef struct TextStyle {
-    double points; /* of type */
+    double points; /* font size */
     TextAlign align;
     uint32_t colour;
-    double degrees; /* turned counter-clockwise */
-    bool halo;      /* with a white edge, to be read over a picture */
+    double degrees; /* rotation, counter-clockwise */
+    bool halo;      /* with a white outline, to be readable on a picture */
 } TextStyle;
 
-/* In the order in which they lie above each other. */
-typedef enum SketchLayer { LAYER_PICTURES, LAYER_SHAPES, LAYER_ARROWS, LAYER_WORDS, SKETCH_LAYERS } SketchLayer;
+/* From bottom to top. */
+typedef enum SketchLayer { LAYER_PICTURES, LAYER_SHAPES, LAYER_ARROWS, LAYER_TEXTS, SKETCH_LAYERS } SketchLayer;
 
 typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT } SketchMarkKind;
 
-/* One thing on the page. */
+/* One element of the page. */
 typedef struct SketchMark {
     SketchLayer layer;
     SketchMarkKind kind;
-    Point at;     /* lower left corner of an image; of words */
+    Point at;     /* lower left corner of an image; reference point of a text */
     double width; /* mm, of an image */
     Image *image;
     Pen pen;
     bool closed;
-    size_t first, count; /* of a path: its part of the sketch's points */
+    size_t first, count; /* of a path: range in the sketch's points */
     TextStyle style;
-    size_t text; /* where it begins in the sketch's texts */
+    size_t text; /* offset in the sketch's texts */
 } SketchMark;
 
 typedef struct Sketch {
@@ -87,41 +88,41 @@ typedef struct Sketch {
     Point *points;
     char *texts;
     size_t mark_count, mark_capacity, point_count, point_capacity, text_size, text_capacity;
-    bool failed; /* memory was short: something is missing */
+    bool failed; /* out of memory: the sketch is incomplete */
 } Sketch;
 
-/* A sketch begun is to be freed. */
+/* Starts a sketch; free it with sketch_free(). */
 void sketch_begin(Sketch *sketch, double width, double height);
 void sketch_free(Sketch *sketch);
 
-/* A picture with its lower left corner at `low`, `width` mm wide; its alpha counts. It is copied. */
+/* A copy of a picture with its alpha, lower left corner at `low`, `width` mm wide. */
 void sketch_image(Sketch *sketch, const Image *image, Point low, double width);
 
-/* A line through points, or the closed shape that they bound. */
+/* An open line through points, or a closed shape. */
 void sketch_path(Sketch *sketch, const Point *points, int count, const Pen *pen);
 void sketch_shape(Sketch *sketch, const Point *points, int count, const Pen *pen);
 void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen);
 void sketch_rectangle(Sketch *sketch, Point low, Point high, const Pen *pen);
 void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen);
 
-/* A line with a head at its end, or at both. */
+/* A line with a head at its end or at both ends. */
 typedef enum ArrowHeads { HEAD_AT_END, HEADS_AT_BOTH } ArrowHeads;
 void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width);
 
-/* A shape of the world, cut off at the window's edge. */
+/* A box in world coordinates, clipped to the window. */
 void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen);
 
-/* A line of words, cut to SKETCH_TEXT_SIZE - 1 bytes, its middle at the height of `at`. */
+/* One line of text, truncated to SKETCH_TEXT_SIZE - 1 bytes, vertically centred on `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
-/* A number with so many decimals, for a text: with a minus as wide as a plus, and none before 0. */
+/* A number as text with this many decimals: with a minus sign (U+2212), and without it for -0. */
 typedef struct ShownDecimals {
     char text[48];
 } ShownDecimals;
 ShownDecimals show_decimals(double value, int decimals);
 
-/* A bar to measure by, for an amount at a scale in mm a unit, and what it stands for: "5 m". */
-void sketch_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
+/* A scale bar for an amount at `scale` mm per unit, labelled for example "5 m". */
+void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
 
-/* The largest of 1, 2 and 5 times a power of ten that is not above `most`, which is above 0. */
+/* The largest 1, 2 or 5 times a power of ten that is at most `most`; most > 0. */
 double round_down(double most);

@@ -20,15 +20,15 @@ bool sketch_format(const char *path, SketchFormat *format, Error *error) {
             *format = (SketchFormat)i;
             return true;
         }
-    return error_input(error, path, "a figure's name ends in .png, .svg or .pdf");
+    return error_input(error, path, "the name of a figure must end in .png, .svg or .pdf");
 }
 
 bool sketch_check_pixels(double width, double height, double dpi, Error *error) {
     double columns = width / 25.4 * dpi, rows = height / 25.4 * dpi;
     return columns * rows <= SKETCH_MAX_PIXELS ||
            error_input(error, "figure",
-                       "%.0f x %.0f mm at %g dots an inch are %.0f x %.0f pixels; at most %d are drawn", width, height,
-                       dpi, columns, rows, SKETCH_MAX_PIXELS);
+                       "%.0f x %.0f mm at %g dots per inch are %.0f x %.0f pixels; at most %d are allowed", width,
+                       height, dpi, columns, rows, SKETCH_MAX_PIXELS);
 }
 
 bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *output, Error *error) {

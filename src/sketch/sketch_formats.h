@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the writers of a sketch's three formats share. Each gives a malloc'ed block, or NULL with error set. */
+/* Shared by the writers of the three formats. Each returns a malloc'ed block, or NULL with error set.
+
+   Why our own writers: a figure has the same bytes on Debian 12 and 13. Tests compare bytes with stored hashes:
+   test_sketch_files.c for the writers alone, test_figure.sh and test_paper.sh for figures. cairo's bytes depend on its
+   version: with a fixed creation date, cairo 1.16.0 (Debian 12) and 1.18.4 (Debian 13) write different PDF and SVG files,
+   and different pixels where there is text. zlib compresses our PNG files and PDF streams: its versions 1.2.13 and 1.3.1
+   give the same bytes. */
 #pragma once
 #include "sketch/sketch_files.h"
 
@@ -7,22 +13,22 @@ char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *si
 char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
 char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
 
-/* The i-th mark from below: 0 .. mark_count - 1. `order` comes from sketch_order(), NULL when memory is short. */
+/* The marks' indices from bottom to top, [mark_count]; NULL if out of memory. */
 size_t *sketch_order(const Sketch *sketch);
 
 enum { DASHES_MAX = 4 };
 
-/* A pen's dashes in mm; 0 where it is solid. */
+/* Returns the number of a pen's dashes and gaps, and their lengths in mm; 0: solid. */
 int pen_dashes(const Pen *pen, double dashes[DASHES_MAX]);
 
-/* Where the pen of a line of words starts on its baseline, and the unit vector along it. */
+/* The start of a text on its baseline, and the unit vector along it. */
 typedef struct TextPlace {
     Point from;
-    double cosine, sine, em; /* mm an em */
+    double cosine, sine, em; /* mm per em */
 } TextPlace;
 TextPlace text_place(const Sketch *sketch, const SketchMark *mark);
 
-/* Thickness of a halo on either side, of an em. */
+/* Halo thickness on each side / em. */
 #define HALO_SHARE 0.14
 
 static inline bool has_alpha(const Image *image) {
@@ -31,5 +37,5 @@ static inline bool has_alpha(const Image *image) {
     return false;
 }
 
-/* As a PNG, with its alpha where any pixel has some; dpi 0: without a resolution. */
+/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. */
 char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as PDF 1.5 (ISO 32000-1): one page with the font in it, and neither date nor number of its own. Words are text
-   that can be searched and copied. */
+/* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font, without date and document ID. Text can be
+   searched and copied. */
 #include "sketch/pdf_objects.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
@@ -9,28 +9,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void put_colour(FILE *content, uint32_t colour, bool line) {
+static void write_colour(FILE *content, uint32_t colour, bool line) {
     fprintf(content, "%.4f %.4f %.4f %s\n", (colour >> 16 & 255) / 255.0, (colour >> 8 & 255) / 255.0,
             (colour & 255) / 255.0, line ? "RG" : "rg");
 }
 
-/* Opacities are named by their thousandths. */
+/* Opacities are named by their value in thousandths. */
 static int opacity_number(const Pen *pen) { return (int)lrint(1000 * pen->opacity); }
 
 static bool is_filled(const SketchMark *mark) { return mark->closed && mark->pen.fill != NO_COLOUR; }
 
-static void put_path(FILE *content, const Sketch *sketch, const SketchMark *mark) {
+static void write_path(FILE *content, const Sketch *sketch, const SketchMark *mark) {
     const Pen *pen = &mark->pen;
     double dashes[DASHES_MAX];
     bool line = pen->line != NO_COLOUR;
     if (!line && !is_filled(mark)) return;
     fprintf(content, "q 1 j\n");
     if (is_filled(mark)) {
-        put_colour(content, pen->fill, false);
+        write_colour(content, pen->fill, false);
         if (pen->opacity < 1) fprintf(content, "/o%d gs\n", opacity_number(pen));
     }
     if (line) {
-        put_colour(content, pen->line, true);
+        write_colour(content, pen->line, true);
         fprintf(content, "%.3f w\n", pen->width * LINE_UNIT);
         int count = pen_dashes(pen, dashes);
         for (int i = 0; i < count; i++) fprintf(content, "%s%.3f", i == 0 ? "[" : " ", dashes[i]);
@@ -44,16 +44,16 @@ static void put_path(FILE *content, const Sketch *sketch, const SketchMark *mark
     fprintf(content, "%s%s Q\n", mark->closed ? "h " : "", paints[is_filled(mark)][line]);
 }
 
-static void put_words(FILE *content, const Sketch *sketch, const SketchMark *mark) {
+static void write_text(FILE *content, const Sketch *sketch, const SketchMark *mark) {
     const TextPlace place = text_place(sketch, mark);
     fprintf(content, "BT /F %.4f Tf %.5f %.5f %.5f %.5f %.3f %.3f Tm\n", place.em, place.cosine, place.sine,
             -place.sine, place.cosine, place.from.x, place.from.y);
     for (int halo = mark->style.halo; halo >= 0; halo--) {
         if (halo == 1) {
-            put_colour(content, 0xFFFFFF, true);
+            write_colour(content, 0xFFFFFF, true);
             fprintf(content, "%.3f w 1 J 1 j 1 Tr\n", 2 * HALO_SHARE * place.em);
         } else {
-            put_colour(content, mark->style.colour, false);
+            write_colour(content, mark->style.colour, false);
             fprintf(content, "0 J 0 Tr\n%.5f %.5f %.5f %.5f %.3f %.3f Tm\n", place.cosine, place.sine, -place.sine,
                     place.cosine, place.from.x, place.from.y);
         }
@@ -65,7 +65,7 @@ static void put_words(FILE *content, const Sketch *sketch, const SketchMark *mar
     fprintf(content, "ET\n");
 }
 
-static void put_marks(FILE *content, const Sketch *sketch, const SketchOutput *output, const size_t *order) {
+static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput *output, const size_t *order) {
     const double points = 1 / MM_PER_POINT;
     fprintf(content, "%.6f 0 0 %.6f 0 0 cm\n", points, points);
     if (!output->transparent) fprintf(content, "1 1 1 rg 0 0 %.3f %.3f re f\n", sketch->width, sketch->height);
@@ -77,26 +77,26 @@ static void put_marks(FILE *content, const Sketch *sketch, const SketchOutput *o
             fprintf(content, "q %.3f 0 0 %.3f %.3f %.3f cm /I%d Do Q\n", mark->width,
                     mark->width * mark->image->height / mark->image->width, mark->at.x, mark->at.y, image++);
             break;
-        case MARK_PATH: put_path(content, sketch, mark); break;
-        case MARK_TEXT: put_words(content, sketch, mark); break;
+        case MARK_PATH: write_path(content, sketch, mark); break;
+        case MARK_TEXT: write_text(content, sketch, mark); break;
         }
     }
 }
 
-static bool put_content(Pdf *pdf, const SketchOutput *output, const size_t *order) {
+static bool write_content(Pdf *pdf, const SketchOutput *output, const size_t *order) {
     char *text = NULL;
     size_t size = 0;
     FILE *content = open_memstream(&text, &size);
     if (content == NULL) return false;
-    put_marks(content, pdf->sketch, output, order);
+    write_marks(content, pdf->sketch, output, order);
     bool whole = !ferror(content);
-    whole = fclose(content) == 0 && whole && pdf_put_stream(pdf, CONTENT, "", text, size);
+    whole = fclose(content) == 0 && whole && pdf_write_stream(pdf, CONTENT, "", text, size);
     free(text);
     return whole;
 }
 
-/* Some channels of the pixels, one after the other. */
-static bool put_channels(Pdf *pdf, int number, const Image *image, int first, int channels, const char *keys) {
+/* Writes consecutive channels of the pixels. */
+static bool write_channels(Pdf *pdf, int number, const Image *image, int first, int channels, const char *keys) {
     size_t pixels = (size_t)image->width * (size_t)image->height;
     unsigned char *data = malloc(pixels * (size_t)channels);
     char all_keys[256];
@@ -105,27 +105,27 @@ static bool put_channels(Pdf *pdf, int number, const Image *image, int first, in
         memcpy(data + i * (size_t)channels, image->pixels + 4 * i + first, (size_t)channels);
     snprintf(all_keys, sizeof all_keys, "/Type/XObject/Subtype/Image/Width %d/Height %d/BitsPerComponent 8%s",
              image->width, image->height, keys);
-    bool done = pdf_put_stream(pdf, number, all_keys, data, pixels * (size_t)channels);
+    bool done = pdf_write_stream(pdf, number, all_keys, data, pixels * (size_t)channels);
     free(data);
     return done;
 }
 
-static bool put_images(Pdf *pdf, const size_t *order) {
+static bool write_images(Pdf *pdf, const size_t *order) {
     int number = FIRST_IMAGE;
     for (size_t i = 0; i < pdf->sketch->mark_count; i++) {
         const SketchMark *mark = &pdf->sketch->marks[order[i]];
         if (mark->kind != MARK_IMAGE) continue;
         char keys[64];
         snprintf(keys, sizeof keys, "/ColorSpace/DeviceRGB/SMask %d 0 R", number + 1);
-        if (!put_channels(pdf, number, mark->image, 0, 3, keys) ||
-            !put_channels(pdf, number + 1, mark->image, 3, 1, "/ColorSpace/DeviceGray"))
+        if (!write_channels(pdf, number, mark->image, 0, 3, keys) ||
+            !write_channels(pdf, number + 1, mark->image, 3, 1, "/ColorSpace/DeviceGray"))
             return false;
         number += 2;
     }
     return true;
 }
 
-static void put_page(Pdf *pdf, int images) {
+static void write_page(Pdf *pdf, int images) {
     const double points = 1 / MM_PER_POINT;
     FILE *file = pdf->file;
     pdf_begin_object(pdf, CATALOG);
@@ -151,22 +151,22 @@ static void put_page(Pdf *pdf, int images) {
     fprintf(file, ">>>>>>\nendobj\n");
 }
 
-static void put_end(Pdf *pdf) {
+static void write_trailer(Pdf *pdf) {
     size_t start = (size_t)ftell(pdf->file);
     fprintf(pdf->file, "xref\n0 %d\n0000000000 65535 f \n", pdf->count);
     for (int i = 1; i < pdf->count; i++) fprintf(pdf->file, "%010zu 00000 n \n", pdf->offsets[i]);
     fprintf(pdf->file, "trailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%zu\n%%%%EOF\n", pdf->count, CATALOG, start);
 }
 
-static bool put_all(Pdf *pdf, const SketchOutput *output, int images) {
+static bool write_document(Pdf *pdf, const SketchOutput *output, int images) {
     size_t *order = sketch_order(pdf->sketch);
     bool whole = order != NULL;
     fprintf(pdf->file, "%%PDF-1.5\n%%\xE2\xE3\xCF\xD3\n");
     if (whole) {
-        put_page(pdf, images);
-        whole = put_content(pdf, output, order) && pdf_put_font(pdf) && put_images(pdf, order);
+        write_page(pdf, images);
+        whole = write_content(pdf, output, order) && pdf_write_font(pdf) && write_images(pdf, order);
     }
-    if (whole) put_end(pdf);
+    if (whole) write_trailer(pdf);
     free(order);
     return whole && !ferror(pdf->file);
 }
@@ -177,7 +177,7 @@ char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *si
     char *data = NULL;
     Pdf pdf = {open_memstream(&data, size), sketch, NULL, FIRST_IMAGE + 2 * images};
     pdf.offsets = calloc((size_t)pdf.count, sizeof *pdf.offsets);
-    bool whole = pdf.file != NULL && pdf.offsets != NULL && put_all(&pdf, output, images);
+    bool whole = pdf.file != NULL && pdf.offsets != NULL && write_document(&pdf, output, images);
     if (pdf.file != NULL) whole = fclose(pdf.file) == 0 && whole;
     free(pdf.offsets);
     if (whole) return data;

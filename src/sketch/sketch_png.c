@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as pixels. Lines become areas: a bar for each part and a disc at each corner. */
+/* A sketch as pixels. Lines become polygons: a bar per segment and a disc per corner. */
 #include "sketch/raster.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
@@ -10,7 +10,7 @@
 
 typedef struct Painter {
     const Sketch *sketch;
-    double scale; /* pixels a mm */
+    double scale; /* pixels per mm */
     Image *page;
     Raster raster;
 } Painter;
@@ -19,33 +19,33 @@ static Point on_page(const Painter *painter, Point p) {
     return (Point){painter->scale * p.x, painter->scale * (painter->sketch->height - p.y)};
 }
 
-static void put_edge(Painter *painter, Point from, Point to) {
+static void add_edge(Painter *painter, Point from, Point to) {
     raster_edge(&painter->raster, from.x, from.y, to.x, to.y);
 }
 
-/* All bars and discs wind the same way, so that they add up where they overlap. */
-static void put_bar(Painter *painter, Point p, Point q, double half) {
+/* All bars and discs have the same orientation, so that overlaps stay filled. */
+static void add_bar(Painter *painter, Point p, Point q, double half) {
     double length = hypot(q.x - p.x, q.y - p.y);
     if (!(length > 0)) return;
     double x = half * (q.y - p.y) / length, y = -half * (q.x - p.x) / length;
     const Point corners[4] = {{p.x + x, p.y + y}, {q.x + x, q.y + y}, {q.x - x, q.y - y}, {p.x - x, p.y - y}};
-    for (int i = 0; i < 4; i++) put_edge(painter, corners[i], corners[(i + 1) % 4]);
+    for (int i = 0; i < 4; i++) add_edge(painter, corners[i], corners[(i + 1) % 4]);
 }
 
-static void put_disc(Painter *painter, Point at, double radius) {
+static void add_disc(Painter *painter, Point at, double radius) {
     enum { CORNERS = 16 };
     Point before = {at.x + radius, at.y};
     for (int i = 1; i <= CORNERS; i++) {
         double angle = 2 * M_PI * i / CORNERS;
         Point next = {at.x + radius * cos(angle), at.y + radius * sin(angle)};
-        put_edge(painter, before, next);
+        add_edge(painter, before, next);
         before = next;
     }
 }
 
-/* A line in pixels, cut into dashes (pixels). */
-static void put_dashed(Painter *painter, const Point *points, size_t count, bool closed, double half,
-                       const double *dashes, int dash_count) {
+/* A line, all in pixels, split into dashes. */
+static void add_dashed_line(Painter *painter, const Point *points, size_t count, bool closed, double half,
+                            const double *dashes, int dash_count) {
     int dash = 0;
     double left = dash_count > 0 ? dashes[0] : HUGE_VAL;
     size_t parts = closed ? count : count - 1;
@@ -53,11 +53,11 @@ static void put_dashed(Painter *painter, const Point *points, size_t count, bool
         Point p = points[i], q = points[(i + 1) % count];
         double length = hypot(q.x - p.x, q.y - p.y), done = 0;
         bool drawn = dash % 2 == 0;
-        if (drawn && (i > 0 || closed)) put_disc(painter, p, half);
+        if (drawn && (i > 0 || closed)) add_disc(painter, p, half);
         while (done < length) {
             double step = fmin(left, length - done), from = done / length, to = (done + step) / length;
             if (dash % 2 == 0)
-                put_bar(painter, (Point){p.x + from * (q.x - p.x), p.y + from * (q.y - p.y)},
+                add_bar(painter, (Point){p.x + from * (q.x - p.x), p.y + from * (q.y - p.y)},
                         (Point){p.x + to * (q.x - p.x), p.y + to * (q.y - p.y)}, half);
             done += step;
             left -= step;
@@ -68,7 +68,7 @@ static void put_dashed(Painter *painter, const Point *points, size_t count, bool
     }
 }
 
-static void put_path(Painter *painter, const SketchMark *mark) {
+static void draw_path(Painter *painter, const SketchMark *mark) {
     const Pen *pen = &mark->pen;
     Point *points = malloc(mark->count * sizeof *points);
     if (points == NULL) {
@@ -77,25 +77,25 @@ static void put_path(Painter *painter, const SketchMark *mark) {
     }
     for (size_t i = 0; i < mark->count; i++) points[i] = on_page(painter, painter->sketch->points[mark->first + i]);
     if (mark->closed && pen->fill != NO_COLOUR) {
-        for (size_t i = 0; i < mark->count; i++) put_edge(painter, points[i], points[(i + 1) % mark->count]);
+        for (size_t i = 0; i < mark->count; i++) add_edge(painter, points[i], points[(i + 1) % mark->count]);
         raster_fill(&painter->raster, pen->fill, pen->opacity, painter->page);
     }
     if (pen->line != NO_COLOUR) {
         double dashes[DASHES_MAX];
         int count = pen_dashes(pen, dashes);
         for (int i = 0; i < count; i++) dashes[i] *= painter->scale;
-        put_dashed(painter, points, mark->count, mark->closed, pen->width * LINE_UNIT * painter->scale / 2, dashes,
-                   count);
+        add_dashed_line(painter, points, mark->count, mark->closed, pen->width * LINE_UNIT * painter->scale / 2, dashes,
+                        count);
         raster_fill(&painter->raster, pen->line, 1, painter->page);
     }
     free(points);
 }
 
-/* The pen of an outline; a halo's has a thickness. */
+/* Follows a glyph's outline, to fill it or to stroke its halo. */
 typedef struct Tracer {
     Painter *painter;
-    Point origin;          /* pixels, of the glyph */
-    double x_x, x_y, halo; /* pixels a unit of the font, along and across; half the halo's width or 0 */
+    Point origin;          /* of the glyph, pixels */
+    double x_x, x_y, halo; /* the font's x unit vector, pixels; half the halo's width, or 0 */
     Point start, at;
 } Tracer;
 
@@ -106,10 +106,10 @@ static Point glyph_point(const Tracer *tracer, const OutlineStep *step) {
 
 static void trace_line(Tracer *tracer, Point to) {
     if (tracer->halo > 0) {
-        put_bar(tracer->painter, tracer->at, to, tracer->halo);
-        put_disc(tracer->painter, to, tracer->halo);
+        add_bar(tracer->painter, tracer->at, to, tracer->halo);
+        add_disc(tracer->painter, to, tracer->halo);
     } else
-        put_edge(tracer->painter, tracer->at, to);
+        add_edge(tracer->painter, tracer->at, to);
     tracer->at = to;
 }
 
@@ -140,7 +140,7 @@ static void trace_glyph(Tracer *tracer, const Glyph *glyph) {
     if (glyph->steps > 0) trace_line(tracer, tracer->start);
 }
 
-static void put_words(Painter *painter, const SketchMark *mark, double halo, uint32_t colour) {
+static void draw_glyphs(Painter *painter, const SketchMark *mark, double halo, uint32_t colour) {
     const TextPlace place = text_place(painter->sketch, mark);
     const double unit = place.em * painter->scale / type_units;
     Tracer tracer = {painter, on_page(painter, place.from), unit * place.cosine, -unit * place.sine, halo, {0, 0},
@@ -154,14 +154,14 @@ static void put_words(Painter *painter, const SketchMark *mark, double halo, uin
     raster_fill(&painter->raster, colour, 1, painter->page);
 }
 
-static void put_text(Painter *painter, const SketchMark *mark) {
+static void draw_text(Painter *painter, const SketchMark *mark) {
     const double em = mark->style.points * MM_PER_POINT * painter->scale;
-    if (mark->style.halo) put_words(painter, mark, HALO_SHARE * em, 0xFFFFFF);
-    put_words(painter, mark, 0, mark->style.colour);
+    if (mark->style.halo) draw_glyphs(painter, mark, HALO_SHARE * em, 0xFFFFFF);
+    draw_glyphs(painter, mark, 0, mark->style.colour);
 }
 
-/* At whole pixels; a picture that is as large as its place keeps every pixel. */
-static void put_image(Painter *painter, const SketchMark *mark) {
+/* Snapped to whole pixels, nearest neighbour: a picture at its own size keeps every pixel. */
+static void draw_image(Painter *painter, const SketchMark *mark) {
     const Image *image = mark->image;
     Image *page = painter->page;
     const double width = mark->width * painter->scale, height = width * image->height / image->width;
@@ -179,11 +179,11 @@ static void put_image(Painter *painter, const SketchMark *mark) {
         }
 }
 
-static void put_mark(Painter *painter, const SketchMark *mark) {
+static void draw_mark(Painter *painter, const SketchMark *mark) {
     switch (mark->kind) {
-    case MARK_IMAGE: put_image(painter, mark); break;
-    case MARK_PATH: put_path(painter, mark); break;
-    case MARK_TEXT: put_text(painter, mark); break;
+    case MARK_IMAGE: draw_image(painter, mark); break;
+    case MARK_PATH: draw_path(painter, mark); break;
+    case MARK_TEXT: draw_text(painter, mark); break;
     }
 }
 
@@ -197,7 +197,7 @@ char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *si
     if (painter.page != NULL && order != NULL) {
         if (!output->transparent)
             memset(painter.page->pixels, 255, (size_t)painter.page->width * (size_t)painter.page->height * 4);
-        for (size_t i = 0; i < sketch->mark_count; i++) put_mark(&painter, &sketch->marks[order[i]]);
+        for (size_t i = 0; i < sketch->mark_count; i++) draw_mark(&painter, &sketch->marks[order[i]]);
         if (painter.raster.failed)
             error_memory(error, "figure");
         else

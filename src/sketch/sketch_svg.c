@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as SVG 1.1, in mm. Words are the font's outlines, so that they look alike where the font is missing; what they
-   say stands in aria-label. */
+/* A sketch as SVG 1.1, in mm. Text is drawn as outlines, so that it looks the same without the font; aria-label
+   holds its content. */
 #include "common/base64.h"
 #include "common/utf8.h"
 #include "sketch/sketch_formats.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-static void put_outline(FILE *file, const Glyph *glyph) {
+static void write_glyph(FILE *file, const Glyph *glyph) {
     static const char letters[] = "MLC";
     fprintf(file, "<path id=\"g%u\" d=\"", glyph->index);
     for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
@@ -22,8 +22,8 @@ static void put_outline(FILE *file, const Glyph *glyph) {
     fprintf(file, "Z\"/>\n");
 }
 
-/* The glyphs that the sketch's words need. */
-static bool put_outlines(FILE *file, const Sketch *sketch) {
+/* Defines the glyphs that the texts use. */
+static bool write_glyphs(FILE *file, const Sketch *sketch) {
     bool *used = calloc((size_t)type_glyph_count, sizeof *used);
     if (used == NULL) return false;
     for (size_t i = 0; i < sketch->mark_count; i++) {
@@ -33,14 +33,14 @@ static bool put_outlines(FILE *file, const Sketch *sketch) {
     }
     fprintf(file, "<defs>\n");
     for (int i = 0; i < type_glyph_count; i++)
-        if (used[i] && type_glyphs[i].steps > 0) put_outline(file, &type_glyphs[i]);
+        if (used[i] && type_glyphs[i].steps > 0) write_glyph(file, &type_glyphs[i]);
     fprintf(file, "</defs>\n");
     free(used);
     return true;
 }
 
-/* What XML cannot hold, and bytes that are no UTF-8, become '?'. */
-static void put_escaped(FILE *file, const char *text) {
+/* Characters not allowed in XML and bytes that are not UTF-8 become '?'. */
+static void write_escaped(FILE *file, const char *text) {
     while (*text != '\0') {
         const char *from = text;
         unsigned code = utf8_next(&text);
@@ -57,12 +57,12 @@ static void put_escaped(FILE *file, const char *text) {
     }
 }
 
-static void put_words(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+static void write_text(FILE *file, const Sketch *sketch, const SketchMark *mark) {
     const char *text = sketch->texts + mark->text;
     const TextPlace place = text_place(sketch, mark);
     const double unit = place.em / type_units;
     fprintf(file, "<g role=\"img\" aria-label=\"");
-    put_escaped(file, text);
+    write_escaped(file, text);
     fprintf(file, "\" transform=\"matrix(%.6f %.6f %.6f %.6f %.3f %.3f)\" fill=\"#%06X\"", unit * place.cosine,
             -unit * place.sine, -unit * place.sine, -unit * place.cosine, place.from.x, sketch->height - place.from.y,
             mark->style.colour);
@@ -78,7 +78,7 @@ static void put_words(FILE *file, const Sketch *sketch, const SketchMark *mark) 
     fputs("</g>\n", file);
 }
 
-static void put_path(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+static void write_path(FILE *file, const Sketch *sketch, const SketchMark *mark) {
     const Pen *pen = &mark->pen;
     double dashes[DASHES_MAX];
     fprintf(file, "<path d=\"");
@@ -100,7 +100,7 @@ static void put_path(FILE *file, const Sketch *sketch, const SketchMark *mark) {
     fprintf(file, "%s/>\n", count > 0 ? "\"" : "");
 }
 
-static bool put_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
+static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
     size_t size;
     char *png = picture_as_png(mark->image, 0, &size, error);
     if (png == NULL) return false;
@@ -115,20 +115,20 @@ static bool put_image(FILE *file, const Sketch *sketch, const SketchMark *mark, 
     return true;
 }
 
-static bool put_all(FILE *file, const Sketch *sketch, const SketchOutput *output, Error *error) {
+static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput *output, Error *error) {
     size_t *order = sketch_order(sketch);
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" "
             "width=\"%.3fmm\" height=\"%.3fmm\" viewBox=\"0 0 %.3f %.3f\">\n",
             sketch->width, sketch->height, sketch->width, sketch->height);
-    bool whole = (order != NULL && put_outlines(file, sketch)) || error_memory(error, "figure");
+    bool whole = (order != NULL && write_glyphs(file, sketch)) || error_memory(error, "figure");
     if (!output->transparent) fprintf(file, "<rect width=\"100%%\" height=\"100%%\" fill=\"#FFFFFF\"/>\n");
     for (size_t i = 0; whole && i < sketch->mark_count; i++) {
         const SketchMark *mark = &sketch->marks[order[i]];
         switch (mark->kind) {
-        case MARK_IMAGE: whole = put_image(file, sketch, mark, error); break;
-        case MARK_PATH: put_path(file, sketch, mark); break;
-        case MARK_TEXT: put_words(file, sketch, mark); break;
+        case MARK_IMAGE: whole = write_image(file, sketch, mark, error); break;
+        case MARK_PATH: write_path(file, sketch, mark); break;
+        case MARK_TEXT: write_text(file, sketch, mark); break;
         }
     }
     fprintf(file, "</svg>\n");
@@ -143,7 +143,7 @@ char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *si
         error_memory(error, "figure");
         return NULL;
     }
-    bool whole = put_all(file, sketch, output, error);
+    bool whole = write_document(file, sketch, output, error);
     whole = whole && (!ferror(file) || error_memory(error, "figure"));
     if (fclose(file) == 0 && whole) return data;
     free(data);

@@ -12,7 +12,8 @@ typedef struct BlockSolver {
     Sweeps sweeps;
 } BlockSolver;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+                                       {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
@@ -44,4 +45,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_block = {
-    "block", "sequential impulses that solve two points of a pair at once", settings, create, solve, destroy};
+    .description = {.name = "block",
+                    .summary = "sequential impulses that solve both normal impulses of a pair together",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

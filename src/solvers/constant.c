@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a network's training data were on average, said for every pair in place of what the network says, and used in
-   the same way: by its target as pair-net does or as contact-net does. It is no method, but the mark that one has to
-   beat before it can be said to have learned anything. Fails by design: what is right on average is too much for
-   a box at rest and too little for one that is struck. */
+/* The constant predictor: the mean of a network's training data in place of its prediction, applied as pair-net or
+   contact-net applies the prediction. A baseline: a network has learned something only if it is more accurate. Fails by
+   design: the mean change is too large for a resting box and too small for a struck one. */
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 
 static const SettingSpec settings[] = {
-    {"network", "file of the network whose training data it was (the scene's own)"},
-    {"k", "sweeps over all pairs a step, for data of single impulses (the scene's own: 10)"},
+    {"network", "file of the network with that training data (default: the scene's)"},
+    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
     {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
@@ -18,6 +17,13 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 const ContactSolverKind solver_constant = {
-    "constant",        "what pair-net or contact-net was trained on, on average: the same for every pair",
-    settings,          create,
-    pair_solver_solve, pair_solver_destroy};
+    .description = {.name = "constant",
+                    .summary =
+                        "baseline: predicts the mean of the training data of pair-net or contact-net for every pair",
+                    .settings = settings,
+                    .role = METHOD_BASELINE,
+                    .needs_network = true,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

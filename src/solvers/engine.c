@@ -14,10 +14,11 @@ typedef struct SequentialImpulses {
     Sweeps sweeps;
 } SequentialImpulses;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
-                                       {"accumulate", "on|off: clamp the sum of impulses, not each one"},
-                                       {"warm", "on|off: start from the impulses of the step before (on)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+    {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)"},
+    {"warm", "on|off: warm start from the previous step's impulses (default: on)"},
+    {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
@@ -55,4 +56,17 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_engine = {
-    "engine", "sequential impulses with warm starting: the physics engine", settings, create, solve, destroy};
+    .description = {.name = "engine",
+                    .summary = "sequential impulses with warm starting: the physics engine",
+                    .settings = settings,
+                    .title = "Physics engine",
+                    .caption = "sequential impulses",
+                    .shipped = "k=10",
+                    .chart = METHOD_RUNS("k=1", "k=2", "k=4", "k=7", "k=10", "k=20", "k=50", "k=100", "k=10,warm=off",
+                                         "k=20,warm=off", "k=50,warm=off", "k=100,warm=off"),
+                    .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50", "k=10,warm=off"),
+                    .stability = METHOD_RUNS("k=4", "", "k=50"),
+                    .stability_place = 1},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

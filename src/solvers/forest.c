@@ -27,8 +27,9 @@ static void link_bodies(Forest *forest, const ContactProblem *problem) {
     }
 }
 
-/* Takes pairs off from the tips down. What then still has pairs is static or in a loop. */
-static void take_off(Forest *forest, const ContactProblem *problem) {
+/* Collects pairs from the tips down, and removes them from their bodies. Bodies that keep pairs are static or in a
+   loop. */
+static void collect_pairs(Forest *forest, const ContactProblem *problem) {
     forest->pair_count = 0;
     for (int i = 0; i < problem->body_count; i++)
         for (int above = i; forest->bodies[above].pairs == 1 && problem_body_moves(&problem->bodies[above]);) {
@@ -44,7 +45,7 @@ static void take_off(Forest *forest, const ContactProblem *problem) {
         }
 }
 
-/* 1 where the body above is b of the contact: an impulse pushes it. -1 where it is a. */
+/* 1 if the body above is b of the contact, which a positive impulse pushes; -1 if it is a. */
 static float side_of(const ForestPair *pair, const ContactPoint *contact) {
     return contact->b == pair->above ? 1.0f : -1.0f;
 }
@@ -52,7 +53,7 @@ static float side_of(const ForestPair *pair, const ContactPoint *contact) {
 static Vec2 arm_above(float side, const ContactPoint *contact) { return side > 0 ? contact->arm_b : contact->arm_a; }
 static Vec2 arm_below(float side, const ContactPoint *contact) { return side > 0 ? contact->arm_a : contact->arm_b; }
 
-/* The velocity of the body above, if it neither slides nor opens. False where nothing says how fast the one below is. */
+/* The velocity of the body above, if both contacts stick. False if the velocity of the body below is unknown. */
 static bool carry(Forest *forest, const ContactProblem *problem, const ForestPair *pair) {
     const ContactPoint *contact = &problem->contacts[pair->first];
     const ForestBody *below = &forest->bodies[pair->below];
@@ -69,8 +70,8 @@ static bool carry(Forest *forest, const ContactProblem *problem, const ForestPai
     return true;
 }
 
-/* Shares what the body above needs among two points. False where one would have to pull or to drag too much, or a
-   number is not finite: then as much of it as the points can do. */
+/* Shares the impulse that the body above needs between two points. False if a point would have to pull or to exceed
+   friction, or if a number is NaN or infinite: then as much of the impulse as the cones allow. */
 static bool share_out(const ContactPoint *contact, float side, Vec2 push, float turn, ContactImpulse out[2]) {
     const Vec2 normal = contact->normal, tangent = vec2_cross_scalar(normal, 1.0f);
     const Vec2 arm = arm_above(side, contact), other = arm_above(side, &contact[1]);
@@ -87,7 +88,7 @@ static bool share_out(const ContactPoint *contact, float side, Vec2 push, float 
     return second >= 0 && second <= needed && fabsf(dragged) <= contact->friction * pushed;
 }
 
-/* Impulses for a body and all that it carries, and what they do to the one below. True where they are the solution's. */
+/* Impulses for a body and all that it carries, and their reaction on the body below. True if all contacts stick. */
 static bool pass_on(Forest *forest, const ContactProblem *problem, const ForestPair *pair, ContactImpulse *impulses) {
     const ContactPoint *contact = &problem->contacts[pair->first];
     const ProblemBody *body = &problem->bodies[pair->above];
@@ -112,7 +113,7 @@ static bool pass_on(Forest *forest, const ContactProblem *problem, const ForestP
     return holds;
 }
 
-bool forest_solve(Forest *forest, const ContactProblem *problem, ContactImpulse *impulses, ForestAnswer *answer) {
+bool forest_solve(Forest *forest, const ContactProblem *problem, ContactImpulse *impulses, ForestResult *result) {
     size_t bodies = (size_t)problem->body_count;
     if (!array_reserve((void **)&forest->bodies, &forest->body_capacity, bodies, sizeof *forest->bodies) ||
         !array_reserve((void **)&forest->pairs, &forest->pair_capacity, bodies, sizeof *forest->pairs))
@@ -120,13 +121,13 @@ bool forest_solve(Forest *forest, const ContactProblem *problem, ContactImpulse 
     for (int i = 0; i < problem->contact_count; i++)
         impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
     link_bodies(forest, problem);
-    take_off(forest, problem);
+    collect_pairs(forest, problem);
     int grounded = 0, solved = 0;
     for (int i = forest->pair_count - 1; i >= 0; i--) grounded += carry(forest, problem, &forest->pairs[i]);
     for (int i = 0; i < forest->pair_count; i++) {
         const ForestPair *pair = &forest->pairs[i];
         if (pass_on(forest, problem, pair, &impulses[pair->first])) solved += pair->points;
     }
-    *answer = solved == problem->contact_count ? FOREST_WHOLE : grounded > 0 ? FOREST_PART : FOREST_NONE;
+    *result = solved == problem->contact_count ? FOREST_WHOLE : grounded > 0 ? FOREST_PART : FOREST_NONE;
     return true;
 }

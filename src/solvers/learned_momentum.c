@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps with momentum (momentum.c) whose factors were learned: one number before each sweep, fitted to a scene and to
-   the number of sweeps (impact_training/momentum_fit.h). Costs what momentum costs. Source: schedules learned for unrolled
-   iterations, as in Gregor, LeCun, "Learning Fast Approximations of Sparse Coding" (2010). Fails on other scenes than
-   its own: then the factors are no better than those by hand, or worse. */
+/* Sweeps with momentum (momentum.c) and learned factors: one per sweep, fitted to a scene and to the number of sweeps
+   (impact_training/momentum_fit.h). Costs as much as momentum. Source: schedules learned for unrolled iterations, as in
+   Gregor, LeCun, "Learning Fast Approximations of Sparse Coding" (2010). Fails on scenes that it was not fitted to:
+   there the factors are no better than hand-tuned ones, or worse. */
 #include "network/momentum_schedule.h"
 #include "solvers/momentum.h"
 #include "solvers/solvers.h"
@@ -15,12 +15,13 @@ typedef struct LearnedMomentum {
     Momentum momentum;
     MomentumSchedules schedules;
     int sweep_count;
-    const float *factors; /* [sweep_count] one of the schedules */
+    const float *factors; /* [sweep_count], of the schedules */
 } LearnedMomentum;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step, one of those in the file"},
-                                       {"network", "file of the learned factors (the scene's own)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step; must be in the file (default: the scene's, else 10)"},
+    {"network", "file of the learned factors (default: the scene's)"},
+    {NULL, NULL}};
 
 static void destroy(void *state) {
     LearnedMomentum *solver = state;
@@ -68,4 +69,13 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_learned_momentum = {
-    "learned-momentum", "momentum with learned factors, one a sweep", settings, create, solve, destroy};
+    .description = {.name = "learned-momentum",
+                    .summary = "momentum with learned factors, one per sweep",
+                    .settings = settings,
+                    .needs_network = true,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50"),
+                    .chart_quick = METHOD_RUNS("k=10", "k=20"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

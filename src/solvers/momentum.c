@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sequential impulses with momentum: between two sweeps all impulses go on in the direction of the last change, and
-   the velocities, linear in the impulses, with them. With p[s] and v[s] after sweep s,
+/* Sequential impulses with momentum extrapolation between sweeps: before each sweep the impulses, and the velocities,
+   which are linear in them, continue along their last change. With p[s] and v[s] after sweep s,
 
        p = p[s] + beta[s] (p[s] - p[s-1]),   v = v[s] + beta[s] (v[s] - v[s-1])
 
-   is where sweep s + 1 begins; it brings the impulses back into their cones. Source: Nesterov, "A Method of Solving a
-   Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); on contacts Mazhar, Heyn, Negrut, Tasora, "Using
-   Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), there with whole gradient
-   steps where here are sweeps. Sweeps are in the order of colours: as near, and sooner (tests/bench/colours). Fails
-   where the cones change from sweep to sweep: what is carried on is then wrong, so the first sweeps of an impact gain
-   little. */
+   is where sweep s + 1 begins; the sweep projects the impulses back into their cones. Source: Nesterov, "A Method of
+   Solving a Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); for contacts Mazhar, Heyn, Negrut,
+   Tasora, "Using Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), with full
+   gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster
+   (tests/bench/colours). Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the
+   first sweeps of an impact gain little. */
 #include "solvers/momentum.h"
 
 #include "common/array.h"
@@ -19,8 +19,8 @@
 
 #include <stdlib.h>
 
-/* Goes on from *now by factor times what changed since *before. + 0 makes 0 of -0, and x - 0 is x even where x is -0: a
-   factor or change of 0 leaves all bits. */
+/* Adds factor times the change since *before to *now. A factor or change of 0 must keep all bits: + 0 turns -0 into 0,
+   and x - 0 is x even for x = -0. */
 static void extrapolate(float *now, float *before, float factor) {
     float next = *now - (factor * (*before - *now) + 0.0f);
     *before = *now;
@@ -40,7 +40,7 @@ static void extrapolate_all(const ContactProblem *problem, float factor, Contact
     }
 }
 
-static void begin_plain(const ContactProblem *problem, const int32_t *visits, ContactSolution *solution) {
+static void begin_scalar(const ContactProblem *problem, const int32_t *visits, ContactSolution *solution) {
     static const SequentialOptions cold = {.accumulate = false};
     sequential_impulses_begin(problem, &cold, solution);
     for (int i = 0; i < problem->contact_count; i++) {
@@ -51,11 +51,11 @@ static void begin_plain(const ContactProblem *problem, const int32_t *visits, Co
     }
 }
 
-void momentum_solve_plain(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
-                          ContactSolution *before, ContactSolution *solution) {
+void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
+                           ContactSolution *before, ContactSolution *solution) {
     static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
-    begin_plain(problem, visits, solution);
-    begin_plain(problem, visits, before);
+    begin_scalar(problem, visits, solution);
+    begin_scalar(problem, visits, before);
     for (int sweep = 0; sweep < count; sweep++) {
         extrapolate_all(problem, factors[sweep], before, solution);
         for (int i = 0; i < problem->contact_count; i++)
@@ -63,7 +63,7 @@ void momentum_solve_plain(const ContactProblem *problem, const int32_t *visits, 
     }
 }
 
-float momentum_factor_by_hand(int sweep, int count) {
+float momentum_factor_tuned(int sweep, int count) {
     float rising = (float)sweep / ((float)sweep + 1.4f), most = 1.0f - 7.0f / (15.0f + (float)count);
     return rising < most ? rising : most;
 }
@@ -87,7 +87,7 @@ bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const flo
         !array_reserve((void **)&before->impulses, &momentum->contact_capacity, (size_t)problem->contact_count,
                        sizeof *before->impulses))
         return error_memory(error, "momentum");
-    momentum_solve_plain(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
+    momentum_solve_scalar(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
     return true;
 }
 
@@ -97,7 +97,8 @@ typedef struct State {
     float *factors; /* [sweep_count] */
 } State;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+                                       {NULL, NULL}};
 
 static void destroy(void *state) {
     State *solver = state;
@@ -118,7 +119,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_by_hand(s, sweep_count);
+    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_tuned(s, sweep_count);
     return solver;
 }
 
@@ -128,4 +129,13 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_momentum = {
-    "momentum", "sequential impulses that go on between sweeps as they went", settings, create, solve, destroy};
+    .description = {.name = "momentum",
+                    .summary = "sequential impulses with momentum extrapolation between sweeps",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10", "k=20"),
+                    .stability = METHOD_RUNS("", "k=20"),
+                    .stability_place = 3},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NNCG: nonsmooth nonlinear conjugate gradients over the sweeps of sequential impulses.
 
-   A sweep turns the impulses p into p'. Its step is taken for a steepest descent, and the steps are made conjugate
-   as Fletcher and Reeves do:
+   A sweep turns the impulses p into p'. Its step p' - p serves as the direction of steepest descent, and the steps are
+   made conjugate by the formula of Fletcher and Reeves:
 
-       g = p - p',   beta = min(|g|^2 / |g of the sweep before|^2, 1),   p = p' + beta d,   d = beta d - g,
+       g = p - p',   beta = min(|g|^2 / |previous g|^2, 1),   p = p' + beta d,   d = beta d - g,
 
-   begun anew (p = p', d = 0) where the sweep goes against the direction, g . d > 0. Velocities are linear in the
-   impulses, so they follow by the same recursion. A sweep comes last: what is handed out is in the friction cone.
-   Source: Silcowitz, Niebuhr, Poulsen, Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive
-   Contact Force Problems" (2010). There it begins anew where |g| grows, which at impacts it does again and again
-   without harm; the test here is that of O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes"
-   (2015), and on impacts leaves half to four fifths of the error. Fails where few sweeps are allowed: up to some ten
-   it may be worse than sweeps alone. A sweep costs two of the engine's, which overlap: here each waits for beta.
+   restarted (p = p', d = 0) if the sweep goes against the direction, g . d > 0. Velocities are linear in the impulses,
+   so they follow by the same recursion. A sweep comes last, so the result is inside the friction cones. Source:
+   Silcowitz, Niebuhr, Poulsen, Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force
+   Problems" (2010). They restart if |g| grows, which happens often and without harm at impacts; the test used here is
+   that of O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes" (2015), and leaves half to four
+   fifths of the error at impacts. Fails with few sweeps: up to about ten it may be less accurate than sweeps alone. A
+   sweep costs as much as two of the engine's, because sweeps cannot overlap: each waits for beta.
 
    Bit-exact: the sweeps are the engine's (sweeps.h), and products are summed in a fixed order. */
 #include "common/array.h"
@@ -22,8 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Four numbers that are extrapolated alike: the impulse sums of a pair, or the velocity of a body with its inverse
-   mass, which no sweep changes. */
+/* Four numbers that are extrapolated together: the accumulated impulses of a pair, or the velocity of a body with its
+   inverse mass, which no sweep changes. */
 typedef struct NncgRow {
     float values[4];
 } NncgRow;
@@ -39,7 +39,8 @@ typedef struct Nncg {
     size_t pair_capacity[2], body_capacity[2];
 } Nncg;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+                                       {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
@@ -58,7 +59,7 @@ static bool reserve(NncgRow **before, NncgRow **direction, size_t capacity[2], i
 }
 
 /* p = p', d = 0 */
-static void begin_anew(Nncg *solver) {
+static void restart(Nncg *solver) {
     const Sweeps *sweeps = &solver->sweeps;
     size_t bodies = (size_t)sweeps->body_count * sizeof(NncgRow), pairs = (size_t)sweeps->pair_count * sizeof(NncgRow);
     memset(solver->body_direction, 0, bodies);
@@ -68,7 +69,7 @@ static void begin_anew(Nncg *solver) {
         memcpy(&solver->pair_before[i], sweeps->pairs[i].sums, sizeof *solver->pair_before);
 }
 
-/* What the last sweep's step -g tells. */
+/* Of the last sweep's step, -g. */
 typedef struct Slope {
     float squared; /* |g|^2 */
     float along;   /* -g . d */
@@ -79,7 +80,7 @@ static float add_up(float partial[2][4]) {
     return (partial[0][0] + partial[0][2]) + (partial[0][1] + partial[0][3]);
 }
 
-/* In eight partial sums, as vector registers have them: even and odd pairs, each by point and direction. */
+/* Eight partial sums, as in vector registers: of even and odd pairs, of each point and direction. */
 static Slope measure(const Nncg *solver) {
     float squared[2][4] = {{0}}, along[2][4] = {{0}};
     for (int i = 0; i < solver->sweeps.pair_count; i++) {
@@ -122,13 +123,13 @@ static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem)
         !reserve(&solver->pair_before, &solver->pair_direction, solver->pair_capacity, sweeps->pair_count) ||
         !reserve(&solver->body_before, &solver->body_direction, solver->body_capacity, sweeps->body_count))
         return false;
-    begin_anew(solver);
+    restart(solver);
     float squared_before = 0.0f;
     for (int sweep = 1; sweep < solver->sweep_count; sweep++) {
         if (!sweeps_run(&solver->sweeps, 1)) return false;
         Slope slope = measure(solver);
         if (slope.along < 0.0f)
-            begin_anew(solver);
+            restart(solver);
         else
             extrapolate(solver, slope.squared < squared_before ? slope.squared / squared_before : 1.0f);
         squared_before = slope.squared;
@@ -136,7 +137,7 @@ static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem)
     return sweeps_run(&solver->sweeps, 1);
 }
 
-/* Where a number is not finite the order of visits may show: then one by one, which is the same everywhere. */
+/* NaN and infinite numbers may depend on the order of visits; so they are computed one by one, the same everywhere. */
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Nncg *solver = state;
     if (!run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
@@ -157,5 +158,12 @@ static void destroy(void *state) {
     free(solver);
 }
 
-const ContactSolverKind solver_nncg = {
-    "nncg", "sweeps made conjugate: nonsmooth nonlinear conjugate gradients", settings, create, solve, destroy};
+const ContactSolverKind solver_nncg = {.description = {.name = "nncg",
+                                                       .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
+                                                       .settings = settings,
+                                                       .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                                                       .chart_quick = METHOD_RUNS("k=20"),
+                                                       .stability_place = 5},
+                                       .create = create,
+                                       .solve = solve,
+                                       .destroy = destroy};

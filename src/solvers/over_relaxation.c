@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projected successive over-relaxation: sequential impulses (sequential_impulses.c) with every step scaled,
+/* Projected successive over-relaxation: sequential impulses (sequential_impulses.c) with every increment scaled by
+   omega,
 
        Pn' = max(Pn + omega mass_n (bias - vn), 0),   Pt' = clamp(Pt - omega mass_t vt, -mu Pn', mu Pn')
 
-   Source: Cryer, "The Solution of a Quadratic Programming Problem Using Systematic Overrelaxation" (1971); in games
-   Erleben, "Stable, Robust, and Versatile Multibody Dynamics Animation" (2005). omega < 1 damps, omega > 1 looks
-   ahead. Fails as sequential impulses do, somewhat later: an impulse still travels one contact a sweep, and what is
-   overshot at an impact has to be taken back. */
+   omega < 1 damps, omega > 1 extrapolates. Source: Cryer, "The Solution of a Quadratic Programming Problem Using
+   Systematic Overrelaxation" (1971); in games Erleben, "Stable, Robust, and Versatile Multibody Dynamics Animation"
+   (2005). Fails as sequential impulses do, somewhat later: an impulse still travels one contact per sweep, and
+   later sweeps must correct the overshoot at an impact. */
 #include "solvers/solvers.h"
 #include "sweeps/sequential_impulses.h"
 #include "sweeps/sweeps.h"
@@ -19,8 +20,8 @@ typedef struct OverRelaxation {
     Sweeps sweeps;
 } OverRelaxation;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"},
-                                       {"omega", "what each step is multiplied by, from 0.01 to 1.99 (1.5)"},
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+                                       {"omega", "factor of every increment, from 0.01 to 1.99 (default: 1.5)"},
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
@@ -54,4 +55,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_over_relaxation = {
-    "over-relaxation", "sequential impulses with every step lengthened", settings, create, solve, destroy};
+    .description = {.name = "over-relaxation",
+                    .summary = "projected successive over-relaxation: sequential impulses with scaled increments",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -1,41 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's network in place of constraint solving (Avatavului, Ifrim, Voncila 2023, sections 3.1 to 3.3).
 
-   Pair by pair, numbers of the two bodies go in, and the change of their velocities comes out, to be added. Two outputs
-   give the change of b's velocity relative to a's. The paper leaves open how it is shared and what becomes of the
-   spins; here it is the impulse that makes this change, acting at the middle of the contact points, so that momentum is
-   kept. Six outputs give the change of both velocities and spins, added as it is: momentum is not kept. What was asked
-   of the network, which the paper leaves open too, says when:
+   The network sees one pair of bodies at a time and predicts the change of their velocities, which is added to them.
 
-     pair     all pairs see the velocities before the solve, as in the training data: their order does not matter;
-     net      the same, and each body takes the mean over its pairs of what they say. All of them say the same change:
-              a sum would count it several times;
-     impulse  k sweeps over the pairs, each from the velocities that those before it left. The network knows no warm
-              start, so they begin from the velocities before the solve.
+   With two outputs it predicts the change of b's velocity relative to a's. The paper leaves open how the two bodies
+   share this change and how their spins change. Here it is the effect of one impulse at the mean of the contact points,
+   so momentum is conserved. With six outputs it predicts the change of both velocities and spins, added as it is:
+   momentum is not conserved.
 
-   The momentum that six outputs or shares of net changes make from nothing is counted pair by pair, and visit by visit
-   (momentum_error). Of net changes even the right ones count: a pair's two bodies owe theirs to other pairs too.
+   The paper also leaves open which change the network is trained to predict, its target:
 
-   Fails on stacks: it sees one pair and no other, so no impulse can be carried through a chain of boxes; and what
-   it leaves of a velocity that should be zero adds up to sinking. Seen from the contact, it also meets warm starts of 0
-   in its own run, for it gives no impulses, where its training data had the engine's. */
+     pair     all pairs are predicted from the velocities before the solve, as in the training data; the order does not
+              matter;
+     net      the same, but each body takes the mean of the changes that its pairs predict: each is the body's whole
+              change, so a sum would count it several times;
+     impulse  k sweeps over the pairs, each predicted from the current velocities. The network has no warm start, so the
+              sweeps begin from the velocities before the solve.
+
+   momentum_error adds up the momentum that six outputs, or means of net changes, create, pair by pair and visit by
+   visit. It counts even correct net changes, since parts of them come from other pairs.
+
+   Fails on stacks: the network sees a single pair, so no impulse travels through a chain of boxes, and what remains of
+   a velocity that should be zero adds up to sinking. With inputs in the frame of the contact, its warm starts are 0 in
+   its own runs, since it returns no impulses, but those of the engine in its training data. */
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 
 static const SettingSpec settings[] = {
-    {"network", "file of the trained network (the scene's own)"},
-    {"k", "sweeps over all pairs a step, for a network of single impulses (the scene's own: 10)"},
+    {"network", "file of the trained network (default: the scene's)"},
+    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
     {NULL, NULL}};
 
 static bool check(const PairNetwork *network, const char *path, Error *error) {
     if (network->target == TARGET_POINTS)
-        return error_input(error, path,
-                           "a network of the target points, which are contact-net's; pair-net needs one of "
-                           "the target pair, net or impulse");
+        return error_input(
+            error, path,
+            "the network has the target points, which is for contact-net; pair-net needs the target pair, "
+            "net or impulse");
     if (network->target == TARGET_IMPULSE && pair_views[network->view].by_contact)
         return error_input(error, path,
-                           "a network of the target impulse with the inputs %s: it needs the impulses so far at the "
-                           "points, which pair-net does not know",
+                           "the network has the target impulse and the inputs %s, which include accumulated impulses; "
+                           "pair-net has none",
                            pair_views[network->view].name);
     return true;
 }
@@ -48,6 +53,11 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 const ContactSolverKind solver_pair_net = {
-    "pair-net",        "the paper's network: the change of a pair's velocities, pair by pair",
-    settings,          create,
-    pair_solver_solve, pair_solver_destroy};
+    .description = {.name = "pair-net",
+                    .summary = "the paper's network: predicts the change of velocities, pair by pair",
+                    .settings = settings,
+                    .title = "Neural network",
+                    .needs_network = true},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

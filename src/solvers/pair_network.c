@@ -24,8 +24,8 @@ static bool refuse_inputs(const Network *network, const char *path, Error *error
         snprintf(view, sizeof view, "%s (%d)", pair_views[v].name, pair_views[v].count);
         name_list_add(&known, view);
     }
-    return error_input(error, path, "a network with %d inputs (%.80s); a pair is seen by those of %s",
-                       network->widths[0], network->inputs, known.text);
+    return error_input(error, path, "the network has %d inputs (%.80s); it needs those of %s", network->widths[0],
+                       network->inputs, known.text);
 }
 
 static bool refuse_target(const Network *network, const char *path, Error *error) {
@@ -43,16 +43,16 @@ static bool find_target(const char *name, PairTarget *target) {
     return false;
 }
 
-/* The view can show what the target asks for. */
+/* Whether the view has the inputs that the target needs. */
 static bool check_view(const PairNetwork *pair, const char *path, Error *error) {
     if (pair->target == TARGET_POINTS && !pair_views[pair->view].by_contact)
-        return error_input(error, path,
-                           "a network of the target points with the inputs %s; it needs those of contact or neighbours",
-                           pair_views[pair->view].name);
+        return error_input(
+            error, path, "the network has the target points and the inputs %s; it needs those of contact or neighbours",
+            pair_views[pair->view].name);
     if (pair->target == TARGET_IMPULSE && pair->view == PAIR_NEIGHBOURS)
         return error_input(
             error, path,
-            "a network of the target impulse with the inputs neighbours, which change at every visit; it "
+            "the network has the target impulse and the inputs neighbours, which change at every visit; it "
             "needs those of another view");
     return true;
 }
@@ -69,7 +69,7 @@ static bool check_outputs(const PairNetwork *pair, const char *path, Error *erro
         snprintf(needed, sizeof needed, "2 (%s) or %d (%s)", pair_output_names(pair->view, pair->target, 2),
                  PAIR_CHANGES, pair_output_names(pair->view, pair->target, PAIR_CHANGES));
     return error_input(
-        error, path, "a network with the inputs %s, the target %s and %d outputs (%.80s); of outputs it needs %s",
+        error, path, "the network has the inputs %s, the target %s and %d outputs (%.80s); it needs outputs %s",
         pair_views[pair->view].name, pair_target_names[pair->target], outputs, pair->network->outputs, needed);
 }
 
@@ -94,7 +94,7 @@ static int count_pairs(const ContactProblem *problem) {
     return pairs;
 }
 
-/* The moment of the step that all pairs are seen in; in *now NULL where it is the problem's own. */
+/* The moment of the step for all pairs; *now is NULL for the problem's own velocities. */
 static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const PairMoment **now) {
     *now = NULL;
     if (!pair_views[pair->view].by_contact) return true;
@@ -141,20 +141,20 @@ void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, 
     network_predict(pair->network, inputs, pair->scratch, outputs);
 }
 
-/* The middle of the pair's contact points, from a body's centre. */
-static Vec2 middle_arm(const ContactProblem *problem, int first, int count, Vec2 center) {
+/* The mean of the pair's contact points, from a body's centre. */
+static Vec2 mean_arm(const ContactProblem *problem, int first, int count, Vec2 center) {
     Vec2 sum = vec2(0, 0);
     for (int i = first; i < first + count; i++) sum = vec2_add(sum, problem->contacts[i].position);
     return vec2_sub(vec2_scale(1.0f / (float)count, sum), center);
 }
 
-/* Six changes from that of the relative velocity: equal and opposite impulses. */
+/* Six changes from that of the relative velocity, by equal and opposite impulses. */
 static void share_relative_change(const ContactProblem *problem, int first, Vec2 change, float changes[PAIR_CHANGES]) {
     const int count = pair_contact_count(problem, first);
     const ProblemBody *a = &problem->bodies[problem->contacts[first].a];
     const ProblemBody *b = &problem->bodies[problem->contacts[first].b];
     Vec2 impulse = vec2_scale(1.0f / (a->inv_mass + b->inv_mass), change);
-    Vec2 arm_a = middle_arm(problem, first, count, a->position), arm_b = middle_arm(problem, first, count, b->position);
+    Vec2 arm_a = mean_arm(problem, first, count, a->position), arm_b = mean_arm(problem, first, count, b->position);
     changes[0] = -a->inv_mass * impulse.x;
     changes[1] = -a->inv_mass * impulse.y;
     changes[2] = -a->inv_inertia * vec2_cross(arm_a, impulse);

@@ -45,15 +45,15 @@ static bool is_finite_velocity(const BodyVelocity *velocity) {
     return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
 }
 
-/* The momentum of both bodies together that changes of a pair make, N s. */
-static double made_momentum(const ProblemBody *a, const ProblemBody *b, const float changes[PAIR_CHANGES]) {
+/* The total momentum that changes of a pair create, N s. */
+static double created_momentum(const ProblemBody *a, const ProblemBody *b, const float changes[PAIR_CHANGES]) {
     if (a->inv_mass == 0.0f || b->inv_mass == 0.0f) return 0;
     const double mass_a = 1.0 / a->inv_mass, mass_b = 1.0 / b->inv_mass;
     const double x = mass_a * changes[0] + mass_b * changes[3], y = mass_a * changes[1] + mass_b * changes[4];
     return sqrt(x * x + y * y);
 }
 
-/* A number that is not finite never reaches a body: the pair is left as it is, and counted. */
+/* A change with a NaN or infinite number is discarded and counted. */
 static void add_changes(const PairNetwork *network, const ContactProblem *problem, int first,
                         const float changes[PAIR_CHANGES], ContactSolution *solution) {
     const int a = problem->contacts[first].a, b = problem->contacts[first].b;
@@ -67,7 +67,7 @@ static void add_changes(const PairNetwork *network, const ContactProblem *proble
     solution->velocities[a] = of_a;
     solution->velocities[b] = of_b;
     if (network->target == TARGET_NET || pair_network_outputs(network) == PAIR_CHANGES)
-        solution->momentum_error += (float)made_momentum(body_a, body_b, changes);
+        solution->momentum_error += (float)created_momentum(body_a, body_b, changes);
 }
 
 static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
@@ -82,13 +82,13 @@ static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
     return true;
 }
 
-/* TARGET_NET: every pair of a body says the same change anew, so it gets their mean. */
+/* TARGET_NET: every pair of a body predicts its whole change, so the body takes their mean. */
 static void take_shares(const PairSolver *solver, const ContactPoint *contact, float changes[PAIR_CHANGES]) {
     for (int i = 0; i < PAIR_CHANGES; i++)
         changes[i] /= (float)solver->pair_counts[i < PAIR_CHANGES / 2 ? contact->a : contact->b];
 }
 
-/* Pair by pair, again and again, each from the velocities that those before it left. */
+/* TARGET_IMPULSE: sweeps over the pairs, each predicted from the current velocities. */
 static void visit_pairs(PairSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
     const PairMoment now = {.velocities = solution->velocities};
     for (int sweep = 0; sweep < solver->sweep_count; sweep++)
@@ -105,8 +105,8 @@ static ContactImpulse into_cone(ContactImpulse impulse, float friction) {
     return (ContactImpulse){normal, contact_clamp(impulse.tangent, -most, most)};
 }
 
-/* outputs: one number of the pair every `stride`. Where they are not finite, or none is there for the point, it keeps
-   its warm start. */
+/* outputs: one number of the pair every `stride`. A point without outputs, or with NaN or infinite ones, keeps its warm
+   start. */
 static void push_points(const ContactProblem *problem, int first, const float *outputs, int stride,
                         ContactSolution *solution) {
     const int count = pair_contact_count(problem, first);
@@ -116,10 +116,10 @@ static void push_points(const ContactProblem *problem, int first, const float *o
         ContactImpulse impulse = {contact->warm_normal, contact->warm_tangent};
         if (i < PAIR_POINTS) {
             const float *beyond = outputs + 2 * i * stride;
-            const ContactImpulse said = {impulse.normal + beyond[0] / inverse_mass,
-                                         impulse.tangent + beyond[stride] / inverse_mass};
-            if (isfinite(said.normal) && isfinite(said.tangent))
-                impulse = said;
+            const ContactImpulse predicted = {impulse.normal + beyond[0] / inverse_mass,
+                                              impulse.tangent + beyond[stride] / inverse_mass};
+            if (isfinite(predicted.normal) && isfinite(predicted.tangent))
+                impulse = predicted;
             else
                 solution->fallbacks.not_finite++;
         }

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the solvers that ask a pair network share: pair-net, contact-net and constant differ in what they accept. */
+/* The common part of pair-net, contact-net and constant, which accept different networks. */
 #pragma once
 #include "common/settings.h"
 #include "solvers/pair_network.h"
 
 typedef struct PairSolver {
     PairNetwork network;
-    int sweep_count;  /* of a network of single impulses */
-    int *pair_counts; /* [body_count] in how many pairs each body is */
+    int sweep_count;  /* for TARGET_IMPULSE */
+    int *pair_counts; /* [body_count] number of pairs of each body */
     size_t count_capacity;
 } PairSolver;
 
-/* Reads the settings network and k (10). NULL with error set where they are refused; name: of the method. */
+/* Reads the settings network and k (default: 10). NULL with error set if one is refused. name: of the method. */
 PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error);
 void pair_solver_destroy(void *state);
 
-/* Lets the network act on the step, in the way of its target: see pair_net.c and contact_net.c. */
+/* Solves the step with the network, as its target requires: pair_net.c and contact_net.c. */
 bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference (reference.h) as a contact solver: whole runs by converged steps. Slow; where a step does not
-   converge, as far as its sweeps reach. */
+/* The reference (reference/reference.h) as a contact solver, for runs of converged steps. Slow. A step that does not
+   converge ends with the result of its last sweep. */
 #include "reference/reference.h"
 #include "solvers/solvers.h"
 
 #include <stdlib.h>
-
-static const SettingSpec settings[] = {{NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     (void)chosen;
@@ -36,4 +34,12 @@ static void destroy(void *state) {
 }
 
 const ContactSolverKind solver_reference = {
-    "reference", "converged in double by NNCG: the measure of the others, slow", settings, create, solve, destroy};
+    .description = {.name = "reference",
+                    .summary =
+                        "the converged solution, in double precision by NNCG; errors are measured against it; slow",
+                    .title = "Converged solution",
+                    .role = METHOD_REFERENCE,
+                    .stability_place = 6},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

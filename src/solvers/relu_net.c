@@ -4,17 +4,17 @@
 
        Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
 
-   for max(x, 0) is the rectifier, and a clamp is two of them: below -m both are 0, between only the first is not, above
-   m they differ by 2 m. All else is linear: velocities along a contact, what an impulse does to them, impulses carried
-   on. So k sweeps are a network of 2 k layers for each contact, of one and of two rectifiers, whose weights are read off
-   the contact problem: nothing is trained, and it is right for every scene. Rounding apart it is the engine: a clamp at
-   the upper end of the cone, and what is within, come out of a sum and a difference.
+   because max(x, 0) is a rectifier and a clamp is a difference of two: below -m both are 0, between -m and m only the
+   second is 0, and above m they differ by 2 m. All other operations are linear: velocities at a contact, the effect of
+   an impulse, accumulation. So k sweeps are a network with 2 k layers per contact, of one and of two rectifiers, whose
+   weights are computed from the contact problem: nothing is trained, and it is valid for every scene. Apart from
+   rounding it equals the engine: tangent impulses come from a sum and a difference.
 
-   It is no faster and no better, but says what to expect of a network. One that sees a contact at a time, its velocity
-   and its sum, does not fail for want of neurons: three are enough to be the engine, and a single box needs no more than
-   that. What the engine lacks in stacks and pyramids is sight beyond the contact, which more neurons at it do not
-   give it. Source of rectifier networks as piecewise linear maps, and these as networks: Arora, Basu, Mianjy, Mukherjee,
-   "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
+   It is neither faster nor more accurate, but shows what a network can achieve. A network that sees one contact at a
+   time, its velocity and its accumulated impulse, does not fail for lack of neurons: three are enough to equal the
+   engine. What the engine lacks in stacks and pyramids is information beyond the contact, which more neurons per
+   contact do not add. Source of ReLU networks as piecewise linear functions, and of these functions as networks: Arora,
+   Basu, Mianjy, Mukherjee, "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
 #include "network/activation.h"
 #include "solvers/solvers.h"
 #include "sweeps/contact_velocity.h"
@@ -27,7 +27,8 @@ typedef struct ReluNet {
     int sweep_count;
 } ReluNet;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts a step (the scene's own: 10)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+                                       {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     ReluNet values = {.sweep_count = 10};
@@ -40,12 +41,12 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-/* The layers of one contact: the normal impulse, then the tangent impulse against what that left. */
+/* The layers of one contact: the normal impulse, then the tangent impulse from the velocities that result. */
 static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVelocity *velocities,
                   ContactImpulse *sum) {
     BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
-    const float parting = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
-    const float normal = relu_float(sum->normal - contact->mass_normal * (parting - contact->bias));
+    const float separating = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
+    const float normal = relu_float(sum->normal - contact->mass_normal * (separating - contact->bias));
     contact_apply(a, b, contact, bodies, vec2_scale(normal - sum->normal, contact->normal));
 
     const Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
@@ -68,6 +69,12 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 const ContactSolverKind solver_relu_net = {
-    "relu-net", "the engine written as a network of rectifiers, its weights read off the contacts",
-    settings,   create,
-    solve,      free};
+    .description = {.name = "relu-net",
+                    .summary = "sequential impulses written as a ReLU network; nothing is trained",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = free};

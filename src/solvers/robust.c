@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stacks as a whole, by two passes over what stands on the ground without loops (forest.h); where that solves all
-   contacts there is nothing left to sweep. Otherwise the engine's sweeps. They begin where
+/* Solves trees of bodies on the ground, such as stacks, directly by two passes (forest.h). If that solves all contacts,
+   no sweeps follow; otherwise the engine's sweeps follow, from the impulses at which
 
        E(P) = sum of m v^2 / 2 + I w^2 / 2 - sum of bias P_n,   v and w: after the impulses P
 
-   is least between the impulses of the step before and those of the passes, where there are some: its minimum is the
-   solution without friction, and after a blow the passes are far better, or far worse. And where sweeps end with a higher
-   E than no impulse has, they begin again from none: what has held a blow is no start for the step after it, in which all
-   flies apart. Source: forest.h; E: Baraff, "Fast Contact Force Computation for Nonpenetrating Rigid Bodies" (1994). Fails
-   as the engine does where it falls back to it: in walls, bridges and arches, on corners, and while boxes tip or slide; a
-   stack that a blow has shaken may so be lost. */
+   is smallest between the warm start and the impulses of the passes, if there are any: the minimum of E is the solution
+   without friction, and after a blow the passes may be far better than the warm start, or far worse. If the sweeps end
+   with a higher E than zero impulses have, they start again from zero: impulses that resisted a blow are a bad start
+   for the next step, in which the bodies fly apart. Source: forest.h; E: Baraff, "Fast Contact Force Computation for
+   Nonpenetrating Rigid Bodies" (1994). Fails as the engine does if the passes do not apply: in walls, bridges and
+   arches, on corners, and while boxes tip or slide; a stack that a blow has shaken may then collapse. */
 #include "solvers/forest.h"
 #include "solvers/solvers.h"
 #include "sweeps/sequential_impulses.h"
@@ -23,8 +23,8 @@ typedef struct Robust {
     Sweeps sweeps;
 } Robust;
 
-static const SettingSpec settings[] = {{"k", "sweeps a step where the passes do not solve it (the scene's own: 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps per step if the direct passes do not solve it (default: the scene's, else 10)"}, {NULL, NULL}};
 
 static void destroy(void *state) {
     Robust *solver = state;
@@ -54,12 +54,12 @@ static double pushed(const Sweeps *sweeps) {
     return sum;
 }
 
-/* E along a change of impulses: E(t) = E(0) + slope t + curve t^2 / 2 after t of it. */
+/* E along a change of impulses: E(t) = E(0) + slope t + curve t^2 / 2 after the share t of it. */
 typedef struct Line {
     double slope, curve; /* J */
 } Line;
 
-/* Of the change that led from the velocities `before`, and pushed() then, to where the sweeps are. */
+/* Along the change from the velocities `before`, with pushed() as it was then, to those of the sweeps. */
 static Line look_back(const ContactProblem *problem, const Sweeps *sweeps, const BodyVelocity *before,
                       double pushed_before) {
     Line line = {pushed_before - pushed(sweeps), 0};
@@ -76,15 +76,15 @@ static Line look_back(const ContactProblem *problem, const Sweeps *sweeps, const
     return line;
 }
 
-/* Where E is least between both ends, 0 and 1; 0 where numbers are none. */
+/* The t of [0, 1] with the smallest E; 0 if it is NaN. */
 static float lowest(Line line) {
     const double part = -line.slope / line.curve;
     return part >= 1 ? 1.0f : part > 0 ? (float)part : 0.0f;
 }
 
-/* From the warm start towards the impulses of the passes, which are in the solution, as far as that lowers E. Both are
-   overwritten. */
-static void go_towards_passes(Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {
+/* Moves the sweeps from the warm start towards the impulses of the passes, given in the solution, to the smallest E.
+   Overwrites the solution. */
+static void move_towards_passes(Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {
     ContactImpulse *change = solution->impulses;
     for (int i = 0; i < problem->body_count; i++) {
         const SweepBody *body = &sweeps->bodies[i];
@@ -105,24 +105,24 @@ static void go_towards_passes(Sweeps *sweeps, const ContactProblem *problem, Con
     sweeps_push(sweeps, change);
 }
 
-/* Whether the sweeps have ended no better than with no impulse at all, by more than what moves all bodies through the slop
-   in a step: so much is the price of what warm starts do for loops, which settle over many steps. */
-static bool has_risen(const ContactProblem *problem, const Sweeps *sweeps, BodyVelocity *room) {
+/* True if E after the sweeps exceeds that of zero impulses by more than the energy that moves all bodies by the slop in
+   one step. The allowance keeps warm starts in loops, such as walls, which settle over many steps. */
+static bool has_risen(const ContactProblem *problem, const Sweeps *sweeps, BodyVelocity *work) {
     const double speed = (double)CONTACT_SLOP / (double)problem->dt;
     double allowed = 0;
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
-        room[i] = (BodyVelocity){body->velocity, body->angular_velocity};
+        work[i] = (BodyVelocity){body->velocity, body->angular_velocity};
         if (body->inv_mass != 0.0f) allowed += 0.5 * speed * speed / (double)body->inv_mass;
     }
-    const Line line = look_back(problem, sweeps, room, 0);
+    const Line line = look_back(problem, sweeps, work, 0);
     return line.slope + 0.5 * line.curve > allowed;
 }
 
 static bool sweep(Robust *solver, const ContactProblem *problem, bool passes, ContactSolution *solution) {
     Sweeps *sweeps = &solver->sweeps;
     if (!sweeps_begin(sweeps, sweeps_best_kernel(), problem, true, 1.0f)) return false;
-    if (passes) go_towards_passes(sweeps, problem, solution);
+    if (passes) move_towards_passes(sweeps, problem, solution);
     if (!sweeps_run(sweeps, solver->sweep_count)) return false;
     if (!has_risen(problem, sweeps, solution->velocities)) return true;
     return sweeps_begin(sweeps, sweeps->kernel, problem, false, 1.0f) && sweeps_run(sweeps, solver->sweep_count);
@@ -131,18 +131,25 @@ static bool sweep(Robust *solver, const ContactProblem *problem, bool passes, Co
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
     Robust *solver = state;
-    ForestAnswer answer;
-    if (!forest_solve(&solver->forest, problem, solution->impulses, &answer)) return error_memory(error, "robust");
-    if (answer == FOREST_WHOLE) {
+    ForestResult result;
+    if (!forest_solve(&solver->forest, problem, solution->impulses, &result)) return error_memory(error, "robust");
+    if (result == FOREST_WHOLE) {
         for (int i = 0; i < problem->body_count; i++) solution->velocities[i] = solver->forest.bodies[i].after;
         return true;
     }
-    if (!sweep(solver, problem, answer == FOREST_PART, solution)) return error_memory(error, "robust");
+    if (!sweep(solver, problem, result == FOREST_PART, solution)) return error_memory(error, "robust");
     if (!sweeps_end(&solver->sweeps, solution))
         sequential_impulses_solve(problem, &options, solver->sweep_count, solution);
     return true;
 }
 
 const ContactSolverKind solver_robust = {
-    "robust", "stacks solved as a whole from the ground up and back, else the engine", settings, create, solve,
-    destroy};
+    .description = {.name = "robust",
+                    .summary = "stacks solved directly in two passes, all else by sequential impulses",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability_place = 2},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

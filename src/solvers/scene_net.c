@@ -1,59 +1,60 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A network for the impacts of one scene: it sees all bodies and contacts at once, says where the impulses will end, and
-   a few sweeps from there do the rest. A shock runs through a stack one contact a sweep; the network has seen where
-   it goes.
+/* A network for the impacts of one scene. It sees all bodies and contacts at once and predicts where the impulses will
+   end; a few sweeps then correct the prediction. Sweeps alone carry a shock through a stack one contact per sweep.
 
-   Asked only where the cached start is far off (impact_gap.h) and the step is like those that it learned from: the
-   bomb of the same mass, and no input beyond those of the training. All other steps are momentum's (momentum.c). The gap
-   that is left after the sweeps goes up and down with the error, on launches that the network never saw, too: so few
-   sweeps do at first, and a step that they did not bring near goes on. Impulses act on both bodies alike, and the
-   sweeps bring them into their cones, so momentum is kept whatever the network says. Source: a warm start by a network
-   for the whole problem as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
-   Algorithms" (2024), which trains through the iterations that follow, too. Fails on other scenes, which have no slots;
-   it says so. */
+   The network is used only if the residual of the warm start (residual.h) reaches the gate and the step resembles the
+   training data: the same mass of the bomb, and all inputs within their range. All other steps are solved as by
+   momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so few
+   sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps clamp
+   them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network for
+   the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
+   Algorithms" (2024), which also trains through the iterations that follow. Fails on other scenes, which have other
+   slots; it refuses them. */
 #include "solvers/scene_net.h"
 
-#include "solvers/impact_gap.h"
+#include "solvers/residual.h"
 #include "solvers/momentum.h"
-#include "solvers/scene_answer.h"
+#include "solvers/scene_prediction.h"
 #include "solvers/solvers.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, LOOK_EVERY = 8 };
+enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, CHECK_EVERY = 8 };
 
-/* The gap from which on a step goes on after the network and its sweeps; and, of it, the share that is still too much
-   where there was little to do from the start: there all bodies are to be right. */
+/* More sweeps follow the network while the residual is this large; for a calm step, while it is this share of it. */
 static const float near_default = 0.02f; /* m/s, RMS over the contacts */
 static const float calm_share = 0.15f;
 
-/* What is done of a step: as the method momentum does, `rest` sweeps; where the bomb is there, of the training's mass, but
-   the gap is below the gate, half as many, and up to CALM_MORE more while that is not near enough; the network, `after`
-   sweeps, and up to MORE_SWEEPS more while that is not. */
-typedef enum Way { BY_MOMENTUM, CALM, BY_NETWORK } Way;
+/* How a step is solved. */
+typedef enum Route {
+    ROUTE_MOMENTUM, /* `rest` sweeps with momentum */
+    ROUTE_CALM,   /* the bomb is there, with the mass of the training, but the residual is below the gate: half as many
+                       sweeps, and up to CALM_MORE more while the residual is too large */
+    ROUTE_NETWORK /* the network, `after` sweeps, and up to MORE_SWEEPS more while the residual is too large */
+} Route;
 
-/* What is pushed beyond it cannot be taken back: rounding alone would leave more than 1e-3 m/s. */
+/* Sweeps cannot correct velocities beyond this: rounding alone would leave errors above 1e-3 m/s. */
 static const float speed_max = 1e4f; /* m/s and rad/s */
 
 typedef struct SceneNet {
     SlotNetwork *own;           /* or NULL */
-    const SlotNetwork *network; /* that one, or another's */
+    const SlotNetwork *network; /* the same, or the caller's */
     Momentum momentum;
-    SceneAnswer answer;
+    ScenePrediction prediction;
     float near;                           /* m/s */
-    int after, rest, half;                /* sweeps with the network, and without */
+    int after, rest, half;                /* sweeps after the network, and without it */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
-    bool after_plain;                     /* no factor of them does anything */
+    bool after_without_momentum;          /* all of them are 0 */
     float *rest_factors, *half_factors;   /* [rest], [half] */
-    float more_factors[MORE_SWEEPS];      /* of those that a step goes on by */
+    float more_factors[MORE_SWEEPS];      /* of the sweeps that follow if the residual is too large */
 } SceneNet;
 
 static const SettingSpec settings[] = {
-    {"network", "file of the trained network (the scene's own)"},
-    {"after", "sweeps after the network (as it was trained for)"},
-    {"near", "m/s that contacts may miss their aim by before more sweeps follow (0.02)"},
-    {"rest", "sweeps with momentum where it is not asked (20; half where calm)"},
+    {"network", "file of the trained network (default: the scene's)"},
+    {"after", "sweeps after the network (default: as in its training)"},
+    {"near", "residual above which more sweeps follow, m/s (default: 0.02)"},
+    {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
     {NULL, NULL}};
 
 static void destroy(void *state) {
@@ -61,25 +62,25 @@ static void destroy(void *state) {
     if (solver == NULL) return;
     slot_network_destroy(solver->own);
     momentum_free(&solver->momentum);
-    scene_answer_free(&solver->answer);
+    scene_prediction_free(&solver->prediction);
     free(solver->rest_factors);
     free(solver->half_factors);
     free(solver);
 }
 
-/* Factors that were learned hold for as many sweeps as they were learned for. */
+/* Learned factors are valid only for the number of sweeps they were learned for. */
 static void choose_factors(SceneNet *solver) {
     const SlotNetwork *network = solver->network;
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
-    solver->after_plain = !learned;
+    solver->after_without_momentum = !learned;
     for (int s = 0; s < solver->after; s++)
         solver->after_factors[s] = solver->after == network->sweeps ? network->factors[s]
-                                   : learned                        ? momentum_factor_by_hand(s, solver->after)
+                                   : learned                        ? momentum_factor_tuned(s, solver->after)
                                                                     : 0;
-    for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_by_hand(s, solver->rest);
-    for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_by_hand(s, solver->half);
-    for (int s = 0; s < MORE_SWEEPS; s++) solver->more_factors[s] = momentum_factor_by_hand(s, MORE_SWEEPS);
+    for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_tuned(s, solver->rest);
+    for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_tuned(s, solver->half);
+    for (int s = 0; s < MORE_SWEEPS; s++) solver->more_factors[s] = momentum_factor_tuned(s, MORE_SWEEPS);
 }
 
 static SceneNet *make(const SlotNetwork *network, int after, int rest, float near, Error *error) {
@@ -126,20 +127,21 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-/* Before the bomb comes there is one body less. */
+/* Before the bomb appears there is one body less. */
 static bool fits(const SlotNetwork *network, const ContactProblem *problem, Error *error) {
     const int bodies = problem->bomb < 0 ? network->body_count - 1 : network->body_count;
     if (problem->body_count != bodies)
         return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
                            network->scene, bodies, problem->body_count);
     if (problem->bomb < 0 || problem->bomb == network->bomb) return true;
-    return error_input(error, "scene-net", "the network is for the scene %s, where the bomb is body %d; here it is %d",
+    return error_input(error, "scene-net", "the network is for the scene %s, with the bomb as body %d; here it is body %d",
                        network->scene, network->bomb, problem->bomb);
 }
 
 static int within(float speed) { return fabsf(speed) <= speed_max; }
 
-/* The bodies, and what an impulse by itself does to the lightest: pushes that cancel each other round as much. */
+/* Checks velocities, and the effect of each impulse on the lightest body: large impulses that cancel each other leave
+   rounding errors, too. */
 static bool is_bounded(const Sweeps *sweeps) {
     int bounded = 1;
     float inverse = 0; /* 1/kg, of the lightest */
@@ -157,49 +159,49 @@ static bool is_bounded(const Sweeps *sweeps) {
 
 static bool run_after(SceneNet *solver) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    return solver->after_plain ? sweeps_run(sweeps, solver->after)
-                               : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
+    return solver->after_without_momentum ? sweeps_run(sweeps, solver->after)
+                                          : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* What is left tells how near a step is: sweeps go on while that is `near` or more, `most` in all. What is far off then is
-   so in long waves, a heavy bomb on all boxes under it, and those take momentum that has had time to gather: one run,
-   looked at now and then, and not many. */
-static bool go_on(SceneNet *solver, const ContactProblem *problem, float near, int most) {
+/* Sweeps until the residual is below `near`, at most `most` times. The remaining error has long waves, such as a heavy
+   bomb on a whole stack, which need momentum with large factors: so this is one run of sweeps, checked every
+   CHECK_EVERY, not many short ones. */
+static bool run_more(SceneNet *solver, const ContactProblem *problem, float near, int most) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     const float *factors = solver->more_factors;
-    for (int done = 0; done < most && impact_gap_reaches(sweeps, problem->contact_count, near); done += LOOK_EVERY)
-        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, LOOK_EVERY)
-                        : sweeps_continue_momentum(sweeps, factors + done, LOOK_EVERY)))
+    for (int done = 0; done < most && residual_reaches(sweeps, problem->contact_count, near); done += CHECK_EVERY)
+        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, CHECK_EVERY)
+                        : sweeps_continue_momentum(sweeps, factors + done, CHECK_EVERY)))
             return false;
     return true;
 }
 
-static bool run(SceneNet *solver, const ContactProblem *problem, Way way) {
+static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    switch (way) {
-    case CALM:
+    switch (route) {
+    case ROUTE_CALM:
         return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) &&
-               go_on(solver, problem, calm_share * solver->near, CALM_MORE);
-    case BY_NETWORK: return run_after(solver) && go_on(solver, problem, solver->near, MORE_SWEEPS);
-    case BY_MOMENTUM: break;
+               run_more(solver, problem, calm_share * solver->near, CALM_MORE);
+    case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, solver->near, MORE_SWEEPS);
+    case ROUTE_MOMENTUM: break;
     }
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
 }
 
 /* After the warm start. */
-static bool choose_way(SceneNet *solver, const ContactProblem *problem, Way *way, NetworkFallbacks *fallbacks,
-                       Error *error) {
+static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route *route, NetworkFallbacks *fallbacks,
+                         Error *error) {
     const SlotNetwork *network = solver->network;
-    *way = BY_MOMENTUM;
+    *route = ROUTE_MOMENTUM;
     if (problem->bomb < 0) return true;
     bool known = problem->bodies[network->bomb].inv_mass == network->bomb_inv_mass;
-    if (!impact_gap_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
-        if (known) *way = CALM;
+    if (!residual_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
+        if (known) *route = ROUTE_CALM;
         return true;
     }
-    if (known && !scene_answer_knows(&solver->answer, network, problem, &known))
+    if (known && !scene_prediction_in_range(&solver->prediction, network, problem, &known))
         return error_memory(error, "scene-net");
-    if (known) *way = BY_NETWORK;
+    if (known) *route = ROUTE_NETWORK;
     fallbacks->beyond_training += !known;
     return true;
 }
@@ -213,25 +215,33 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Sweeps *sweeps = &solver->momentum.sweeps;
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
-    Way way;
+    Route route;
     solution->fallbacks = (NetworkFallbacks){0};
-    if (!choose_way(solver, problem, &way, &solution->fallbacks, error)) return false;
-    if (way == BY_NETWORK) {
-        scene_answer_find(&solver->answer, solver->network, problem, &solution->fallbacks);
-        sweeps_push(sweeps, solver->answer.change);
+    if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
+    if (route == ROUTE_NETWORK) {
+        scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
+        sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
             solution->fallbacks.not_finite++;
             return solve_without(solver, problem, solution, error);
         }
     }
-    if (!run(solver, problem, way)) return error_memory(error, "scene-net");
+    if (!run(solver, problem, route)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
-    solution->fallbacks.not_finite += way == BY_NETWORK;
+    solution->fallbacks.not_finite += route == ROUTE_NETWORK;
     return solve_without(solver, problem, solution, error);
 }
 
 const ContactSolverKind solver_scene_net = {
-    "scene-net", "a network of the whole scene where the bomb strikes, then sweeps", settings, create, solve, destroy};
+    .description = {.name = "scene-net",
+                    .summary = "a network predicts all impulses of a scene at impacts; sweeps follow",
+                    .settings = settings,
+                    .title = "Network of the scene",
+                    .needs_network = true,
+                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1")},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;

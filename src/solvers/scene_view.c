@@ -36,7 +36,7 @@ static bool reserve(SceneView *view, const ContactProblem *problem) {
     return true;
 }
 
-static void put_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
+static void load_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
     numbers[0] = body->position.x;
     numbers[1] = body->position.y;
     numbers[2] = body->angle;
@@ -45,13 +45,13 @@ static void put_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) 
     numbers[5] = body->angular_velocity;
 }
 
-/* Quarter turns of a box that leave it as it looks, so many that what is left of its angle is least. */
+/* Quarter turns that map the box onto itself, as many as leave the smallest angle. */
 static float turns_of(const ProblemBody *body) {
     const float step = body->size.x == body->size.y ? 1 : 2;
     return step * floorf(body->angle / (step * quarter_turn) + 0.5f);
 }
 
-/* Two bytes of a feature: the edges of a box before it is turned back, and after. */
+/* Two bytes of a feature, edges of one box, renamed for so many quarter turns. */
 static uint32_t turn_edges(uint32_t edges, int turns) {
     uint32_t turned = 0;
     for (int shift = 0; shift < 16; shift += 8) {
@@ -70,7 +70,7 @@ static uint32_t turn_feature(uint32_t feature, bool of_a, int turns) {
 /* 0 .. 3 */
 static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns / 4)); }
 
-/* With the bomb turned back by so many quarters. */
+/* With the bomb rotated back by so many quarter turns. */
 static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
     if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
     return turn_feature(contact->feature, contact->a == problem->bomb, turns);
@@ -81,7 +81,7 @@ uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *c
     return feature_of(problem, contact, bomb < 0 ? 0 : turns_modulo_4(turns_of(&problem->bodies[bomb])));
 }
 
-static void put_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int turns, int i) {
+static void load_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int turns, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     ContactImpulse *base = &view->base[i];
     *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
@@ -102,13 +102,13 @@ static void put_contact(SceneView *view, const SlotNetwork *network, const Conta
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
     if (!reserve(view, problem)) return false;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
-    put_body(view->bomb, bomb);
+    load_body(view->bomb, bomb);
     const float turns = turns_of(bomb);
     const int features_turn = turns_modulo_4(turns);
     view->bomb[2] -= quarter_turn * turns;
     for (int i = 0, k = 0; i < problem->body_count; i++)
-        if (i != network->bomb) put_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
+        if (i != network->bomb) load_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
     view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
-    for (int i = 0; i < problem->contact_count; i++) put_contact(view, network, problem, features_turn, i);
+    for (int i = 0; i < problem->contact_count; i++) load_contact(view, network, problem, features_turn, i);
     return true;
 }

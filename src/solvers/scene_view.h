@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A contact problem as a slot network meets it (network/slot_network.h). A bomb that turned by a quarter is the same
-   box with its edges renamed: it is seen turned back to within an eighth of a turn (a half and a quarter where it is
-   oblong), and so are the features of its contacts. Without that, each quarter would have to be learned by itself. */
+/* A contact problem as the inputs of a slot network (network/slot_network.h). A bomb rotated by a quarter turn is the
+   same box with its edges renamed. So the view rotates it back to within an eighth of a turn (a quarter if it is
+   oblong), and renames the features of its contacts. Otherwise the network would have to learn each quarter turn
+   separately. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "network/slot_network.h"
@@ -12,10 +13,10 @@
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct SceneView {
     SlotView slots;
-    int32_t *contacts;    /* [slots.slot_count] the contact of each */
-    ContactImpulse *base; /* [contact_count] the start without the network: warm impulses, those with a slot up to
-                             its cap and inside the cone */
-    /* What `slots` points to: */
+    int32_t *contacts;    /* [slots.slot_count] the contact of each slot */
+    ContactImpulse *base; /* [contact_count] impulses without the network: the warm start, for contacts with a slot
+                             up to its cap and inside the cone */
+    /* The arrays that `slots` points to: */
     float bomb[SLOT_BODY_NUMBERS], *state, *ones, *warm;
     int32_t *present, *impulses;
     size_t state_capacity, ones_capacity, warm_capacity, present_capacity, impulse_capacity, contact_capacity,
@@ -24,8 +25,8 @@ typedef struct SceneView {
 
 void scene_view_free(SceneView *view);
 
-/* The feature of one of the problem's contacts, as seen. */
+/* The feature of one of the problem's contacts, with the bomb rotated back. */
 uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact);
 
-/* The problem has the network's bodies. False when memory is short. */
+/* The problem must have the network's bodies. False when memory is short. */
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);

@@ -1,24 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The registry of contact solvers: adding one is one file and one line in solvers.c. */
+/* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
+   line SOLVER(NAME) here. */
 #pragma once
 #include "dynamics/contact_solver.h"
 
-extern const ContactSolverKind solver_engine;
-extern const ContactSolverKind solver_over_relaxation;
-extern const ContactSolverKind solver_momentum;
-extern const ContactSolverKind solver_learned_momentum;
-extern const ContactSolverKind solver_block;
-extern const ContactSolverKind solver_nncg;
-extern const ContactSolverKind solver_robust;
-extern const ContactSolverKind solver_pair_net;
-extern const ContactSolverKind solver_contact_net;
-extern const ContactSolverKind solver_relu_net;
-extern const ContactSolverKind solver_scene_net;
-extern const ContactSolverKind solver_constant;
-extern const ContactSolverKind solver_reference;
+/* In the order of lists and charts. SOLVER(x) is solver_x of this folder; STEPPING(x) is stepping_x of simulate/, for
+   methods that need more than one solver call in a step (simulate/stepping.h). New methods go to the end: lines of a
+   chart get their colours in this order. */
+#define METHODS(SOLVER, STEPPING) \
+    SOLVER(engine)                \
+    SOLVER(over_relaxation)       \
+    SOLVER(momentum)              \
+    SOLVER(learned_momentum)      \
+    SOLVER(block)                 \
+    SOLVER(nncg)                  \
+    SOLVER(robust)                \
+    STEPPING(substepping)         \
+    SOLVER(pair_net)              \
+    SOLVER(contact_net)           \
+    SOLVER(scene_net)             \
+    SOLVER(constant)              \
+    STEPPING(playback)            \
+    SOLVER(reference)             \
+    SOLVER(relu_net)
 
-/* All kinds, ended by NULL. */
-extern const ContactSolverKind *const solver_kinds[];
-
-/* The kind of that name, or NULL. */
-const ContactSolverKind *solver_find(const char *name);
+#define METHOD_OMITTED(name)
+#define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;
+METHODS(SOLVER_DECLARED, METHOD_OMITTED)
+#undef SOLVER_DECLARED

@@ -4,13 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-/* From which ratio of its ends on an axis is logarithmic. */
+/* Axes with a larger ratio of their ends are logarithmic. */
 static const double long_axis = 8;
 
-/* Ends closer than that would make a gulf of a few percent: they are moved apart by the factor on either side. */
+/* An axis with a smaller ratio of its ends would exaggerate differences of a few percent; it is widened by the factor
+   `apart` at both ends. */
 static const double least_ratio = 1.5, apart = 1.5;
 
-/* mm: of a tic's number */
+/* mm */
 static const double tic_digit = 1.65, tic_gap = 1;
 
 enum { TICS_SIZE = 2048, MOST_STEPS = 4 };
@@ -44,13 +45,13 @@ double border_axis_place(const BorderAxis *axis, double value) {
     return BORDER_AXIS_ROOM + inside * share;
 }
 
-/* Tics as they are found, from left to right. */
+/* Tics, collected from left to right. */
 typedef struct Tics {
     const BorderAxis *axis;
     char text[TICS_SIZE];
     size_t used;
-    double taken; /* mm: where the last number ends */
-    bool crowded; /* two numbers touch */
+    double taken; /* mm: right end of the last label */
+    bool crowded; /* two labels touch */
 } Tics;
 
 static void add_tic(Tics *tics, double value, int digits, const char *name) {
@@ -64,7 +65,7 @@ static void add_tic(Tics *tics, double value, int digits, const char *name) {
 
 static const double plain_least = 1e-3, plain_most = 1e5;
 
-/* Decades, each `step`th; and in each these digits. */
+/* Tics at these digits in every `step`-th decade. */
 static void add_decades(Tics *tics, const char *digits, int step) {
     int first = (int)floor(log10(tics->axis->least)) - 1, last = (int)ceil(log10(tics->axis->most)) + 1;
     for (int decade = first; decade <= last; decade++)
@@ -80,7 +81,7 @@ static void add_decades(Tics *tics, const char *digits, int step) {
         }
 }
 
-/* As many as have room. */
+/* As many tics as fit. */
 static void log_tics(Tics *tics) {
     static const char *const digits[] = {"125", "1", "1", "1", "1", "1"};
     const BorderAxis *axis = tics->axis;
@@ -96,7 +97,7 @@ static double round_step(double step) {
     return (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10) * decade;
 }
 
-/* Counted from a whole number of steps, so that 0 is 0. */
+/* Multiples of the step, so that 0 is exactly 0. */
 static void add_steps(Tics *tics, double step) {
     double first = ceil(tics->axis->least / step - 1);
     for (int i = 0; i < 2 * MOST_STEPS + 4; i++) {
@@ -121,10 +122,10 @@ static void linear_tics(Tics *tics) {
     }
 }
 
-void border_axis_put(const BorderAxis *axis, FigurePage *page) {
+void border_axis_write(const BorderAxis *axis, GnuplotPage *page) {
     Tics tics = {.axis = axis};
     char text[TICS_SIZE + 32];
     (axis->logarithmic ? log_tics : linear_tics)(&tics);
     snprintf(text, sizeof text, "out offset 0,0.3 (%s)", tics.text);
-    figure_linear(page, 'x', 0, axis->width, text, axis->label);
+    gnuplot_linear_axis(page, 'x', 0, axis->width, text, axis->label);
 }

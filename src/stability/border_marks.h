@@ -1,25 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a panel of the figure of borders shows: bars over what holds, tiles at what fails, arrows and crosses. */
+/* The marks in a panel of the borders figure: bars where a method holds, tiles where it fails, arrows and crosses. */
 #pragma once
 #include "stability/border_axis.h"
 
-/* The rows of a study's panel: a method each, the first at the top, 1 apart on the panel's upward axis from 0. */
+/* The rows of a study's panel, one per method. Row i is at y = method_count - 1 - i on the panel's axis. */
 typedef struct BorderRows {
     const BorderTable *table;
-    FigurePage *page;
-    const BorderRow *study; /* any row of it */
+    GnuplotPage *page;
+    const BorderRow *study; /* any row of the study */
     const BorderAxis *axis;
-    const int *methods; /* [method_count]: a row of the table each */
+    const int *methods; /* [method_count]: a table row of each method */
     int method_count;
-    double height; /* mm: of a row */
+    double height; /* mm per row */
 } BorderRows;
 
-/* Upon the open panel. */
-void border_marks_put(const BorderRows *rows);
+/* Draws the marks on the open panel. */
+void border_marks_draw(const BorderRows *rows);
 
-/* What the legend explains: holds, holds throughout, never holds. A sample `width` mm wide on a panel in mm. */
+/* Draws the legend's sample of a sign (0: holds, 1: holds throughout, 2: never holds), `width` mm wide, on a panel in
+   mm. */
 enum { BORDER_SIGNS = 3 };
-void border_sample_put(FigurePage *page, int sign, double x, double y, double width);
-
-bool border_same_method(const BorderRow *a, const BorderRow *b);
-bool border_same_study(const BorderRow *a, const BorderRow *b);
+void border_sample_draw(GnuplotPage *page, int sign, double x, double y, double width);

@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum Side { SIDE_HOLDS, SIDE_FAILS, SIDE_LUCK } Side;
+typedef enum Side { SIDE_HOLDS, SIDE_FAILS, SIDE_UNDECIDED } Side;
 
 typedef struct Sample {
     double value;
     Side side;
-    Verdict verdict; /* the worst of the seeds asked */
-    bool checked;    /* all seeds were asked */
+    Verdict verdict; /* the worst of the evaluated seeds */
+    bool checked;    /* all seeds were evaluated */
 } Sample;
 
 typedef struct Search {
@@ -49,7 +49,7 @@ static bool resolved(const BorderScan *scan, double low, double high) {
     return scan->logarithmic ? high <= 1.05 * low : high - low <= (scan->to - scan->from) / 100;
 }
 
-/* The next value outward by the resolution. */
+/* The value one resolution further in the direction. */
 static double beside(const BorderScan *scan, double value, int direction) {
     double step = scan->logarithmic ? 0.05 * value : (scan->to - scan->from) / 100;
     if (scan->whole && step < 1) step = 1;
@@ -60,13 +60,13 @@ static double middle(const BorderScan *scan, double low, double high) {
     return rounded(scan, scan->logarithmic ? sqrt(low * high) : 0.5 * (low + high));
 }
 
-/* Asks the seeds first .. last - 1. */
-static bool ask(const Search *search, Sample *sample, int first, int last, Error *error) {
+/* Evaluates the seeds first .. last - 1. */
+static bool evaluate(const Search *search, Sample *sample, int first, int last, Error *error) {
     for (int seed = first; seed < last; seed++) {
         Verdict verdict;
-        if (!search->probe->ask(search->probe->context, sample->value, seed, &verdict, error)) return false;
+        if (!search->probe->evaluate(search->probe->context, sample->value, seed, &verdict, error)) return false;
         Side side = verdict_holds(verdict) ? SIDE_HOLDS : SIDE_FAILS;
-        if (seed > 0 && side != sample->side) side = SIDE_LUCK;
+        if (seed > 0 && side != sample->side) side = SIDE_UNDECIDED;
         if (seed == 0 || verdict > sample->verdict) sample->verdict = verdict;
         sample->side = side;
     }
@@ -75,13 +75,13 @@ static bool ask(const Search *search, Sample *sample, int first, int last, Error
 }
 
 static bool check(const Search *search, Sample *sample, Error *error) {
-    return sample->checked || ask(search, sample, 1, search->probe->seeds, error);
+    return sample->checked || evaluate(search, sample, 1, search->probe->seeds, error);
 }
 
-/* Puts a value in at a place. Beside one where luck decides all seeds are asked at once. */
+/* Evaluates a value and inserts it at an index. checked: with all seeds, else with seed 0 only. */
 static bool insert(Search *search, int place, double value, bool checked, Error *error) {
     Sample sample = {.value = value};
-    if (!ask(search, &sample, 0, checked ? search->probe->seeds : 1, error)) return false;
+    if (!evaluate(search, &sample, 0, checked ? search->probe->seeds : 1, error)) return false;
     if (!array_reserve((void **)&search->samples, &search->capacity, (size_t)search->count + 1, sizeof sample))
         return error_memory(error, "border");
     memmove(&search->samples[place + 1], &search->samples[place], (size_t)(search->count - place) * sizeof sample);
@@ -98,19 +98,19 @@ static bool scan_coarsely(Search *search, Error *error) {
     return true;
 }
 
-/* Asks what lies next to a side of a border, away from it, unless that has been asked. */
-static bool look_beside(Search *search, int i, int direction, bool *found, Error *error) {
+/* Evaluates the value beside a side of a border, away from the border, unless it is known. */
+static bool check_beside(Search *search, int i, int direction, bool *found, Error *error) {
     const int next = i + direction;
-    if (search->samples[i].side == SIDE_LUCK || next < 0 || next >= search->count) return true;
+    if (search->samples[i].side == SIDE_UNDECIDED || next < 0 || next >= search->count) return true;
     const double value = search->samples[i].value, limit = search->samples[next].value;
-    const double asked = beside(search->scan, value, direction);
-    if (direction * (limit - asked) <= 0) return true;
+    const double outward = beside(search->scan, value, direction);
+    if (direction * (limit - outward) <= 0) return true;
     *found = true;
-    return insert(search, direction > 0 ? next : i, asked, true, error);
+    return insert(search, direction > 0 ? next : i, outward, true, error);
 }
 
-/* Until neighbours that differ are as near as they may be, and have been asked with all seeds, and so has what is beside
-   them. */
+/* Refines until differing neighbours are within the resolution and they and the values beside them have been evaluated
+   with all seeds. */
 static bool refine(Search *search, Error *error) {
     for (int i = 0; i + 1 < search->count;) {
         Sample *low = &search->samples[i], *high = low + 1;
@@ -118,14 +118,15 @@ static bool refine(Search *search, Error *error) {
         if (low->side == high->side) {
             i++;
         } else if (!resolved(search->scan, low->value, high->value) && between > low->value && between < high->value) {
-            if (!insert(search, i + 1, between, low->side == SIDE_LUCK || high->side == SIDE_LUCK, error)) return false;
+            if (!insert(search, i + 1, between, low->side == SIDE_UNDECIDED || high->side == SIDE_UNDECIDED, error))
+                return false;
         } else if (!low->checked || !high->checked) {
             if (!check(search, low, error) || !check(search, high, error)) return false;
-            /* It may differ from the one before now. */
+            /* The lower one may now differ from its predecessor. */
             if (i > 0) i--;
         } else {
             bool found = false;
-            if (!look_beside(search, i + 1, 1, &found, error) || !look_beside(search, i, -1, &found, error))
+            if (!check_beside(search, i + 1, 1, &found, error) || !check_beside(search, i, -1, &found, error))
                 return false;
             if (!found)
                 i++;
@@ -136,21 +137,21 @@ static bool refine(Search *search, Error *error) {
     return true;
 }
 
-/* In the order of the list. */
+/* Samples in the order of the list. */
 static const Sample *sample_at(const Search *search, int i) {
     return &search->samples[search->scan->fails_low ? search->count - 1 - i : i];
 }
 
 static bool add(BorderList *list, const Sample *holds, const Sample *fails, Verdict verdict, Error *error) {
-    if (list->count == BORDERS_MAX) return error_input(error, "border", "there are more than %d", BORDERS_MAX);
+    if (list->count == BORDERS_MAX) return error_input(error, "border", "more than %d borders found", BORDERS_MAX);
     list->items[list->count++] =
         (Border){holds != NULL ? holds->value : NAN, fails != NULL ? fails->value : NAN, verdict};
     return true;
 }
 
-/* There is nothing on the other side, or luck alone. */
+/* No border: all decided values hold, or all fail. */
 static bool add_one_sided(const Search *search, BorderList *list, Error *error) {
-    const Sample *last = NULL, *first = NULL; /* that holds; that fails */
+    const Sample *last = NULL, *first = NULL; /* last that holds; first that fails */
     Verdict worst = VERDICT_SETTLES;
     for (int i = 0; i < search->count; i++) {
         const Sample *sample = sample_at(search, i);
@@ -162,11 +163,11 @@ static bool add_one_sided(const Search *search, BorderList *list, Error *error) 
 }
 
 static bool list_borders(const Search *search, BorderList *list, Error *error) {
-    const Sample *before = NULL; /* the last without luck */
+    const Sample *before = NULL; /* the last decided one */
     Verdict worst = VERDICT_SETTLES;
     for (int i = 0; i < search->count; i++) {
         const Sample *now = sample_at(search, i);
-        if (now->side == SIDE_LUCK) {
+        if (now->side == SIDE_UNDECIDED) {
             if (now->verdict > worst) worst = now->verdict;
             continue;
         }

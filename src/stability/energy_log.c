@@ -12,13 +12,13 @@ void energy_log_free(EnergyLog *log) {
     *log = (EnergyLog){0};
 }
 
-/* Against gravity. */
+/* m: height along the direction opposite to gravity. */
 static double height(const Body *body, Vec2 gravity, double pull) {
     return -((double)body->position.x * gravity.x + (double)body->position.y * gravity.y) / pull;
 }
 
-/* Adds what new bodies could fall. The first that move say how far down that is. */
-static void stand(EnergyLog *log, const Body *bodies, int count) {
+/* Adds the potential energy of new bodies. The first dynamic bodies determine the lowest height. */
+static void add_potential(EnergyLog *log, const Body *bodies, int count) {
     double pull = hypot((double)log->gravity.x, (double)log->gravity.y), lowest = INFINITY;
     if (pull == 0) return;
     for (int i = 0; i < count; i++)
@@ -26,8 +26,8 @@ static void stand(EnergyLog *log, const Body *bodies, int count) {
     if (isinf(log->lowest)) log->lowest = lowest;
     for (int i = 0; i < count; i++)
         if (bodies[i].inv_mass != 0)
-            log->standing += fmax(0, height(&bodies[i], log->gravity, pull) - log->lowest) * pull / bodies[i].inv_mass;
-    log->to_lose = fmax(log->to_lose, log->standing);
+            log->potential += fmax(0, height(&bodies[i], log->gravity, pull) - log->lowest) * pull / bodies[i].inv_mass;
+    log->available = fmax(log->available, log->potential);
 }
 
 bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodies, int count, Error *error) {
@@ -36,10 +36,10 @@ bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodi
     log->gravity = gravity;
     log->frames = frames;
     log->energy[0] = log->level = bodies_energy(bodies, count, gravity);
-    log->to_lose = log->standing = 0;
+    log->available = log->potential = 0;
     log->lowest = INFINITY;
     log->body_count = count;
-    stand(log, bodies, count);
+    add_potential(log, bodies, count);
     return true;
 }
 
@@ -47,12 +47,12 @@ void energy_log_step(EnergyLog *log, int frame, const Body *bodies, int count) {
     double energy = bodies_energy(bodies, count, log->gravity);
     if (count > log->body_count) {
         log->level += bodies_energy(bodies + log->body_count, count - log->body_count, log->gravity);
-        stand(log, bodies + log->body_count, count - log->body_count);
+        add_potential(log, bodies + log->body_count, count - log->body_count);
     }
-    /* What has left cannot be asked any more what it had: the step of its leaving counts as one without a loss. */
+    /* The energy of removed bodies is no longer known: the step that removes them counts as one without losses. */
     if (count < log->body_count) log->level += energy - log->energy[frame - 1];
     if (energy > log->level) log->level = energy;
-    if (log->level - energy > log->to_lose) log->to_lose = log->level - energy;
+    if (log->level - energy > log->available) log->available = log->level - energy;
     log->energy[frame] = energy;
     log->body_count = count;
 }

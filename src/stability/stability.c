@@ -5,16 +5,13 @@
 #include "common/names.h"
 #include "stability/stability_grid.h"
 #include "stability/stability_scan.h"
+#include "stability/stability_table.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static const char default_methods[] = "engine:k=4,engine,engine:k=50,robust,momentum,momentum:k=20,substepping,nncg,"
-                                      "reference,pair-net,contact-net,scene-net";
-
-/* The study in progress. */
 typedef struct Run {
     const StabilityOptions *options;
     ContenderList methods;
@@ -54,7 +51,7 @@ static bool know_names(const StabilityOptions *options, Error *error) {
     return true;
 }
 
-/* Of the scene and what it names. A network that is not there matters only to the method that asks for it. */
+/* Hashes the scene and its networks. A missing network is an error only of the method that needs it. */
 static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Error *error) {
     char path[STABILITY_PATH_SIZE];
     const StabilityPlace place = {run->options->scenes, name};
@@ -66,7 +63,7 @@ static bool add_scene_to_key(const Run *run, const char *name, uint64_t *key, Er
     return study_key_add_file(key, path, error);
 }
 
-/* Of everything that decides the result: the program, the options, the scenes. */
+/* Hashes everything that determines the result: the program, the options, the scenes. */
 static bool find_key(const Run *run, uint64_t *key, Error *error) {
     const StabilityOptions *options = run->options;
     if (!study_key_begin(key, error)) return false;
@@ -79,7 +76,7 @@ static bool find_key(const Run *run, uint64_t *key, Error *error) {
     return true;
 }
 
-/* A map of the quick study takes as much less as it has less cells. */
+/* In a quick run, the weight of a map is proportional to its number of cells. */
 static double map_weight(const Run *run, const StabilityMap *map) {
     double share = (double)(map->x.quick_points * map->y.quick_points) / (map->x.scan.points * map->y.scan.points);
     return run->options->quick ? map->weight * share : map->weight;
@@ -100,19 +97,17 @@ static bool do_parts(Run *run, Error *error) {
 }
 
 static bool write_tables(const Run *run, Error *error) {
-    const char *folder = run->options->folder;
-    return study_parts_table(&run->parts, folder, "stability", STABILITY_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "maps", MAPS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "refusals", REFUSALS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "fallbacks", FALLBACKS_HEADER, error) &&
-           study_parts_table(&run->parts, folder, "rest", REST_HEADER, error);
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout, &refusal_layout, &fallback_layout,
+                                               &rest_layout};
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+        if (!study_parts_table(&run->parts, run->options->folder, layouts[i], error)) return false;
+    return true;
 }
 
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error) {
     Run run = {.options = options, .parts = {.progress = progress}};
     uint64_t key;
-    if (!know_names(options, error) ||
-        !contenders_read(&run.methods, options->methods != NULL ? options->methods : default_methods, error))
+    if (!know_names(options, error) || !contenders_parse(&run.methods, options->methods, STUDY_STABILITY, error))
         return false;
     for (int i = 0; i < stability_study_count; i++)
         if (does_study(&run, i)) run.parts.total += stability_studies[i].weight;

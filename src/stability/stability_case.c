@@ -42,19 +42,9 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error) {
     return applies;
 }
 
-bool stability_has_setting(const Method *method, const char *key) {
-    if (method->solver == NULL) return false;
-    for (const SettingSpec *spec = method->solver->settings; spec->key != NULL; spec++)
-        if (strcmp(spec->key, key) == 0) return true;
-    return false;
-}
-
-bool stability_is_reference(const Method *method) {
-    return method->solver != NULL && strcmp(method->solver->name, "reference") == 0;
-}
-
 bool stability_takes_iterations(const Method *method) {
-    return stability_has_setting(method, "k") && settings_get(&method->settings, "k") == NULL;
+    return method->kind->solver != NULL && settings_known(method->kind->description->settings, "k") &&
+           settings_get(&method->settings, "k") == NULL;
 }
 
 bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
@@ -66,7 +56,7 @@ bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
         if (!counter->stopped) counter->stopped = !progress_report(counter->progress, done, counter->expected);
         stopped = counter->stopped;
     }
-    return !stopped || error_input(error, what, "stopped; what was done before is kept");
+    return !stopped || error_input(error, what, "stopped; finished parts are kept");
 }
 
 bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {
@@ -84,7 +74,7 @@ static const EnergyLog *find(const ConvergedRuns *runs, double value) {
     return log;
 }
 
-static bool keep(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
+static bool store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
     bool ok;
 #pragma omp critical(converged_runs)
     {
@@ -103,7 +93,7 @@ const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, dou
         return NULL;
     }
     run->value = value;
-    if (converged_run_once(&run->log, scene, error) && keep(runs, run, error)) return &run->log;
+    if (converged_run_once(&run->log, scene, error) && store(runs, run, error)) return &run->log;
     energy_log_free(&run->log);
     free(run);
     return NULL;

@@ -1,74 +1,67 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run of a study of stability: a scene with its numbers, a method, a verdict; and the converged runs that verdicts
-   need, each made once for all methods. */
+/* One run of a stability study: a scene with parameter values, and a method; and the converged runs that verdicts need,
+   each computed once for all methods. */
 #pragma once
 #include "stability/stability_studies.h"
 #include "study/contenders.h"
 
 enum { STABILITY_PATH_SIZE = 4096 };
 
-/* A scene of the study, open at numbers that are still to come. */
+/* A parametric scene of the study. */
 typedef struct StabilityPlace {
-    const char *scenes; /* the folder above stability/ */
-    const char *scene;  /* file name without folder and ending */
+    const char *scenes; /* the folder that contains stability/ */
+    const char *scene;  /* file name without folder and extension */
 } StabilityPlace;
 
-/* "scenes/stability/SCENE.yaml". ERROR_INPUT where it is too long. */
+/* "scenes/stability/SCENE.yaml". ERROR_INPUT if it is too long. */
 bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error);
 
-/* Reads it with these numbers. The caller frees it. */
+/* Reads the scene with these parameter values. The caller frees it. */
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
 
-/* The unit of one of the scene's numbers; "" where it has none. */
+/* The unit of a parameter of the scene, or "". */
 const char *stability_unit(const Scene *scene, const char *parameter);
 
-/* Shifts the first body that moves, or else the bomb, along x: not at all for seed 0, by 1e-6 m forth and back for 1
-   and 2. */
+/* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and
+   2. */
 void stability_shift(Scene *scene, int seed);
 
-/* False, with the reason in error, where the method does not go with the scene: it cannot be created, or refuses the first
-   step. */
+/* False, with the reason in error, if the method does not apply to the scene: it cannot be created, or its first step
+   fails. */
 bool stability_applies(const Method *method, const Scene *scene, Error *error);
 
-/* True for a contact solver that has a setting of this name. */
-bool stability_has_setting(const Method *method, const char *key);
-
-/* True for the method by which the others are judged. */
-bool stability_is_reference(const Method *method);
-
-/* True for a method that makes as many iterations as the scene says. */
+/* True for a method that makes as many sweeps as the scene sets. */
 bool stability_takes_iterations(const Method *method);
 
-/* A converged run, by the value of the number that is scanned. */
+/* A converged run at a value of the scanned parameter. */
 typedef struct ConvergedRun {
     double value;
     EnergyLog log;
 } ConvergedRun;
 
-/* How many runs are done; asks whether to go on. Zero-initialise. */
+/* Counts runs and reports progress. Zero-initialise. */
 typedef struct RunCounter {
     const Progress *progress; /* may be NULL */
     double done, expected;
     bool stopped;
 } RunCounter;
 
-/* Counts one, from any thread. False with error set where progress asked to stop. */
+/* Counts one run. Thread-safe. False with error set if progress stops the study. */
 bool run_counter_add(RunCounter *counter, const char *what, Error *error);
 
-/* Converged runs begin each step with the impulses of the one before, whatever the scene says: where they end does not
-   depend on that, but a stack of 40 that begins with nothing takes them minutes.
+/* A cache of converged runs. They always use a warm start, whatever the scene sets: it does not change the converged
+   solution, but without it a stack of 40 boxes takes minutes. Shifted scenes use the run of the unshifted scene.
 
-   Zero-initialise. Threads may ask at once; one that asks for what another is about to make makes it, too, which changes
-   nothing. Those of shifted scenes are the unshifted one's. */
+   Zero-initialise. Thread-safe; two threads may compute the same run, with the same result. */
 typedef struct ConvergedRuns {
     int count;
     size_t capacity;
     ConvergedRun **runs; /* [count] */
 } ConvergedRuns;
 
-/* The run of the scene at the value by the method "reference". NULL with error set where it cannot be made. */
+/* The run of the scene at the value by the method "reference". NULL with error set if it fails. */
 const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, double value, Error *error);
 void converged_runs_free(ConvergedRuns *runs);
 
-/* The converged run of a scene, for one use. */
+/* The converged run of a scene, not cached. */
 bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Puts a value into its place, if it is new. False where there is no room. */
+/* Inserts a value into a sorted list, if it is new. False if the list is full. */
 static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
     int at = 0;
     while (at < *count && values[at] < value) at++;
@@ -24,7 +24,7 @@ static int find(const double *values, double value) {
 static bool gather_values(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
     for (int i = first; i < end; i++)
         if (!insert(map->x, &map->x_count, table->cells[i].x) || !insert(map->y, &map->y_count, table->cells[i].y))
-            return stability_row_error(table->path, i, error, "more than %d values of a parameter", MAP_MAX_VALUES);
+            return csv_table_error(&table->csv, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
     return true;
 }
 
@@ -34,14 +34,14 @@ static bool gather_looks(MapPanels *map, const MapTable *table, int first, int e
         const MapCell *cell = &table->cells[i];
         if (i == first || !map_cell_same_method(cell - 1, cell)) {
             if (map->panel_count == MAP_MAX_METHODS)
-                return stability_row_error(table->path, i, error, "more than %d methods: too many for a figure",
-                                           MAP_MAX_METHODS);
+                return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
+                                       MAP_MAX_METHODS);
             map->methods[map->panel_count++] = cell;
         }
         unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
         if (*look != LOOK_MISSING)
-            return stability_row_error(table->path, i, error, "this cell was there before (%s %g, %s %g)",
-                                       cell->x_parameter, cell->x, cell->y_parameter, cell->y);
+            return csv_table_error(&table->csv, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
+                                   cell->x, cell->y_parameter, cell->y);
         *look = (unsigned char)cell->verdict;
     }
     return true;

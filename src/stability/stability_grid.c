@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/stability_grid.h"
 
-#include "common/csv.h"
 #include "common/parallel.h"
+#include "stability/stability_table.h"
+#include "study/study_parts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,11 +11,11 @@
 
 typedef struct Run {
     const StabilityGrid *grid;
-    Scene *typical; /* with the file's own numbers */
+    Scene *typical; /* with default parameters */
     int x_count, y_count;
     double x[BORDER_POINTS_MAX], y[BORDER_POINTS_MAX];
     int method_count;
-    const Contender **methods; /* [method_count] that go with the scene */
+    const Contender **methods; /* [method_count] that apply to the scene */
     VerdictReading *readings;  /* [method_count, y_count, x_count] */
     RunCounter counter;
 } Run;
@@ -46,25 +47,30 @@ static bool judge_cell(void *context, int cell, Error *error) {
     return ok;
 }
 
-static void put_axis(const Run *run, const char *parameter, double value, FILE *lines) {
-    fprintf(lines, "%s,%s,%.9g,", parameter, stability_unit(run->typical, parameter), value);
-}
-
-static void put_cells(const Run *run, int method, FILE *lines) {
+static bool write_cells(const Run *run, int method, FILE *lines, Error *error) {
     const StabilityMap *map = run->grid->map;
+    MapCell row = {.map = map->name,
+                   .method = run->methods[method]->name,
+                   .setting = run->methods[method]->setting,
+                   .x_parameter = map->x.parameter,
+                   .x_unit = stability_unit(run->typical, map->x.parameter),
+                   .y_parameter = map->y.parameter,
+                   .y_unit = stability_unit(run->typical, map->y.parameter)};
     for (int cell = 0; cell < run->x_count * run->y_count; cell++) {
         const VerdictReading *reading = &run->readings[method * run->x_count * run->y_count + cell];
-        fprintf(lines, "maps:%s,%s,", map->name, run->methods[method]->name);
-        csv_put(lines, run->methods[method]->setting);
-        fprintf(lines, ",");
-        put_axis(run, map->x.parameter, run->x[cell % run->x_count], lines);
-        put_axis(run, map->y.parameter, run->y[cell / run->x_count], lines);
-        fprintf(lines, "%s,%d,%d,%.6g,%s\n", verdict_name(reading->verdict), reading->frame, reading->body,
-                reading->value, reading->unit);
+        row.x = run->x[cell % run->x_count];
+        row.y = run->y[cell / run->x_count];
+        row.verdict = (int)reading->verdict;
+        row.frame = reading->frame;
+        row.body = reading->body;
+        row.value = reading->value;
+        row.unit = reading->unit;
+        if (!study_parts_print(lines, &map_layout, &row, error)) return false;
     }
+    return true;
 }
 
-/* In the first and the last cell. */
+/* Tests the first and the last cell. */
 static bool applies(const Run *run, const Method *method) {
     bool ok = true;
     for (int i = 0; ok && i < 2; i++) {
@@ -77,7 +83,7 @@ static bool applies(const Run *run, const Method *method) {
 }
 
 static bool is_drawn(const Run *run, const Method *method) {
-    if (stability_is_reference(method)) return false;
+    if (method->kind->description->role == METHOD_REFERENCE) return false;
     return (!run->grid->map->iterations || stability_takes_iterations(method)) && applies(run, method);
 }
 
@@ -106,7 +112,7 @@ bool stability_grid_write(void *grid, FILE *lines, const Progress *progress, Err
     const ParallelWork work = {judge_cell, &run};
     bool ok = begin(&run, error) && (run.method_count == 0 ||
                                      parallel_for(&work, run.x_count * run.y_count, run.grid->map->name, NULL, error));
-    for (int i = 0; ok && i < run.method_count; i++) put_cells(&run, i, lines);
+    for (int i = 0; ok && i < run.method_count; i++) ok = write_cells(&run, i, lines, error);
     free(run.methods);
     free(run.readings);
     scene_destroy(run.typical);

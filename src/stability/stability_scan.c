@@ -2,30 +2,31 @@
 #include "stability/stability_scan.h"
 
 #include "common/array.h"
-#include "common/csv.h"
 #include "common/parallel.h"
+#include "stability/stability_table.h"
+#include "study/study_parts.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Runs of a method beside those of the coarse scan: a bisection and its seeds, roughly. */
+/* Estimated number of runs of a method beyond the coarse scan: a bisection and its seeds. */
 enum { RUNS_OF_A_BORDER = 8 };
 
 typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
 
-/* Without a shift. */
+/* An unshifted run. */
 typedef struct ScanRun {
     double value;
     VerdictReading reading;
 } ScanRun;
 
-/* What came of a method. */
+/* The results of a method. */
 typedef struct Result {
     Part part;
     BorderList borders;
-    Error reason;  /* refused */
+    Error reason;  /* of the refusal */
     ScanRun *runs; /* [run_count] */
     size_t run_capacity;
     int run_count;
@@ -33,7 +34,7 @@ typedef struct Result {
 
 typedef struct Run {
     const StabilityScan *scan;
-    Scene *typical; /* with the file's own numbers */
+    Scene *typical; /* with default parameters */
     ConvergedRuns converged;
     RunCounter counter;
     Result *results; /* [methods] */
@@ -51,20 +52,19 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     Scene *scene = scene_at(scan, value, error);
     const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
     if (scene != NULL) stability_shift(scene, seed);
-    if (scene != NULL && stability_is_reference(method)) scene->warm_starting = true;
+    if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
     bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
     scene_destroy(scene);
     return ok;
 }
 
-/* One method of a run. */
-typedef struct Asked {
+typedef struct ProbeContext {
     Run *run;
     const Method *method;
     Result *result;
-} Asked;
+} ProbeContext;
 
-static bool keep_run(Result *result, double value, const VerdictReading *reading, Error *error) {
+static bool store_run(Result *result, double value, const VerdictReading *reading, Error *error) {
     if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
                        sizeof *result->runs))
         return error_memory(error, "runs");
@@ -72,17 +72,17 @@ static bool keep_run(Result *result, double value, const VerdictReading *reading
     return true;
 }
 
-static bool ask(void *context, double value, int seed, Verdict *verdict, Error *error) {
-    const Asked *asked = context;
-    Run *run = asked->run;
+static bool probe_value(void *context, double value, int seed, Verdict *verdict, Error *error) {
+    const ProbeContext *probed = context;
+    Run *run = probed->run;
     VerdictReading reading;
-    if (!stability_scan_run(run->scan, asked->method, value, seed, &run->converged, &reading, error)) return false;
+    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->converged, &reading, error)) return false;
     *verdict = reading.verdict;
-    if (seed == 0 && !keep_run(asked->result, value, &reading, error)) return false;
+    if (seed == 0 && !store_run(probed->result, value, &reading, error)) return false;
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
 
-/* At both ends of the scan: a network may be for the bodies that there are at one value only. */
+/* Tests both ends of the scan: a network may fit the bodies of one value only. */
 static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
     const double ends[] = {scan->study->scan.from, scan->study->scan.to};
     bool ok = true;
@@ -98,33 +98,31 @@ static bool study_method(void *context, int i, Error *error) {
     Run *run = context;
     Result *result = &run->results[i];
     const StabilityStudy *study = run->scan->study;
-    Asked asked = {run, &run->scan->methods->items[i].method, result};
-    if (study->iterations && !stability_takes_iterations(asked.method)) {
+    ProbeContext probed = {run, &run->scan->methods->items[i].method, result};
+    if (study->iterations && !stability_takes_iterations(probed.method)) {
         result->part = PART_LEFT_OUT;
         return true;
     }
-    if (!applies(run->scan, asked.method, &result->reason)) {
+    if (!applies(run->scan, probed.method, &result->reason)) {
         result->part = PART_REFUSED;
         return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
     }
-    const BorderProbe probe = {ask, &asked, study->unshifted ? 1 : BORDER_SEEDS};
+    const BorderProbe probe = {probe_value, &probed, study->unshifted ? 1 : BORDER_SEEDS};
     return border_search(&result->borders, &study->scan, &probe, error);
 }
 
-static void put_method(const Run *run, const char *table, int i, FILE *lines) {
+static bool write_border(const Run *run, int i, const Border *border, FILE *lines, Error *error) {
     const Contender *contender = &run->scan->methods->items[i];
-    fprintf(lines, "%s:%s,%s,", table, run->scan->study->name, contender->name);
-    csv_put(lines, contender->setting);
-}
-
-static void put_border(const Run *run, int i, const Border *border, FILE *lines) {
     const StabilityStudy *study = run->scan->study;
-    put_method(run, "stability", i, lines);
-    fprintf(lines, ",%s,%s,", study->parameter, stability_unit(run->typical, study->parameter));
-    if (border != NULL && !isnan(border->holds_at)) fprintf(lines, "%.9g", border->holds_at);
-    fprintf(lines, ",");
-    if (border != NULL && !isnan(border->fails_at)) fprintf(lines, "%.9g", border->fails_at);
-    fprintf(lines, ",%s\n", border != NULL ? verdict_name(border->verdict) : STABILITY_NOT_APPLICABLE);
+    const BorderRow row = {.study = study->name,
+                           .method = contender->name,
+                           .setting = contender->setting,
+                           .parameter = study->parameter,
+                           .unit = stability_unit(run->typical, study->parameter),
+                           .holds_at = border != NULL ? border->holds_at : NAN,
+                           .fails_at = border != NULL ? border->fails_at : NAN,
+                           .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
+    return study_parts_print(lines, &border_layout, &row, error);
 }
 
 static int by_value(const void *left, const void *right) {
@@ -132,53 +130,53 @@ static int by_value(const void *left, const void *right) {
     return (a->value > b->value) - (a->value < b->value);
 }
 
-static void put_value(const Run *run, const char *table, int i, double value, FILE *lines) {
+static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
+
+static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
+    const Contender *contender = &run->scan->methods->items[i];
     const StabilityStudy *study = run->scan->study;
-    put_method(run, table, i, lines);
-    fprintf(lines, ",%s,%s,%.9g", study->parameter, stability_unit(run->typical, study->parameter), value);
-}
-
-static void put_fallbacks(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
-    const NetworkFallbacks *fallbacks = &scan_run->reading.fallbacks;
-    put_value(run, "fallbacks", i, scan_run->value, lines);
-    fprintf(lines, ",%d,%d,%d,%d\n", scan_run->reading.steps, fallbacks->not_finite, fallbacks->outside_cone,
-            fallbacks->beyond_training);
-}
-
-static void put_rest(const Run *run, int i, const ScanRun *scan_run, FILE *lines) {
     const VerdictReading *reading = &scan_run->reading;
-    put_value(run, "rest", i, scan_run->value, lines);
-    fprintf(lines, ",%s,%d,", verdict_name(reading->verdict), reading->steps);
-    if (isfinite(reading->drift)) fprintf(lines, "%.4g", reading->drift);
-    fprintf(lines, ",");
-    if (isfinite(reading->gained)) fprintf(lines, "%.4g", reading->gained);
-    fprintf(lines, "\n");
+    const RunRow row = {.study = study->name,
+                        .method = contender->name,
+                        .setting = contender->setting,
+                        .parameter = study->parameter,
+                        .unit = stability_unit(run->typical, study->parameter),
+                        .value = scan_run->value,
+                        .steps = reading->steps,
+                        .verdict = (int)reading->verdict,
+                        .drift = finite_or_nan(reading->drift),
+                        .energy = finite_or_nan(reading->gained),
+                        .not_finite = reading->fallbacks.not_finite,
+                        .outside_cone = reading->fallbacks.outside_cone,
+                        .beyond_training = reading->fallbacks.beyond_training};
+    if (contender->method.kind->description->needs_network && !study_parts_print(lines, &fallback_layout, &row, error))
+        return false;
+    return !study->rests || study_parts_print(lines, &rest_layout, &row, error);
 }
 
-static void put_runs(const Run *run, int i, FILE *lines) {
-    const bool network = stability_has_setting(&run->scan->methods->items[i].method, "network");
+static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {
     Result *result = &run->results[i];
-    if (result->run_count == 0) return;
+    if (result->run_count == 0) return true;
     qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
-    for (int k = 0; k < result->run_count; k++) {
-        if (network) put_fallbacks(run, i, &result->runs[k], lines);
-        if (run->scan->study->rests) put_rest(run, i, &result->runs[k], lines);
-    }
+    for (int k = 0; k < result->run_count; k++)
+        if (!write_run(run, i, &result->runs[k], lines, error)) return false;
+    return true;
 }
 
-static void put_result(const Run *run, int i, FILE *lines) {
-    Result *result = &run->results[i];
-    if (result->part == PART_LEFT_OUT) return;
+static bool write_refusal(const Run *run, int i, FILE *lines, Error *error) {
+    const Contender *contender = &run->scan->methods->items[i];
+    char *reason = run->results[i].reason.message;
+    reason[strcspn(reason, "\n")] = '\0';
+    const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
+    return write_border(run, i, NULL, lines, error) && study_parts_print(lines, &refusal_layout, &row, error);
+}
+
+static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
+    const Result *result = &run->results[i];
+    if (result->part == PART_LEFT_OUT) return true;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
-        put_border(run, i, &result->borders.items[k], lines);
-    put_runs(run, i, lines);
-    if (result->part != PART_REFUSED) return;
-    put_border(run, i, NULL, lines);
-    put_method(run, "refusals", i, lines);
-    fprintf(lines, ",");
-    result->reason.message[strcspn(result->reason.message, "\n")] = '\0';
-    csv_put(lines, result->reason.message);
-    fprintf(lines, "\n");
+        if (!write_border(run, i, &result->borders.items[k], lines, error)) return false;
+    return write_runs(run, i, lines, error) && (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
 }
 
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error) {
@@ -192,7 +190,7 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     bool ok = run.typical != NULL;
     if (ok && run.results == NULL) ok = error_memory(error, study->name);
     ok = ok && parallel_for(&work, methods, study->name, NULL, error);
-    for (int i = 0; ok && i < methods; i++) put_result(&run, i, lines);
+    for (int i = 0; ok && i < methods; i++) ok = write_result(&run, i, lines, error);
     for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
     free(run.results);
     converged_runs_free(&run.converged);

@@ -1,30 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One study of stability: the borders of every method, as a part of a longer work (study_parts.h). */
+/* One stability study: the borders of every method along a parameter; a part of the study (study_parts.h). */
 #pragma once
 #include "common/progress.h"
 #include "stability/stability_case.h"
 
-#define STABILITY_HEADER "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
-#define REFUSALS_HEADER "study,method,setting,reason"
-#define FALLBACKS_HEADER "study,method,setting,parameter,unit,value,steps,not_finite,outside_cone,beyond_training"
-#define REST_HEADER "study,method,setting,parameter,unit,value,verdict,steps,drift,energy"
-
-/* In place of a verdict, where the method does not go with the scene. */
-#define STABILITY_NOT_APPLICABLE "not applicable"
-
 typedef struct StabilityScan {
     const StabilityStudy *study;
-    const char *scenes; /* the folder above stability/ */
+    const char *scenes; /* the folder that contains stability/ */
     const ContenderList *methods;
 } StabilityScan;
 
-/* Writes the lines of the tables "stability", "refusals", "fallbacks" (of each run by a network, without a shift) and
-   "rest" (of each run of a study that rests, without a shift) in the order of the methods, which are studied in
-   parallel. A method that has its own number of iterations has no row where those are scanned. `scan` is a
-   StabilityScan. */
+/* Writes the rows of the tables "stability", "refusals", "fallbacks" (every unshifted run of a network) and "rest"
+   (every unshifted run, if study.rests), ordered by method; methods run in parallel. Omits methods that set their own
+   number of sweeps if the study scans it. `scan` is a StabilityScan. */
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error);
 
-/* The verdict on one run of a study; seed: stability_shift. False with error set where the method does not go with the
-   scene, or memory is short. */
+/* The verdict on one run of a study; seed: stability_shift(). False with error set if the method does not apply to the
+   scene or memory is short. */
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
                         ConvergedRuns *converged, VerdictReading *reading, Error *error);

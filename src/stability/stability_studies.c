@@ -59,7 +59,7 @@ const StabilityMap stability_maps[] = {
      .y = {"thickness", LOGARITHMIC(0.1, 2, 10), 4}, .quick = true, .weight = 3},
     {.name = "spin_x", .scene = "random_bombs", .x = {"spin", LINEAR(0, 20, 11), 4}, .y = {"x", LINEAR(-5, 5, 11), 4},
      .quick = true, .weight = 10},
-    /* No cell lies on the border, where the slope is the friction. */
+    /* The grid avoids the border, where the slope equals the friction. */
     {.name = "slope_friction", .scene = "friction_ramp", .x = {"slope", LINEAR(0.025, 0.575, 12), 4},
      .y = {"friction", LINEAR(0.05, 0.6, 12), 4}, .stands = true, .weight = 2}};
 /* clang-format on */

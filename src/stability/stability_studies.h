@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is studied: along which numbers of which scenes methods are led to where they fail. */
+/* The table of stability studies: which scene, which parameter, which range. */
 #pragma once
 #include "scene/scene.h"
 #include "stability/border_search.h"
 
-/* One number of a scene of scenes/stability, and where another of its numbers stands meanwhile. */
+/* A scan of one parameter of a scene of scenes/stability. */
 typedef struct StabilityStudy {
     const char *name;  /* of the study, in tables */
-    const char *scene; /* file name without folder and ending */
+    const char *scene; /* file name without folder and extension */
     const char *parameter;
     BorderScan scan;
-    SceneSetting fixed; /* name "": nothing but the parameter is set */
-    bool stands;        /* VerdictRun */
-    bool iterations;    /* the scene's iterations are scanned: only for methods that take them from there */
-    bool unshifted;     /* a tiny shift tells nothing: it is rounded away, or nothing comes near anything else */
-    bool rests;         /* a run's drift and energy count as well as its verdict */
-    bool quick;         /* one of the few that are looked at in a quick run */
-    double weight;      /* s for all methods on two cores, roughly */
+    SceneSetting fixed; /* another parameter that is set; name "": none */
+    bool stands;        /* as in VerdictRun */
+    bool iterations;    /* scans the scene's iterations: only for methods that use them */
+    bool unshifted;     /* without seeds: a tiny shift has no effect, as it is rounded away or nothing comes near */
+    bool rests;         /* also records drift and energy of every run */
+    bool quick;         /* part of a quick run */
+    double weight;      /* s for all methods on two cores, approximately */
 } StabilityStudy;
 
-/* Two numbers at once, on a grid. */
 typedef struct StabilityAxis {
     const char *parameter;
-    BorderScan scan; /* its points alone count */
+    BorderScan scan; /* only its coarse scan is used */
     int quick_points;
 } StabilityAxis;
 
+/* A grid over two parameters. */
 typedef struct StabilityMap {
     const char *name, *scene;
     StabilityAxis x, y;
@@ -37,5 +37,5 @@ extern const StabilityStudy stability_studies[];
 extern const StabilityMap stability_maps[];
 extern const int stability_study_count, stability_map_count;
 
-/* The study of that name, or NULL. */
+/* The study of this name, or NULL. */
 const StabilityStudy *stability_study_find(const char *name);

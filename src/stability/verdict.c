@@ -8,11 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *verdict_name(Verdict verdict) {
-    static const char *const names[VERDICTS] = {"settles", "sways",   "creeps",   "falls",
-                                                "sinks",   "tunnels", "explodes", "non-finite"};
-    return names[verdict];
-}
+const char *const verdict_words[VERDICTS + 2] = {"settles", "sways",    "creeps",     "falls",         "sinks",
+                                                 "tunnels", "explodes", "non-finite", "not applicable"};
+
+const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
 bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 
@@ -21,15 +20,14 @@ void verdict_watch_free(VerdictWatch *watch) {
     *watch = (VerdictWatch){0};
 }
 
-static void remember(VerdictWatch *watch, const Body *bodies) {
+static void store_last(VerdictWatch *watch, const Body *bodies) {
     for (int i = 0; i < watch->body_count; i++) {
         watch->bodies[i].last = bodies[i].position;
         watch->bodies[i].last_angle = bodies[i].angle;
     }
 }
 
-/* Makes room for those that have joined, as bodies that have only now come to be. */
-static bool meet(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
+static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
         return error_memory(error, "verdict");
     for (int i = watch->body_count; i < count; i++)
@@ -41,14 +39,14 @@ static bool meet(VerdictWatch *watch, const Body *bodies, int count, Error *erro
 
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
     if (run->converged->frames < run->frames)
-        return error_input(error, "verdict", "the converged run has %d frames of %d", run->converged->frames,
+        return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
                            run->frames);
     *watch = (VerdictWatch){.run = *run, .bodies = watch->bodies, .capacity = watch->capacity};
     watch->kept = bodies_energy(bodies, count, run->gravity);
-    return meet(watch, bodies, count, error);
+    return add_bodies(watch, bodies, count, error);
 }
 
-static void remember_rest(VerdictWatch *watch) {
+static void store_rested(VerdictWatch *watch) {
     for (int i = 0; i < watch->body_count; i++) watch->bodies[i].rested = watch->bodies[i].last;
     watch->rested_count = watch->body_count;
     watch->rested = watch->energy;
@@ -59,14 +57,14 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
     watch->frame = step->frame;
     if (!check_finite(watch, step)) return true;
     check_energy(watch, step);
-    if (!meet(watch, step->bodies, step->body_count, error)) return false;
+    if (!add_bodies(watch, step->bodies, step->body_count, error)) return false;
     check_tunnels(watch, step);
     check_depth(watch, step);
     check_falls(watch, step);
     check_creep(watch, step);
     check_calm(watch, step);
-    remember(watch, step->bodies);
-    if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) remember_rest(watch);
+    store_last(watch, step->bodies);
+    if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) store_rested(watch);
     return true;
 }
 
@@ -94,7 +92,7 @@ static VerdictReading read_verdict(const VerdictWatch *watch) {
     return (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_SWAYS,
                             .frame = watch->frame - watch->calm + (calm ? 1 : 0),
                             .body = -1,
-                            .value = calm ? watch->kinetic : watch->loud,
+                            .value = calm ? watch->kinetic : watch->kinetic_not_calm,
                             .unit = "J"};
 }
 
@@ -109,7 +107,7 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     return reading;
 }
 
-/* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+/* An input error during the run means that the state became NaN or infinite. That is a valid result. */
 static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
     Error failure = {0};
     if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);

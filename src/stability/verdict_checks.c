@@ -46,13 +46,12 @@ static int most_kinetic(const VerdictStep *step) {
     return most;
 }
 
-/* Begins anew to look for the greatest energy of a second. */
 static void end_second(VerdictWatch *watch, double kept) {
     watch->kept = kept;
     watch->peak_steps = 0;
 }
 
-/* J: of the converged run, about a frame. */
+/* J: bound (b) of verdict_watch_step(). */
 static double converged_energy(const VerdictRun *run, int frame) {
     const int second = verdict_steps(VERDICT_ENERGY_TIME, run->dt);
     const int from = frame > second ? frame - second : 0;
@@ -71,8 +70,8 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     watch->kept += brought;
     watch->peak += brought;
     if (joined < 0) end_second(watch, energy);
-    double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->to_lose, VERDICT_LEAST_TO_LOSE);
-    /* Two seconds of the converged run are looked through where the first bound is passed only: that is rare. */
+    double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->available, VERDICT_LEAST_AVAILABLE);
+    /* Bound (b) searches two seconds of the converged run; evaluated only if (a) is exceeded, which is rare. */
     if (energy > watch->kept + allowed) {
         double bound = fmax(watch->kept, converged_energy(run, step->frame));
         if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
@@ -82,7 +81,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
         end_second(watch, fmin(watch->kept, watch->peak));
 }
 
-/* Cuts from the part [from, to] of a way what lies outside -half < start + t step < half. */
+/* Clips the interval `part` of t to -half < start + t step < half. */
 static void clip(double part[2], double start, double step, double half) {
     if (step == 0) {
         if (fabs(start) >= half) part[1] = part[0];
@@ -93,8 +92,8 @@ static void clip(double part[2], double start, double step, double half) {
     part[1] = fmin(part[1], fmax(in, out));
 }
 
-/* Whether the straight way between two points, or the point where they are one, has a part inside the box: touching its
-   rim is none. In the box's own axes, double: a box far from the origin is as thick as any. */
+/* Whether the segment between two points (or the point, if they are equal) intersects the interior of the box. In the
+   box's axes and in double, so that it is exact far from the origin too. */
 static bool passes(const Body *box, Vec2 from, Vec2 to) {
     double c = cos((double)box->angle), s = sin((double)box->angle);
     double x = (double)from.x - box->position.x, y = (double)from.y - box->position.y;
@@ -123,15 +122,15 @@ void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
     }
 }
 
-/* A contact may be of a body that has left at the end of the step. */
-static bool is_there(const VerdictStep *step, const ContactPoint *contact) { return contact->b < step->body_count; }
+/* A contact's body may have been removed at the end of the step. */
+static bool exists(const VerdictStep *step, const ContactPoint *contact) { return contact->b < step->body_count; }
 
 void check_depth(VerdictWatch *watch, const VerdictStep *step) {
     const ContactPoint *deepest = NULL;
     double share = 1;
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
-        if (!is_there(step, contact)) continue;
+        if (!exists(step, contact)) continue;
         double side = fmin(smaller_side(&step->bodies[contact->a]), smaller_side(&step->bodies[contact->b]));
         double found = -(double)contact->separation / fmax(VERDICT_SINK_SHARE * side, VERDICT_SINK_LEAST);
         if (found <= share) continue;
@@ -144,15 +143,15 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
     verdict_note(watch, VERDICT_SINKS, body, -(double)deepest->separation, "m");
 }
 
-/* Where a body was when the step found it touching: that is where it is meant to stay. */
-static void stand(WatchedBody *body) {
+/* A body is meant to stay where it was before the step of its first contact. */
+static void note_contact(WatchedBody *body) {
     if (body->touched) return;
     body->touched = true;
     body->stood = body->last;
     body->stood_angle = body->last_angle;
 }
 
-/* Along gravity. */
+/* m: descent along gravity. */
 static double lowered(Vec2 from, Vec2 to, Vec2 gravity) {
     double pull = hypot((double)gravity.x, (double)gravity.y);
     if (pull == 0) return 0;
@@ -162,9 +161,9 @@ static double lowered(Vec2 from, Vec2 to, Vec2 gravity) {
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
     if (!watch->run.stands) return;
     for (int i = 0; i < step->contact_count; i++) {
-        if (!is_there(step, &step->contacts[i])) continue;
-        stand(&watch->bodies[step->contacts[i].a]);
-        stand(&watch->bodies[step->contacts[i].b]);
+        if (!exists(step, &step->contacts[i])) continue;
+        note_contact(&watch->bodies[step->contacts[i].a]);
+        note_contact(&watch->bodies[step->contacts[i].b]);
     }
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
@@ -205,5 +204,5 @@ void check_calm(VerdictWatch *watch, const VerdictStep *step) {
     watch->calm++;
     if (watch->kinetic < VERDICT_CALM_ENERGY) return;
     watch->calm = 0;
-    watch->loud = watch->kinetic;
+    watch->kinetic_not_calm = watch->kinetic;
 }

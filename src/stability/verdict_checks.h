@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a watch looks for in one step: each check takes note of what it finds. They come before the watch remembers the
-   step's places as the last ones. */
+/* The checks of a watch for one step. They run before the watch stores the step's positions as the last ones. */
 #pragma once
 #include "stability/verdict.h"
 
-/* Keeps the reading where it is worse than what there is. */
+/* Stores the verdict if it is worse than the worst so far. */
 void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);
 
-/* True where all numbers are finite. */
+/* False if a body's state is NaN or infinite. */
 bool check_finite(VerdictWatch *watch, const VerdictStep *step);
 void check_energy(VerdictWatch *watch, const VerdictStep *step);
 void check_tunnels(VerdictWatch *watch, const VerdictStep *step);
@@ -16,7 +15,7 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step);
 void check_creep(VerdictWatch *watch, const VerdictStep *step);
 void check_calm(VerdictWatch *watch, const VerdictStep *step);
 
-/* Steps that come nearest to so many seconds; at least one. */
+/* Seconds rounded to whole steps; at least one. */
 int verdict_steps(double seconds, float dt);
 
 /* m */

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Blues that calm, then orange over red to black: hues that the colour-blind can tell from each other, too. */
+/* Blues, then orange to red to black: hues that the colour-blind can distinguish. */
 const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_SETTLES] = {"settles", "#EAF3FA", "#7FA6BF", 7, 0.35},
     [VERDICT_SWAYS] = {"sways", "#CBE2F1", "#2F6C94", 6, 0.8},
@@ -17,13 +17,10 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [LOOK_MISSING] = {"not run", NULL, "#909090", -1, 1},
 };
 
-const char *const verdict_words[LOOK_MISSING + 1] = {"settles", "sways",    "creeps",     "falls",          "sinks",
-                                                     "tunnels", "explodes", "non-finite", "not applicable", NULL};
-
 /* mm */
 static const double most_symbol = 2.0, seam = 0.07, legend_tile = 2.9, name_gap = 1.3;
 
-/* Of a tile's smaller side: the symbol, and what a point of size 1 has across in mm. */
+/* Symbol width relative to a tile's smaller side; diameter of a gnuplot point of size 1 in mm. */
 static const double symbol_share = 0.56, point_size_1 = 2.1;
 
 static double symbol_width(TileScale scale) {
@@ -31,68 +28,69 @@ static double symbol_width(TileScale scale) {
     return fmin(symbol_share * side, most_symbol);
 }
 
-static void put_fills(FigurePage *page, const Tile *tiles, int count, int look, TileScale scale) {
+static void draw_fills(GnuplotPage *page, const Tile *tiles, int count, int look, TileScale scale) {
     const char *fill = verdict_looks[look].fill;
     double x = (scale.half > 0 ? scale.half / scale.unit_x : 0.5) - seam / scale.unit_x;
     double y = (scale.half > 0 ? scale.half / scale.unit_y : 0.5) - seam / scale.unit_y;
-    FigureLook bars = {"", {.colour = fill}, 0, false, 1, false};
-    figure_series(page);
+    GnuplotLook bars = {"", {.colour = fill}, 0, false, 1, false};
+    gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
-        if (tiles[i].look == look) figure_bar(page, tiles[i].x - x, tiles[i].y - y, tiles[i].x + x, tiles[i].y + y);
-    figure_draw(page, &bars);
+        if (tiles[i].look == look) gnuplot_bar(page, tiles[i].x - x, tiles[i].y - y, tiles[i].x + x, tiles[i].y + y);
+    gnuplot_series_end(page, &bars);
 }
 
-static void put_strokes(FigurePage *page, const Tile *tiles, int count, int look, TileScale scale) {
+static void draw_strokes(GnuplotPage *page, const Tile *tiles, int count, int look, TileScale scale) {
     double half = symbol_width(scale) / 2, x = half / scale.unit_x, y = half / scale.unit_y;
-    const FigureLook line = {"", {.colour = verdict_looks[look].ink, .dashes = "solid"}, 1.2, false, 0, false};
-    figure_series(page);
+    const GnuplotLook line = {"", {.colour = verdict_looks[look].ink, .dashes = "solid"}, 1.2, false, 0, false};
+    gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
-        if (tiles[i].look == look) figure_segment(page, tiles[i].x - x, tiles[i].y - y, tiles[i].x + x, tiles[i].y + y);
-    figure_draw(page, &line);
+        if (tiles[i].look == look)
+            gnuplot_segment(page, tiles[i].x - x, tiles[i].y - y, tiles[i].x + x, tiles[i].y + y);
+    gnuplot_series_end(page, &line);
 }
 
-static void put_symbols(FigurePage *page, const Tile *tiles, int count, int look, TileScale scale) {
+static void draw_symbols(GnuplotPage *page, const Tile *tiles, int count, int look, TileScale scale) {
     const VerdictLook *is = &verdict_looks[look];
-    const FigureLook nothing = {.line = 0};
-    figure_series(page);
+    const GnuplotLook nothing = {.line = 0};
+    gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
-        if (tiles[i].look == look) figure_point(page, tiles[i].x, tiles[i].y);
-    figure_draw(page, &nothing);
+        if (tiles[i].look == look) gnuplot_point(page, tiles[i].x, tiles[i].y);
+    gnuplot_series_end(page, &nothing);
     if (page->points == 0 || page->plot == NULL) return;
     fprintf(page->plot, ", $d%d with points pt %d ps %.3g lw 1.2 lc rgb '%s'", page->block, is->symbol,
             is->size * symbol_width(scale) / point_size_1, is->ink);
 }
 
-void verdict_put_tiles(FigurePage *page, const Tile *tiles, int count, TileScale scale) {
+void verdict_draw_tiles(GnuplotPage *page, const Tile *tiles, int count, TileScale scale) {
     for (int look = 0; look < VERDICT_LOOKS; look++)
-        if (verdict_looks[look].fill != NULL) put_fills(page, tiles, count, look, scale);
+        if (verdict_looks[look].fill != NULL) draw_fills(page, tiles, count, look, scale);
     for (int look = 0; look < VERDICT_LOOKS; look++) {
-        if (verdict_looks[look].symbol > 0) put_symbols(page, tiles, count, look, scale);
-        if (verdict_looks[look].symbol == 0) put_strokes(page, tiles, count, look, scale);
+        if (verdict_looks[look].symbol > 0) draw_symbols(page, tiles, count, look, scale);
+        if (verdict_looks[look].symbol == 0) draw_strokes(page, tiles, count, look, scale);
     }
 }
 
-/* Around the sample of a cell that has no fill. */
-static void put_frame(FigurePage *page, double x, double y) {
-    const FigureLook line = {"", {.colour = "#909090", .dashes = "solid"}, 0.6, false, 0, false};
+/* A frame around the legend's sample of a look without fill. */
+static void draw_frame(GnuplotPage *page, double x, double y) {
+    const GnuplotLook line = {"", {.colour = "#909090", .dashes = "solid"}, 0.6, false, 0, false};
     const double half = legend_tile / 2 - seam;
-    figure_series(page);
+    gnuplot_series_begin(page);
     for (int i = 0; i <= 4; i++)
-        figure_point(page, x + (i % 4 == 0 || i == 3 ? -half : half), y + (i % 4 < 2 ? -half : half));
-    figure_draw(page, &line);
+        gnuplot_point(page, x + (i % 4 == 0 || i == 3 ? -half : half), y + (i % 4 < 2 ? -half : half));
+    gnuplot_series_end(page, &line);
 }
 
-int verdict_put_legend(FigurePage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
+int verdict_draw_legend(GnuplotPage *page, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
     Tile tiles[VERDICT_LOOKS];
     int count = 0;
     for (int look = 0; look < VERDICT_LOOKS; look++) {
         if (!used[look]) continue;
         double x = place->left + place->width * (count % place->columns),
-               y = place->top - FIGURE_LEGEND_ROW * (count / place->columns);
-        if (verdict_looks[look].fill == NULL) put_frame(page, x + legend_tile / 2, y);
+               y = place->top - GNUPLOT_LEGEND_ROW * (count / place->columns);
+        if (verdict_looks[look].fill == NULL) draw_frame(page, x + legend_tile / 2, y);
         tiles[count++] = (Tile){x + legend_tile / 2, y, look};
-        figure_text(page, x + legend_tile + name_gap, y, "left", 7.5, verdict_looks[look].name);
+        gnuplot_text(page, x + legend_tile + name_gap, y, "left", 7.5, verdict_looks[look].name);
     }
-    verdict_put_tiles(page, tiles, count, (TileScale){1, 1, legend_tile / 2});
+    verdict_draw_tiles(page, tiles, count, (TileScale){1, 1, legend_tile / 2});
     return count;
 }

@@ -21,23 +21,23 @@ static double shift_x(BodyDef *body) {
     return (double)body->position.x - before;
 }
 
-/* In any step up to the one that leads to the frame. */
+/* Whether the body has a contact in any step up to the frame. */
 static bool touches(const Trajectory *run, int body, int frame) {
     for (int64_t i = 0; i < run->contact_start[frame + 1]; i++)
         if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
     return false;
 }
 
-int chaos_body(const Trajectory *run, int parted, int frame) {
-    bool parted_moves = parted >= 0 && !run->fixed[parted];
-    if (run->bomb >= 0 && (!parted_moves || touches(run, run->bomb, frame))) return run->bomb;
-    if (run->bomb >= 0) return parted;
+int chaos_body(const Trajectory *run, int diverged, int frame) {
+    bool dynamic = diverged >= 0 && !run->fixed[diverged];
+    if (run->bomb >= 0 && (!dynamic || touches(run, run->bomb, frame))) return run->bomb;
+    if (run->bomb >= 0) return diverged;
     int body = run->bodies - 1;
     while (body >= 0 && run->fixed[body]) body--;
     return body;
 }
 
-/* A copy with bodies of its own, to be freed. The place alone changes: a bomb that aims keeps its velocity. */
+/* Copies the scene; the caller frees shifted->bodies. Only the position changes: an aimed bomb keeps its velocity. */
 static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *chaos, Error *error) {
     *shifted = *scene;
     size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
@@ -51,50 +51,49 @@ static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *c
     return true;
 }
 
-/* The shifted run beside the other, which is recorded. */
 typedef struct Watch {
     Chaos *chaos;
-    const Trajectory *still;
+    const Trajectory *unshifted;
     ProgressStage stage;
 } Watch;
 
 static bool measure(void *context, int frame, const World *world, Error *error) {
     Watch *watch = context;
-    const Trajectory *still = watch->still;
+    const Trajectory *unshifted = watch->unshifted;
     const Body *bodies = world_bodies(world);
     double largest = 0;
     for (int i = 0; i < world_body_count(world); i++)
-        largest = fmax(largest, point_distance(bodies[i].position,
-                                               still->position[(size_t)frame * (size_t)still->bodies + (size_t)i]));
+        largest =
+            fmax(largest, point_distance(bodies[i].position,
+                                         unshifted->position[(size_t)frame * (size_t)unshifted->bodies + (size_t)i]));
     watch->chaos->distance[frame] = largest;
-    return progress_stage(&watch->stage, frame, still->frames) ||
-           error_input(error, still->scene, "stopped after step %d of %d", frame, still->frames - 1);
+    return progress_stage(&watch->stage, frame, unshifted->frames) ||
+           error_input(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);
 }
 
 static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
     const StepObserver observer = {measure, watch};
     Chaos *chaos = watch->chaos;
     for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
-    chaos->distance[0] = trajectory_has(watch->still, 0, chaos->body) ? chaos->shift : 0;
+    chaos->distance[0] = trajectory_has(watch->unshifted, 0, chaos->body) ? chaos->shift : 0;
     Error failure = {0};
-    /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+    /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
     if (simulate_observed(scene, method, &observer, &failure) || (failure.kind == ERROR_INPUT && !watch->stage.stopped))
         return true;
     *error = failure;
     return false;
 }
 
-/* still: the scene as it is. */
-static bool run_beside(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *still,
-                       const Trajectory *run, int body, const Progress *progress, Error *error) {
+static bool run_and_measure(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *unshifted,
+                            const Trajectory *run, int body, const Progress *progress, Error *error) {
     TrajectoryDifference difference;
-    trajectory_compare(still, run, &difference);
-    if (difference.frame < 0 && still->bodies != run->bodies)
+    trajectory_compare(unshifted, run, &difference);
+    if (difference.frame < 0 && unshifted->bodies != run->bodies)
         return error_input(error, scene->name, "is not the scene of the run: %s", difference.what);
-    chaos->other = difference.frame;
+    chaos->rerun_differs = difference.frame;
     Scene shifted;
     if (!shifted_scene(scene, body, &shifted, chaos, error)) return false;
-    Watch watch = {chaos, still, {progress, 0.5, 0.5, false}};
+    Watch watch = {chaos, unshifted, {progress, 0.5, 0.5, false}};
     bool ok = run_shifted(&shifted, method, &watch, error);
     free(shifted.bodies);
     return ok;
@@ -105,9 +104,9 @@ static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, in
     Method method;
     if (!method_parse(&method, run->method, error)) return false;
     ProgressStage first = {progress, 0, 0.5, false};
-    Trajectory *still = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
-    bool ok = still != NULL && run_beside(chaos, scene, &method, still, run, body, progress, error);
-    trajectory_destroy(still);
+    Trajectory *unshifted = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
+    bool ok = unshifted != NULL && run_and_measure(chaos, scene, &method, unshifted, run, body, progress, error);
+    trajectory_destroy(unshifted);
     return ok;
 }
 
@@ -116,10 +115,11 @@ static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajec
     uint64_t hash = scene_hash(scene);
     if (hash != run->scene_hash)
         return error_input(error, path,
-                           "is not the scene of the run by %s: its hash is %016" PRIx64 ", the run has %016" PRIx64,
+                           "is not the scene of the run by %s: its hash is %016" PRIx64
+                           ", that of the run's scene is %016" PRIx64,
                            run->method, hash, run->scene_hash);
     if (frames - 1 > SCENE_MAX_FRAMES)
-        return error_input(error, path, "%d steps are too many to run; at most %d", frames - 1, SCENE_MAX_FRAMES);
+        return error_input(error, path, "can run at most %d steps (got %d)", SCENE_MAX_FRAMES, frames - 1);
     scene->frames = frames - 1;
     *chaos = (Chaos){.frames = frames, .distance = malloc((size_t)frames * sizeof *chaos->distance)};
     if (chaos->distance == NULL) return error_memory(error, path);

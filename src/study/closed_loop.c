@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Two runs of one launch, side by side. */
+/* One launch run by two methods. */
 typedef struct Pair {
-    Stepper *steppers[2]; /* the engine's, the method's */
+    Stepper *steppers[2]; /* engine, method */
     World *worlds[2];
 } Pair;
 
@@ -38,7 +38,7 @@ static bool pair_begin(Pair *pair, const Method *method, const Scene *scene, Err
     return true;
 }
 
-/* m: of the body that is farthest from where the engine has it. */
+/* m: the largest distance of a body from its position in the engine's run. */
 static double distance_apart(const Pair *pair) {
     const Body *a = world_bodies(pair->worlds[0]), *b = world_bodies(pair->worlds[1]);
     double apart = 0;
@@ -50,13 +50,12 @@ static double distance_apart(const Pair *pair) {
     return apart;
 }
 
-/* What one launch showed. */
 typedef struct LaunchResult {
     double frames_until_apart, penetration, energy_before, energy_most, momentum_sum;
     int steps;
 } LaunchResult;
 
-static void look(const Pair *pair, const Scene *scene, int frame, LaunchResult *result) {
+static void measure(const Pair *pair, const Scene *scene, int frame, LaunchResult *result) {
     const World *world = pair->worlds[1];
     const double energy = world_energy(world, scene->gravity);
     if (result->frames_until_apart == CLOSED_LOOP_FRAMES && !(distance_apart(pair) <= CLOSED_LOOP_APART))
@@ -81,7 +80,7 @@ static bool run_launch(const Method *method, const Scene *launched, LaunchResult
         Error failure = {0};
         ok = simulate_step(pair.steppers[0], pair.worlds[0], &step, error);
         if (ok && !simulate_step(pair.steppers[1], pair.worlds[1], &step, &failure)) {
-            /* The state left the finite numbers, and that is a result. */
+            /* The state became NaN or infinite. That is a valid result. */
             if (failure.kind == ERROR_INPUT) {
                 result->frames_until_apart = fmin(result->frames_until_apart, frame);
                 break;
@@ -89,7 +88,7 @@ static bool run_launch(const Method *method, const Scene *launched, LaunchResult
             *error = failure;
             ok = false;
         }
-        if (ok) look(&pair, &scene, frame, result);
+        if (ok) measure(&pair, &scene, frame, result);
     }
     pair_end(&pair);
     return ok;
@@ -118,7 +117,7 @@ bool closed_loop_run(const Method *method, const Scene *launches, int count, Clo
     return ok;
 }
 
-/* Mean microseconds of a step over all states; negative where a step failed. */
+/* Mean microseconds per step over all states; negative if a step failed. */
 static double time_states(Stepper *stepper, World *world, const SnapshotList *states, Error *error) {
     const int64_t overhead = meter_time_overhead();
     int64_t sum = 0;

@@ -5,31 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the study has for each method. */
-typedef struct Entry {
-    const char *name;
-    const char *settings, *quick; /* separated by spaces; NULL: the method without settings */
-} Entry;
-
-static const Entry entries[] = {
-    {"engine", "k=1 k=2 k=4 k=7 k=10 k=20 k=50 k=100", "k=4 k=10 k=50"},
-    {"engine", "k=4,warm=off k=10,warm=off k=20,warm=off k=50,warm=off k=100,warm=off", "k=10,warm=off"},
-    {"over-relaxation", "k=5 k=10 k=20 k=50 k=100", "k=10"},
-    {"momentum", "k=5 k=10 k=20 k=50 k=100", "k=10 k=20"},
-    {"learned-momentum", "k=5 k=10 k=20 k=50", "k=10 k=20"},
-    {"block", "k=5 k=10 k=20 k=50 k=100", "k=10"},
-    {"nncg", "k=5 k=10 k=20 k=50 k=100", "k=20"},
-    {"robust", "k=5 k=10 k=20 k=50 k=100", "k=10"},
-    {"substepping", "substeps=2 substeps=4 substeps=10 substeps=20 substeps=50", "substeps=10"},
-    {"pair-net", NULL, NULL},
-    {"contact-net", NULL, NULL},
-    {"scene-net", NULL, NULL},
-    {"scene-net", "near=3 near=0.5 near=0.1", ""},
-    {"constant", NULL, NULL},
-    {"playback", "launches=25 launches=100", "launches=25"},
-    {"reference", NULL, NULL}};
-
-enum { ENTRIES = sizeof entries / sizeof entries[0] };
+static MethodRuns default_runs(const MethodDescription *method, ContenderStudy study) {
+    static const char *const one_run[] = {"", NULL};
+    const MethodRuns runs = study == STUDY_CHART         ? method->chart
+                            : study == STUDY_CHART_QUICK ? method->chart_quick
+                                                         : method->stability;
+    return runs != NULL ? runs : one_run;
+}
 
 static bool add(ContenderList *list, const char *name, const char *setting, Error *error) {
     Contender contender;
@@ -50,20 +32,13 @@ static bool add(ContenderList *list, const char *name, const char *setting, Erro
     return true;
 }
 
-static bool add_entry(ContenderList *list, const Entry *entry, bool quick, Error *error) {
-    const char *settings = quick ? entry->quick : entry->settings;
-    if (settings == NULL) return add(list, entry->name, "", error);
-    while (*settings != '\0') {
-        char setting[CHART_SETTING_SIZE];
-        size_t length = strcspn(settings, " ");
-        snprintf(setting, sizeof setting, "%.*s", (int)length, settings);
-        if (!add(list, entry->name, setting, error)) return false;
-        settings += length + strspn(settings + length, " ");
-    }
+static bool add_runs(ContenderList *list, const char *name, MethodRuns runs, Error *error) {
+    for (; *runs != NULL; runs++)
+        if (!add(list, name, *runs, error)) return false;
     return true;
 }
 
-/* One method of the list with its own settings. */
+/* A method with the settings that follow its name, if any. */
 static bool add_as_given(ContenderList *list, char *word, Error *error) {
     char *colon = strchr(word, ':');
     if (colon == NULL) return add(list, word, "", error);
@@ -71,19 +46,15 @@ static bool add_as_given(ContenderList *list, char *word, Error *error) {
     return add(list, word, colon + 1, error);
 }
 
-/* The same, or with all that the study has. */
-static bool add_word(ContenderList *list, char *word, bool quick, Error *error) {
-    bool known = false;
-    if (strchr(word, ':') != NULL) return add_as_given(list, word, error);
-    for (int i = 0; i < ENTRIES; i++) {
-        if (strcmp(entries[i].name, word) != 0) continue;
-        if (!add_entry(list, &entries[i], quick, error)) return false;
-        known = true;
-    }
-    return known || add(list, word, "", error);
+/* A name without settings: the default runs of a chart, or one run if there are none. */
+static bool add_word(ContenderList *list, char *word, ContenderStudy study, Error *error) {
+    const MethodDescription *method = method_describe(word);
+    if (study == STUDY_STABILITY || strchr(word, ':') != NULL || method == NULL) return add_as_given(list, word, error);
+    const MethodRuns runs = default_runs(method, study);
+    return *runs != NULL ? add_runs(list, word, runs, error) : add(list, word, "", error);
 }
 
-/* Ends the first word of the list: a comma separates methods, unless a setting follows it. Returns the next or NULL. */
+/* Ends the first word of the list, at a comma that no setting follows. Returns the next word, or NULL. */
 static char *split(char *text) {
     for (char *comma = strchr(text, ','); comma != NULL; comma = strchr(comma + 1, ',')) {
         size_t word = strcspn(comma + 1, ",:=");
@@ -94,40 +65,41 @@ static char *split(char *text) {
     return NULL;
 }
 
-static bool add_all(ContenderList *list, bool quick, Error *error) {
-    for (int i = 0; i < ENTRIES; i++)
-        if (!add_entry(list, &entries[i], quick, error)) return false;
+static int place_of(const MethodDescription *method, ContenderStudy study) {
+    return study == STUDY_STABILITY ? method->stability_place : 0;
+}
+
+/* Methods with a place in their order, then the others in the order of the registry. */
+static bool add_all(ContenderList *list, ContenderStudy study, Error *error) {
+    int last = 0;
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+        if (place_of(kind->description, study) > last) last = place_of(kind->description, study);
+    for (int place = 1; place <= last + 1; place++)
+        for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+            const MethodDescription *method = kind->description;
+            if (place_of(method, study) != place % (last + 1)) continue;
+            if (!add_runs(list, method->name, default_runs(method, study), error)) return false;
+        }
     return true;
 }
 
-typedef enum Names { NAMES_AS_GIVEN, NAMES_WHOLE, NAMES_QUICK } Names;
-
-/* What a name alone stands for is said by `names`. Of a list that is refused nothing is left. */
-static bool add_words(ContenderList *list, const char *text, Names names, Error *error) {
+static bool add_words(ContenderList *list, const char *text, ContenderStudy study, Error *error) {
     char *copy = strdup(text), *word = copy;
     bool ok = copy != NULL || error_memory(error, "contenders");
     while (ok && word != NULL) {
         char *next = split(word);
-        ok = names == NAMES_AS_GIVEN ? add_as_given(list, word, error)
-                                     : add_word(list, word, names == NAMES_QUICK, error);
+        ok = add_word(list, word, study, error);
         word = next;
     }
     free(copy);
-    if (!ok) contenders_free(list);
     return ok;
 }
 
-bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error) {
+bool contenders_parse(ContenderList *list, const char *text, ContenderStudy study, Error *error) {
     *list = (ContenderList){0};
-    if (text != NULL) return add_words(list, text, quick ? NAMES_QUICK : NAMES_WHOLE, error);
-    if (add_all(list, quick, error)) return true;
+    if (text != NULL ? add_words(list, text, study, error) : add_all(list, study, error)) return true;
     contenders_free(list);
     return false;
-}
-
-bool contenders_read(ContenderList *list, const char *text, Error *error) {
-    *list = (ContenderList){0};
-    return add_words(list, text, NAMES_AS_GIVEN, error);
 }
 
 void contenders_free(ContenderList *list) {
@@ -135,9 +107,23 @@ void contenders_free(ContenderList *list) {
     *list = (ContenderList){0};
 }
 
+NameList contenders_left_out(ContenderStudy study) {
+    NameList names = {0};
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+        if (*default_runs(kind->description, study) == NULL) name_list_add(&names, kind->description->name);
+    return names;
+}
+
 int contenders_for(const ContenderList *list, const Scene *scene, const Contender **fit) {
     int count = 0;
     for (int i = 0; i < list->count; i++)
         if (!method_lacks_network(&list->items[i].method, scene)) fit[count++] = &list->items[i];
     return count;
+}
+
+NameList contenders_without_network(const ContenderList *list, const Scene *scene) {
+    NameList names = {0};
+    for (int i = 0; i < list->count; i++)
+        if (method_lacks_network(&list->items[i].method, scene)) name_list_add(&names, list->items[i].name);
+    return names;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who is compared in a study of speed against accuracy: methods, each with some settings. */
+/* The methods that a study compares, each with some settings. */
 #pragma once
+#include "common/names.h"
 #include "simulate/method.h"
 #include "study/chart_csv.h"
 
@@ -15,15 +16,22 @@ typedef struct ContenderList {
     Contender *items; /* [count] */
 } ContenderList;
 
-/* Fills the list from "NAME,NAME:KEY=VALUE,...": a name alone stands for all settings that the study has for it (quick:
-   fewer). text NULL: every method. ERROR_INPUT for a name or setting that there is not, or one given twice. */
-bool contenders_parse(ContenderList *list, const char *text, bool quick, Error *error);
+/* Which runs of a method's description (common/method_description.h) a study makes by default. */
+typedef enum ContenderStudy { STUDY_CHART, STUDY_CHART_QUICK, STUDY_STABILITY } ContenderStudy;
 
-/* The same, where a name alone stands for the method as the scene has it. */
-bool contenders_read(ContenderList *list, const char *text, Error *error);
+/* Fills the list from "NAME,NAME:KEY=VALUE,...". A name alone stands for all runs of the method in a chart, and for one
+   run without settings in the stability study. text NULL: all runs of every registered method. ERROR_INPUT for an
+   unknown name or setting, or a run given twice. */
+bool contenders_parse(ContenderList *list, const char *text, ContenderStudy study, Error *error);
 
 void contenders_free(ContenderList *list);
 
-/* Those that can run in the scene: without a method that needs a network which neither its settings nor the scene name.
-   The items stay those of the list. */
+/* The registered methods that the study leaves out by default. */
+NameList contenders_left_out(ContenderStudy study);
+
+/* The contenders that can run in the scene: all but those that lack their network (method_lacks_network). fit[count of
+   the list] points to items of the list. Returns how many there are. */
 int contenders_for(const ContenderList *list, const Scene *scene, const Contender **fit);
+
+/* The others. */
+NameList contenders_without_network(const ContenderList *list, const Scene *scene);

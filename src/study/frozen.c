@@ -16,7 +16,6 @@ void snapshots_free(SnapshotList *list) {
     *list = (SnapshotList){0};
 }
 
-/* An empty world of the scene. */
 static World *empty_world(const Scene *scene, Error *error) {
     Scene empty = *scene;
     empty.body_count = 0;
@@ -24,9 +23,9 @@ static World *empty_world(const Scene *scene, Error *error) {
     return scene_world(&empty, error);
 }
 
-/* Keeps the state before the step that `after` has just taken. */
-static bool keep(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
-                 Phase phase, Reference *reference, Error *error) {
+/* Stores the state before the step that led to `after`, and the step's reference solution. */
+static bool store(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
+                  Phase phase, Reference *reference, Error *error) {
     const ContactProblem *problem = world_problem(after);
     size_t size = (size_t)problem->body_count * sizeof(ReferenceVelocity);
     if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
@@ -57,7 +56,7 @@ static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, 
             return false;
         Phase phase = phase_next(&tracker, world_problem(sampler->world), frame);
         if (sampled(sampling, phase, &tracker, frame) &&
-            !keep(list, launched, sampler->before, sampler->world, frame, phase, &sampler->reference, error))
+            !store(list, launched, sampler->before, sampler->world, frame, phase, &sampler->reference, error))
             return false;
     }
     return true;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frozen protocol: states sampled from the engine's runs, from which every method takes one and the same step. */
+/* The frozen protocol: every method solves the same steps, sampled from engine runs. */
 #pragma once
 #include "study/rollout.h"
 
 typedef struct Snapshot {
-    const Scene *scene; /* launched; the caller's */
+    const Scene *scene; /* launched; owned by the caller */
     World *world;       /* before the step */
     int frame;          /* of the step */
     Phase phase;
-    ReferenceVelocity *reference; /* [bodies] converged end velocities */
+    ReferenceVelocity *reference; /* [bodies] converged velocities after the step */
 } Snapshot;
 
 /* Zero-initialise. */
@@ -16,12 +16,12 @@ typedef struct SnapshotList {
     int count;
     Snapshot *items; /* [count] */
     size_t capacity;
-    double residual; /* m/s: the largest of the reference solves */
+    double residual; /* m/s: the largest residual of the reference solves */
 } SnapshotList;
 
-/* Adds the sampled steps of the engine's run of a launched scene, which must outlive the list. */
+/* Adds sampled steps of the engine's run of a launched scene; the scene must outlive the list. */
 bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error);
 void snapshots_free(SnapshotList *list);
 
-/* Takes every step by a method; world: room for a copy. */
+/* Scores a method on every step. world: scratch space for a copy. */
 bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES], Error *error);

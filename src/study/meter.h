@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a step costs: time of one core, and instructions where the system lets a program count its own. */
+/* Measures time and, where the system permits it, instructions of the calling thread. */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Keeps the calling thread on the core that it runs on, so that time is not lost in moving; and lets it go again. Where
-   the system does not do that, nothing happens. */
+/* Pins the calling thread to its current core, to avoid the cost of migration; unpins it. No effect if the system does
+   not support it. */
 void meter_pin(void);
 void meter_unpin(void);
 
-/* Nanoseconds since some moment. */
+/* Nanoseconds of a monotonic clock. */
 int64_t meter_time(void);
 
-/* Nanoseconds that lie between two calls of meter_time in a row: what every measurement is too long by. */
+/* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
 int64_t meter_time_overhead(void);
 
-/* Instructions that this thread has run since the counter was opened; 0 where there is none. */
+/* Instructions of this thread since the counter was opened; 0 if it is not available. */
 bool meter_open_instructions(void);
 int64_t meter_instructions(void);
 void meter_close_instructions(void);

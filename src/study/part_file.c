@@ -30,7 +30,7 @@ bool part_file_find(const PartFile *part, ChartRow *rows, int count) {
 }
 
 bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Error *error) {
-    return count == 0 || chart_csv_write(part->path, rows, count, error);
+    return count == 0 || csv_table_write(part->path, &chart_layout, rows, count, error);
 }
 
 void part_file_remove(const PartFile *part) { unlink(part->path); }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a study has done so far, on disk, so that it can go on where it was cut off. */
+/* The finished part of a study on disk, so that an interrupted study can be resumed. */
 #pragma once
 #include "study/chart_csv.h"
 
@@ -10,18 +10,18 @@ enum { PART_PATH_SIZE = 4096 };
 
 typedef struct PartFile {
     char path[PART_PATH_SIZE];
-    ChartTable done; /* rows found there */
+    ChartTable done; /* rows of the file */
 } PartFile;
 
-/* Looks for folder/chart-KEY.part.csv. One that cannot be read is an error: it says so, and can be deleted. */
+/* Reads folder/chart-KEY.part.csv if it exists. ERROR_INPUT if it is damaged; the user can delete it. */
 bool part_file_open(PartFile *part, const char *folder, uint64_t key, Error *error);
 void part_file_close(PartFile *part);
 
-/* Copies the rows of a contender, if they are there. */
+/* Copies the rows of a contender, if the file has them. */
 bool part_file_find(const PartFile *part, ChartRow *rows, int count);
 
-/* Puts these rows in place of what is on disk. */
+/* Replaces the file by these rows. */
 bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Error *error);
 
-/* The study is done. */
+/* Removes the file: the study is done. */
 void part_file_remove(const PartFile *part);

@@ -50,7 +50,6 @@ static bool score(Rollout *rollout, StepScores *scores, Error *error) {
     return error_memory(error, "study");
 }
 
-/* All bodies as the scene has them before the first step. */
 static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
     world_destroy(rollout->world);
     rollout->world = scene_world(launched, error);
@@ -66,7 +65,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         const Step step = {.scene = launched, .frame = frame};
         Error failure = {0};
         if (!simulate_step(stepper, rollout->world, &step, &failure)) {
-            /* An input error in the middle of a run: the state left the finite numbers, and that is a result. */
+            /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
             if (failure.kind == ERROR_INPUT) return true;
             *error = failure;
             return false;

@@ -46,7 +46,7 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
 
 static double distance(const Vec2 *a, const Vec2 *b) { return hypot((double)(a->x - b->x), (double)(a->y - b->y)); }
 
-/* A run that broke off has moved them all: nothing is where it was. */
+/* If the run ended early (NaN or infinite), all boxes count as moved. */
 static double count_moved(const RunLog *log, const Scene *scene) {
     int moved = 0;
     const Vec2 *before = log->position + (size_t)log->launch_frame * (size_t)log->bodies;
@@ -70,22 +70,23 @@ static double mean_distance(const RunLog *log, const RunLog *other, const Scene 
     return count > 0 ? sum / count : NAN;
 }
 
-RunFigures run_figures(const RunLog *log, const RunLog *converged, const Scene *scene) {
-    RunFigures figures = {.drift = NAN, .moved = count_moved(log, scene)};
+RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
+    RunMeasures measures = {.drift = NAN, .moved = count_moved(log, scene)};
     int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
     double energy[PHASES] = {0};
     for (int frame = 1; frame <= last; frame++) {
         Phase phase = log->phase[frame];
         energy[phase] += log->energy[frame] - converged->energy[frame];
         frames[phase]++;
-        if (log->penetration[frame] > figures.penetration[phase]) figures.penetration[phase] = log->penetration[frame];
+        if (log->penetration[frame] > measures.penetration[phase])
+            measures.penetration[phase] = log->penetration[frame];
     }
     for (int phase = 0; phase < PHASES; phase++) {
-        figures.energy[phase] = frames[phase] > 0 ? energy[phase] / frames[phase] : NAN;
-        if (frames[phase] == 0) figures.penetration[phase] = NAN;
+        measures.energy[phase] = frames[phase] > 0 ? energy[phase] / frames[phase] : NAN;
+        if (frames[phase] == 0) measures.penetration[phase] = NAN;
     }
     int rest = converged->touch > 0 ? converged->touch - 1 : last;
     if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
-    if (rest > 0 && rest <= last) figures.drift = mean_distance(log, converged, scene, rest);
-    return figures;
+    if (rest > 0 && rest <= last) measures.drift = mean_distance(log, converged, scene, rest);
+    return measures;
 }

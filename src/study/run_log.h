@@ -1,37 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run left behind, for comparing it with another run of the same launch. */
+/* Log of a run, for comparison with another run of the same launch. */
 #pragma once
 #include "scene/scene.h"
 #include "simulate/phases.h"
 
 #include <stddef.h>
 
-/* Zero-initialise; arrays grow and are reused. Bodies are those of the scene, without the bomb. */
+/* Zero-initialise; arrays grow and are reused. Bodies exclude the bomb. */
 typedef struct RunLog {
-    int bodies, frames;          /* frames: the last one logged */
-    int touch;                   /* first step in which the bomb touched, 0: none */
-    int launch_frame, end_frame; /* the bomb's, and the one 5 s later, where boxes that moved are counted */
+    int bodies, frames;          /* frames: index of the last logged frame */
+    int touch;                   /* first step in which the bomb touches; 0: none */
+    int launch_frame, end_frame; /* the bomb's frame, and 5 s later: displaced boxes are counted between them */
     Vec2 *position;              /* [frames + 1, bodies] m */
-    double *energy;              /* [frames + 1] J: kinetic and potential, of all that moves */
-    double *penetration;         /* [frames + 1] m: of the deepest contact of the step; 0 without one */
+    double *energy;              /* [frames + 1] J: mechanical energy of all dynamic bodies */
+    double *penetration;         /* [frames + 1] m: deepest contact of the step; 0 without contacts */
     Phase *phase;                /* [frames + 1] of each step */
     size_t position_capacity, energy_capacity, penetration_capacity, phase_capacity;
 } RunLog;
 
 void run_log_free(RunLog *log);
 
-/* Begins the log of a run of the scene. False when memory is short. */
+/* Begins the log of a run of the scene. False if out of memory. */
 bool run_log_begin(RunLog *log, const Scene *scene, const World *world);
 
-/* Adds a step. */
 void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase);
 
-/* What of a run is compared with the converged run of the same launch; NAN where there is nothing to compare. */
-typedef struct RunFigures {
-    double penetration[PHASES]; /* m: the largest of the phase */
-    double energy[PHASES];      /* J above the converged run's at the same frame, mean over the phase */
-    double drift; /* m: mean distance of the boxes from the converged run's, just before the bomb touches in either */
+/* A run compared with the converged run of the same launch; NaN if a phase does not occur. */
+typedef struct RunMeasures {
+    double penetration[PHASES]; /* m: largest of the phase */
+    double energy[PHASES];      /* J: excess over the converged run at the same frame, mean over the phase */
+    double drift; /* m: mean distance of the boxes from the converged run, just before the bomb touches in either run */
     double moved; /* boxes that moved more than 0.5 m in the 5 s after the launch */
-} RunFigures;
+} RunMeasures;
 
-RunFigures run_figures(const RunLog *log, const RunLog *converged, const Scene *scene);
+RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene);

@@ -15,13 +15,13 @@ void scene_row_errors(ChartRow *row, StepScores *scores) {
     row->error_p95 = statistics_quantile(scores->error, scores->count, 0.95);
 }
 
-/* Mean or largest over the launches that have the figure, `offset` into their figures. */
-static double over_launches(const RunFigures *figures, int count, size_t offset, bool largest) {
+/* Mean or largest over the launches for which the measure at byte `offset` is not NaN. */
+static double over_launches(const RunMeasures *measures, int count, size_t offset, bool largest) {
     double sum = 0, most = NAN;
     int found = 0;
     for (int i = 0; i < count; i++) {
         double value;
-        memcpy(&value, (const char *)&figures[i] + offset, sizeof value);
+        memcpy(&value, (const char *)&measures[i] + offset, sizeof value);
         if (isnan(value)) continue;
         sum += value;
         found++;
@@ -30,34 +30,33 @@ static double over_launches(const RunFigures *figures, int count, size_t offset,
     return largest ? most : found > 0 ? sum / found : NAN;
 }
 
-void scene_row_figures(ChartRow *row, const RunFigures *figures, int count) {
+void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count) {
     size_t phase = (size_t)row->phase;
     row->penetration_max =
-        over_launches(figures, count, offsetof(RunFigures, penetration) + phase * sizeof(double), true);
-    row->energy = over_launches(figures, count, offsetof(RunFigures, energy) + phase * sizeof(double), false);
+        over_launches(measures, count, offsetof(RunMeasures, penetration) + phase * sizeof(double), true);
+    row->energy = over_launches(measures, count, offsetof(RunMeasures, energy) + phase * sizeof(double), false);
     if (row->phase != PHASE_REST) return;
-    row->drift = over_launches(figures, count, offsetof(RunFigures, drift), false);
-    row->moved = over_launches(figures, count, offsetof(RunFigures, moved), false);
+    row->drift = over_launches(measures, count, offsetof(RunMeasures, drift), false);
+    row->moved = over_launches(measures, count, offsetof(RunMeasures, moved), false);
 }
 
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase) {
-    ChartRow row = {.protocol = (ChartProtocol)protocol,
-                    .phase = (Phase)phase,
-                    .launches = launches,
-                    .us_solver = NAN,
-                    .us_solver_q1 = NAN,
-                    .us_solver_q3 = NAN,
-                    .us_step = NAN,
-                    .instructions = NAN,
-                    .error_worst = NAN,
-                    .penetration_max = NAN,
-                    .drift = NAN,
-                    .energy = NAN,
-                    .moved = NAN};
-    snprintf(row.scene, sizeof row.scene, "%s", scene);
-    snprintf(row.method, sizeof row.method, "%s", contender->name);
-    snprintf(row.setting, sizeof row.setting, "%s", contender->setting);
-    return row;
+    return (ChartRow){.scene = scene,
+                      .method = contender->name,
+                      .setting = contender->setting,
+                      .protocol = (ChartProtocol)protocol,
+                      .phase = (Phase)phase,
+                      .launches = launches,
+                      .us_solver = NAN,
+                      .us_solver_q1 = NAN,
+                      .us_solver_q3 = NAN,
+                      .us_step = NAN,
+                      .instructions = NAN,
+                      .error_worst = NAN,
+                      .penetration_max = NAN,
+                      .drift = NAN,
+                      .energy = NAN,
+                      .moved = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost) {

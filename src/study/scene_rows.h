@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of the chart's table from what a scene's launches gave. */
+/* Rows of chart.csv from the results of a scene's launches. */
 #pragma once
 #include "study/contenders.h"
 #include "study/rollout.h"
 #include "study/timing.h"
 
-/* A row with names and no figures. */
+/* A row with names and no figures; the names stay those of the caller. */
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
 
-/* Mean, quantiles and share over all steps of the row's phase; sorts the scores. */
+/* Sets mean, quantiles and share over all steps of the row's phase; sorts the scores. */
 void scene_row_errors(ChartRow *row, StepScores *scores);
 
-/* What is known of whole runs: the largest penetration, the mean of the others. figures[count]: one a launch. */
-void scene_row_figures(ChartRow *row, const RunFigures *figures, int count);
+/* Largest penetration and means of the other measures over measures[count], one per launch. */
+void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count);
 
 void scene_row_cost(ChartRow *row, const StepCost *cost);

@@ -79,11 +79,11 @@ bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *err
     return parallel_for(&work, study->launch_count, "converged runs", progress, error);
 }
 
-/* What the launches of one contender gave. */
+/* Results of one contender. */
 typedef struct Scores {
     StepScores frozen[PHASES], closed[PHASES];
-    RunFigures *figures;  /* [launch_count] */
-    double worst[PHASES]; /* m/s: largest of the launches' mean errors in closed loop; NAN without a step scored */
+    RunMeasures *measures; /* [launch_count] */
+    double worst[PHASES];  /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
 } Scores;
 
 static void scores_free(Scores *scores) {
@@ -91,16 +91,16 @@ static void scores_free(Scores *scores) {
         step_scores_free(&scores->frozen[phase]);
         step_scores_free(&scores->closed[phase]);
     }
-    free(scores->figures);
+    free(scores->measures);
 }
 
-/* A launch's own steps are those behind the ones that the launches before it left: scored[PHASES] of them. */
-static void keep_worst(Scores *scores, const int scored[PHASES]) {
+/* scored[PHASES]: number of steps scored before this launch. */
+static void update_worst(Scores *scores, const int scored[PHASES]) {
     for (int phase = 0; phase < PHASES; phase++) {
         const StepScores *closed = &scores->closed[phase];
         if (closed->count == scored[phase]) continue;
         double mean = statistics_mean(closed->error + scored[phase], closed->count - scored[phase]);
-        scores->worst[phase] = fmax(scores->worst[phase], mean); /* passes over NAN */
+        scores->worst[phase] = fmax(scores->worst[phase], mean); /* ignores NaN */
     }
 }
 
@@ -112,8 +112,8 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
         int scored[PHASES];
         for (int phase = 0; phase < PHASES; phase++) scored[phase] = scores->closed[phase].count;
         ok = rollout_run(&rollout, stepper, launched, &study->size->closed, scores->closed, error);
-        if (ok) scores->figures[i] = run_figures(&rollout.log, &study->converged[i], launched);
-        if (ok) keep_worst(scores, scored);
+        if (ok) scores->measures[i] = run_measures(&rollout.log, &study->converged[i], launched);
+        if (ok) update_worst(scores, scored);
         ok = ok && snapshots_score(&study->snapshots[i], stepper, rollout.world, scores->frozen, error);
     }
 #pragma omp critical(study_residual)
@@ -126,26 +126,26 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
 }
 
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error) {
-    Scores scores = {.figures = calloc((size_t)study->launch_count, sizeof(RunFigures)), .worst = {NAN, NAN, NAN}};
-    if (scores.figures == NULL) return error_memory(error, "study");
-    const Contender *who = study->contenders[contender];
-    Stepper *stepper = stepper_create(&who->method, study->scene, error);
+    Scores scores = {.measures = calloc((size_t)study->launch_count, sizeof(RunMeasures)), .worst = {NAN, NAN, NAN}};
+    if (scores.measures == NULL) return error_memory(error, "study");
+    const Contender *tested = study->contenders[contender];
+    Stepper *stepper = stepper_create(&tested->method, study->scene, error);
     bool ok = stepper != NULL && score_launches(study, stepper, &scores, error);
     stepper_destroy(stepper);
     for (int phase = 0; ok && phase < PHASES; phase++) {
         ChartRow *frozen = &rows[PROTOCOL_FROZEN * PHASES + phase], *closed = &rows[PROTOCOL_CLOSED * PHASES + phase];
-        *frozen = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_FROZEN, phase);
-        *closed = scene_row(study->scene->name, study->launch_count, who, PROTOCOL_CLOSED, phase);
+        *frozen = scene_row(study->scene->name, study->launch_count, tested, PROTOCOL_FROZEN, phase);
+        *closed = scene_row(study->scene->name, study->launch_count, tested, PROTOCOL_CLOSED, phase);
         scene_row_errors(frozen, &scores.frozen[phase]);
         scene_row_errors(closed, &scores.closed[phase]);
         closed->error_worst = scores.worst[phase];
-        scene_row_figures(closed, scores.figures, study->launch_count);
+        scene_row_measures(closed, scores.measures, study->launch_count);
     }
     scores_free(&scores);
     return ok;
 }
 
-/* The launches to time: evenly from all; each until the frames after are over, with some at rest before and behind. */
+/* Picks launches evenly. Runs end 20 frames after the phase "after", so that all three phases are timed. */
 static bool choose_timed(const SceneStudy *study, Scene *launches, SnapshotList *snapshots, TimingOptions *options,
                          Error *error) {
     options->last_frame = 0;

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One scene of a study of speed against accuracy. */
+/* One scene of the speed-accuracy study. */
 #pragma once
 #include "study/contenders.h"
 #include "study/frozen.h"
 #include "study/timing.h"
 
-/* How much is run. */
 typedef struct StudySize {
-    int launches;            /* where none are given */
+    int launches;            /* unless a table of launches is given */
     Sampling closed, frozen; /* steps to score */
     int timed_launches, repetitions;
 } StudySize;
@@ -15,13 +14,13 @@ typedef struct StudySize {
 typedef struct SceneStudy {
     Scene *scene;
     int launch_count, contender_count;
-    Scene *launches;              /* [launch_count] launched */
-    const Contender **contenders; /* [contender_count] that can run here */
+    Scene *launches;              /* [launch_count] launched scenes */
+    const Contender **contenders; /* [contender_count] available for this scene */
     RunLog *converged;            /* [launch_count] */
     SnapshotList *snapshots;      /* [launch_count] */
     const StudySize *size;
-    double frozen_residual;  /* m/s: the largest of the reference solves of frozen steps */
-    int solves, unconverged; /* in closed loop */
+    double frozen_residual;  /* m/s: largest residual of the reference solves of frozen steps */
+    int solves, unconverged; /* reference solves in closed loop */
 } SceneStudy;
 
 /* Reads the scene and its launches. */
@@ -29,13 +28,13 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
                        const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
 
-/* The converged run of every launch, and the frozen steps of the engine's. */
+/* Computes the converged run and the frozen steps of every launch. */
 bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *error);
 
 enum { ROWS_EACH = PROTOCOLS * PHASES };
 
-/* Scores one contender into rows[ROWS_EACH], costs left empty. May be called by several threads at once. */
+/* Scores one contender into rows[ROWS_EACH]; costs stay NaN. Thread-safe. */
 bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error);
 
-/* Fills the costs of all rows[contender_count * ROWS_EACH]. */
+/* Measures the costs of rows[contender_count * ROWS_EACH]. */
 bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progress, Error *error);

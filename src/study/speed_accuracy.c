@@ -12,28 +12,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The whole study of three scenes takes some minutes on two cores, the quick one less than one. */
-static const StudySize whole_size = {.launches = 40,
-                                     .closed = {.after = 6, .rest = 30},
-                                     .frozen = {.after = 6, .rest = 60},
-                                     .timed_launches = 20,
-                                     .repetitions = 3};
+/* On two cores, the full study of three scenes takes some minutes, the quick one less than one. */
+static const StudySize full_size = {.launches = 40,
+                                    .closed = {.after = 6, .rest = 30},
+                                    .frozen = {.after = 6, .rest = 60},
+                                    .timed_launches = 20,
+                                    .repetitions = 3};
 static const StudySize quick_size = {.launches = 5,
                                      .closed = {.after = 20, .rest = 120},
                                      .frozen = {.after = 20, .rest = 120},
                                      .timed_launches = 1,
                                      .repetitions = 3};
 
-/* The study in progress. */
 typedef struct Run {
     const SpeedAccuracyOptions *options;
     const StageProgress *progress;
     ContenderList contenders;
     PartFile part;
-    ChartRow *rows; /* of all scenes done, and behind them of the scene in hand */
-    int row_count;  /* of the scenes done */
+    ChartRow *rows; /* of the finished scenes, followed by those of the current scene */
+    int row_count;  /* of the finished scenes */
     SceneStudy study;
-    bool *scored; /* [contenders] of the scene in hand */
+    bool *scored; /* [contenders] of the current scene */
 } Run;
 
 static const Progress *begin_stage(const Run *run, const char *what) {
@@ -45,8 +44,8 @@ static const Progress *begin_stage(const Run *run, const char *what) {
 
 static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run->row_count + contender * ROWS_EACH; }
 
-/* All that is done: rows of the scenes before, and of the contenders scored in this one. */
-static bool keep_part(const Run *run, Error *error) {
+/* Saves the rows of the finished scenes and of the contenders scored in the current one. */
+static bool save_checkpoint(const Run *run, Error *error) {
     int count = run->row_count;
     size_t most = (size_t)(run->row_count + run->study.contender_count * ROWS_EACH);
     ChartRow *done = malloc((most + 1) * sizeof *done);
@@ -70,20 +69,19 @@ static bool score(void *context, int i, Error *error) {
 #pragma omp critical(study_part)
     {
         run->scored[i] = true;
-        ok = keep_part(run, error);
+        ok = save_checkpoint(run, error);
     }
     return ok;
 }
 
-/* Takes over what an earlier run scored. True where it also has all costs. */
-static bool take_over(Run *run) {
+/* Restores the scores of an interrupted study. True if all costs are known too. */
+static bool restore_checkpoint(Run *run) {
     bool timed = true;
     for (int i = 0; i < run->study.contender_count; i++) {
         ChartRow *rows = rows_of(run, i);
-        *rows = (ChartRow){0};
-        snprintf(rows->scene, sizeof rows->scene, "%s", run->study.scene->name);
-        snprintf(rows->method, sizeof rows->method, "%s", run->study.contenders[i]->name);
-        snprintf(rows->setting, sizeof rows->setting, "%s", run->study.contenders[i]->setting);
+        *rows = (ChartRow){.scene = run->study.scene->name,
+                           .method = run->study.contenders[i]->name,
+                           .setting = run->study.contenders[i]->setting};
         run->scored[i] = part_file_find(&run->part, rows, ROWS_EACH);
         timed &= run->scored[i] && !isnan(rows[PROTOCOL_CLOSED * PHASES + PHASE_REST].us_solver);
     }
@@ -92,20 +90,20 @@ static bool take_over(Run *run) {
 
 static bool measure_scene(Run *run, Error *error) {
     SceneStudy *study = &run->study;
-    if (take_over(run)) return true;
+    if (restore_checkpoint(run)) return true;
     const ParallelWork work = {score, run};
     return scene_study_prepare(study, begin_stage(run, "converged runs"), error) &&
            parallel_for(&work, study->contender_count, study->scene->name, begin_stage(run, "scores"), error) &&
-           scene_study_time(study, rows_of(run, 0), begin_stage(run, "times"), error) && keep_part(run, error);
+           scene_study_time(study, rows_of(run, 0), begin_stage(run, "times"), error) && save_checkpoint(run, error);
 }
 
 static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, Error *error) {
-    const StudySize *size = run->options->quick ? &quick_size : &whole_size;
+    const StudySize *size = run->options->quick ? &quick_size : &full_size;
     if (!scene_study_begin(&run->study, path, &run->contenders, run->options->launches, size, error)) return false;
     for (int i = 0; i < run->row_count; i++)
         if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
             scene_study_end(&run->study);
-            return error_input(error, path, "there is a scene of that name already");
+            return error_input(error, path, "another scene has the same name (%s)", run->rows[i].scene);
         }
     int count = run->study.contender_count;
     size_t rows = (size_t)(run->row_count + count * ROWS_EACH);
@@ -116,12 +114,16 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     if (!ok) error_memory(error, "study");
     ok = ok && measure_scene(run, error);
     if (ok) {
-        *summary = (SpeedAccuracyScene){.contenders = count,
-                                        .launches = run->study.launch_count,
-                                        .frozen_residual = run->study.frozen_residual,
-                                        .solves = run->study.solves,
-                                        .unconverged = run->study.unconverged};
+        *summary =
+            (SpeedAccuracyScene){.contenders = count,
+                                 .launches = run->study.launch_count,
+                                 .without_network = contenders_without_network(&run->contenders, run->study.scene),
+                                 .frozen_residual = run->study.frozen_residual,
+                                 .solves = run->study.solves,
+                                 .unconverged = run->study.unconverged};
         snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
+        /* The scene ends here, its rows do not. */
+        for (size_t i = (size_t)run->row_count; i < rows; i++) run->rows[i].scene = summary->name;
         run->row_count = (int)rows;
     }
     free(run->scored);
@@ -130,8 +132,8 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
     return ok;
 }
 
-/* A network that is not there matters only to the method that asks for it. */
-static bool fold_scene(uint64_t *key, const char *path, Error *error) {
+/* A missing network is an error only of the method that needs it. */
+static bool add_scene_to_key(uint64_t *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
     for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
@@ -139,23 +141,23 @@ static bool fold_scene(uint64_t *key, const char *path, Error *error) {
     return study_key_add_file(key, path, error);
 }
 
-/* Of everything that decides the result: the program, every option and every file. */
+/* Hashes everything that determines the result: the program, the options and the files. */
 static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
     if (options->launches != NULL && !study_key_add_file(key, options->launches, error)) return false;
     for (int i = 0; i < options->scene_count; i++)
-        if (!fold_scene(key, options->scenes[i], error)) return false;
+        if (!add_scene_to_key(key, options->scenes[i], error)) return false;
     return true;
 }
 
 static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
-    char path[STUDY_PATH_SIZE];
-    if (!file_path(path, sizeof path, error, "%s/chart.csv", run->options->folder)) return false;
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, run->options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
-    if (!chart_csv_write(path, run->rows, run->row_count, error)) return false;
+    if (!csv_table_write(path, &chart_layout, run->rows, run->row_count, error)) return false;
     part_file_remove(&run->part);
     return true;
 }
@@ -164,7 +166,8 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
                         Error *error) {
     Run run = {.options = options, .progress = progress};
     uint64_t key;
-    if (!contenders_parse(&run.contenders, options->methods, options->quick, error)) return false;
+    if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
     bool ok = study_key(options, &key, error) && file_make_directory(options->folder, error) &&
               part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
     part_file_close(&run.part);

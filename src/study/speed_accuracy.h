@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Speed against accuracy: every method in every scene, on launches that nothing was trained on.
+/* The speed-accuracy study: every method in every scene, on held-out launches.
 
-   Two protocols. Frozen: all methods take the same steps, sampled from the engine's runs. Closed: each runs on its own
-   trajectory. Either way a step is scored by its end velocities against the converged solution (reference/reference.h) of
-   the contact problem at its start. */
+   Two protocols. Frozen: all methods solve the same steps, sampled from engine runs. Closed: each method runs on its
+   own trajectory. In both, the final velocities of a step are compared with the converged solution
+   (reference/reference.h) of its contact problem. */
 #pragma once
 #include "common/progress.h"
-#include "study/chart_csv.h"
+#include "study/contenders.h"
 
-enum { STUDY_MAX_SCENES = 16, STUDY_PATH_SIZE = 4096 };
+enum { STUDY_MAX_SCENES = 16 };
 
-/* A study goes through stages; each has a progress of its own. */
+/* Progress per stage of the study. */
 typedef struct StageProgress {
-    const Progress *(*begin)(void *context, const char *what); /* called when a stage begins */
+    const Progress *(*begin)(void *context, const char *what); /* called at the start of a stage */
     void *context;
 } StageProgress;
 
@@ -22,19 +22,20 @@ typedef struct SpeedAccuracyOptions {
     const char *methods;  /* contenders_parse(); NULL: all */
     const char *launches; /* path of a table of launches (scene/launch.h); NULL: launches_for_scoring() */
     bool quick;           /* fewer launches, settings, steps and repetitions */
-    const char *folder;   /* made where missing */
+    const char *folder;   /* created if missing */
 } SpeedAccuracyOptions;
 
 typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
-    double frozen_residual;  /* m/s: the largest of the reference solves of frozen steps */
-    int solves, unconverged; /* in closed loop, by this run of the program: reference solves, those that left more than
-                                SOLVE_CONVERGED (rollout.h) */
+    NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
+    double frozen_residual;         /* m/s: largest residual of the reference solves of frozen steps */
+    int solves, unconverged;        /* reference solves in closed loop since the study was started or resumed; those
+                                       with a residual above SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 
-/* Writes folder/chart.csv, and fills scenes[scene_count]. What is done is kept beside it in chart-KEY.part.csv, so that the
-   same study, by the same program, goes on where it was cut off. ERROR_INPUT for a bad option, scene or launch, or
-   where progress asks to stop. */
+/* Writes folder/chart.csv and fills scenes[scene_count]. Finished rows are saved in folder/chart-KEY.part.csv: an
+   interrupted study is resumed if options, files and program are the same. ERROR_INPUT for an invalid option, scene or
+   launch, or if progress stops the study. */
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,
                         Error *error);

@@ -5,7 +5,7 @@
 #include <gsl/gsl_statistics.h>
 #include <math.h>
 
-/* Summed in order: GSL's running mean is rounded in another way on machines without long double. */
+/* Own loop: GSL's running mean rounds differently on machines without long double. */
 double statistics_mean(const double *values, int count) {
     double sum = 0;
     for (int i = 0; i < count; i++) sum += values[i];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a list of numbers; NAN of an empty one. */
+/* Statistics of a list of numbers; NaN if it is empty. */
 #pragma once
 
 double statistics_mean(const double *values, int count);
 
-/* Sorts the values, and interpolates between the two nearest: 0.5 is the median, 0.25 and 0.75 are the quartiles. */
+/* Sorts the values; interpolates linearly. fraction: 0.5 for the median, 0.25 and 0.75 for the quartiles. */
 double statistics_quantile(double *values, int count, double fraction);

@@ -22,7 +22,7 @@ void study_parts_close(StudyParts *parts) {
     parts->text = NULL;
 }
 
-/* What a part tells of itself, as a share of all. */
+/* The progress of a part as a share of the whole. */
 typedef struct PartProgress {
     const StudyParts *parts;
     double weight;
@@ -36,7 +36,7 @@ static bool report(void *context, double done, double total) {
     return !part->stopped;
 }
 
-static bool keep_text(StudyParts *parts, const char *text, size_t size, Error *error) {
+static bool append_text(StudyParts *parts, const char *text, size_t size, Error *error) {
     if (!array_reserve((void **)&parts->text, &parts->capacity, parts->size + size + 1, 1))
         return error_memory(error, "study");
     memcpy(parts->text + parts->size, text, size);
@@ -45,7 +45,7 @@ static bool keep_text(StudyParts *parts, const char *text, size_t size, Error *e
     return true;
 }
 
-/* Does the part, and puts its file in place. */
+/* Does the part and writes its file. */
 static bool write_part(StudyParts *parts, const StudyPart *part, const char *path, Error *error) {
     PartProgress own = {parts, part->weight, false};
     const Progress progress = {report, &own};
@@ -56,8 +56,8 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
     bool ok = part->write(part->context, lines, &progress, error);
     if (ferror(lines) && ok) ok = error_memory(error, "study");
     if (fclose(lines) != 0 && ok) ok = error_memory(error, "study");
-    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; what was done before is kept");
-    ok = ok && file_write(path, text, size, error) && keep_text(parts, text, size, error);
+    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; finished parts are kept");
+    ok = ok && file_write(path, text, size, error) && append_text(parts, text, size, error);
     free(text);
     return ok;
 }
@@ -69,7 +69,7 @@ bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     if (access(path, F_OK) == 0) {
         size_t size;
         char *text = file_read(path, PART_MAX_SIZE, &size, error);
-        ok = text != NULL && keep_text(parts, text, size, error);
+        ok = text != NULL && append_text(parts, text, size, error);
         free(text);
     } else {
         ok = write_part(parts, part, path, error);
@@ -78,26 +78,33 @@ bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     return ok;
 }
 
-bool study_parts_table(const StudyParts *parts, const char *folder, const char *table, const char *header,
-                       Error *error) {
-    char path[STUDY_PARTS_PATH_SIZE], *text = NULL;
-    const size_t name = strlen(table);
-    size_t size = 0;
-    if (!file_path(path, sizeof path, error, "%s/%s.csv", folder, table)) return false;
-    FILE *csv = open_memstream(&text, &size);
-    if (csv == NULL) return error_memory(error, "study");
-    fprintf(csv, "%s\n", header);
-    for (const char *line = parts->text; line != NULL && *line != '\0';) {
+bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Error *error) {
+    fprintf(lines, "%s:", layout->name);
+    return csv_row_print(lines, layout, row, error);
+}
+
+typedef struct PartsTable {
+    const StudyParts *parts;
+    const CsvLayout *layout;
+} PartsTable;
+
+static void print_table(FILE *csv, const void *context) {
+    const PartsTable *table = context;
+    const char *name = table->layout->name;
+    const size_t size = strlen(name);
+    csv_header_print(csv, table->layout);
+    for (const char *line = table->parts->text; line != NULL && *line != '\0';) {
         size_t length = strcspn(line, "\n");
-        if (strncmp(line, table, name) == 0 && line[name] == ':')
-            fprintf(csv, "%.*s\n", (int)(length - name - 1), line + name + 1);
+        if (strncmp(line, name, size) == 0 && line[size] == ':')
+            fprintf(csv, "%.*s\n", (int)(length - size - 1), line + size + 1);
         line += length + (line[length] == '\n');
     }
-    bool ok = !ferror(csv);
-    ok = fclose(csv) == 0 && ok;
-    ok = ok ? file_write(path, text, size, error) : error_memory(error, "study");
-    free(text);
-    return ok;
+}
+
+bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error) {
+    char path[CSV_PATH_SIZE];
+    const PartsTable table = {parts, layout};
+    return csv_table_path(path, folder, layout, error) && file_write_text(path, print_table, &table, error);
 }
 
 void study_parts_remove(const StudyParts *parts) {

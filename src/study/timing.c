@@ -8,13 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What is counted, and what each call adds to it. */
+/* A counter, and what reading it costs. */
 typedef struct Meter {
     int64_t (*now)(void);
     int64_t overhead;
 } Meter;
 
-/* Sums over steps, phase by phase. */
+/* Sums over steps, per phase. */
 typedef struct Tally {
     int64_t solver[PHASES], step[PHASES];
     int steps[PHASES];
@@ -29,7 +29,7 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     step.meter = &inner;
     int64_t begun = meter->now();
     if (!simulate_step(stepper, world, &step, error)) return false;
-    cost->step = meter->now() - begun - 3 * meter->overhead; /* two more calls lie inside */
+    cost->step = meter->now() - begun - 3 * meter->overhead; /* with two calls inside the step */
     cost->solver = inner.solving - meter->overhead;
     return true;
 }
@@ -40,7 +40,7 @@ static void count_step(Tally *tally, const Cost *cost, Phase phase) {
     tally->steps[phase]++;
 }
 
-/* A run that leaves the finite numbers ends there. */
+/* Ends early if the state becomes NaN or infinite. */
 static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, Tally *tally,
                        Error *error) {
     World *world = scene_world(launched, error);
@@ -72,7 +72,7 @@ static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world,
     return true;
 }
 
-/* One contender: its samples [PROTOCOLS][PHASES][repetitions] are the means of each repetition. */
+/* One contender. solver, step: means of each repetition [PROTOCOLS][PHASES][repetitions]. */
 typedef struct Timed {
     Stepper *stepper;
     double *solver, *step;
@@ -113,7 +113,7 @@ static bool repeat(Timing *timing, int repetition, const Meter *meter, Error *er
     return true;
 }
 
-/* They do not vary: once is enough. */
+/* Without repetitions: counts do not vary. */
 static bool count_instructions(Timing *timing, Error *error) {
     bool can = meter_open_instructions();
     const Meter meter = {meter_instructions, 0};

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adam: each parameter steps by its mean gradient over the root of its mean squared gradient.
+/* Adam: each parameter steps by its mean gradient, divided by the root of its mean squared gradient.
 
        m = b1 m + (1 - b1) g,   v = b2 v + (1 - b2) g^2,   p = p - rate * (m / c1) / (sqrt(v / c2) + epsilon)
 
-   with c = 1 - b^t, which undoes the start from 0. Source: Kingma and Ba, "Adam: A Method for Stochastic
-   Optimization" (2015); the rate falls to 0 by half a cosine (Loshchilov and Hutter, "SGDR", 2017). Full
-   batch, so the gradient has no noise. It crawls where the loss is a narrow valley; lm does not. */
+   with bias corrections c1 = 1 - b1^t and c2 = 1 - b2^t. Source: Kingma and Ba, "Adam: A Method for Stochastic
+   Optimization" (2015); the rate decays to 0 by half a cosine (Loshchilov and Hutter, "SGDR", 2017). Full batch, so the
+   gradient has no noise. Converges slowly in narrow valleys of the loss; lm does not. */
 #include "training/optimizer.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
-static const double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8; /* the paper's own */
+static const double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8; /* Kingma and Ba */
 static const double first_rate = 0.05;
 
 typedef struct Moments {
@@ -46,4 +46,4 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     return ok;
 }
 
-const Optimizer optimizer_adam = {"adam", "gradient steps of adapted length (Kingma, Ba 2015)", minimize};
+const Optimizer optimizer_adam = {"adam", "adaptive step per parameter, cosine decay (Kingma, Ba 2015)", minimize};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* BFGS: steps along a direction that learns the curvature from the change of the gradient, with a line search
-   that evaluates the loss several times a step. Source: Fletcher, "Practical Methods of Optimization" (1987),
-   section 2.6, by GSL's vector_bfgs2. It stops where the line search can no longer tell losses apart. */
+/* BFGS: quasi-Newton steps, with curvature estimated from changes of the gradient, and a line search that evaluates the
+   loss several times per step. Source: Fletcher, "Practical Methods of Optimization" (1987), section 2.6; implemented by
+   GSL's vector_bfgs2. Stops if the line search finds no lower loss within rounding. */
 #include "training/optimizer.h"
 
 #include <gsl/gsl_errno.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 static const double first_step = 0.1;
-static const double line_search_accuracy = 0.1; /* GSL's advice for this method */
+static const double line_search_accuracy = 0.1; /* recommended by GSL for this method */
 
 static double value(const gsl_vector *x, void *context) {
     Trainer *trainer = context;
@@ -26,8 +26,7 @@ static void gradient_only(const gsl_vector *x, void *context, gsl_vector *gradie
     value_and_gradient(x, context, &loss, gradient);
 }
 
-/* One step; after a failed line search one more try along the plain gradient. False where there is no way
-   on. */
+/* One step. If the line search fails, restarts once along the gradient. False if that fails too. */
 static bool iterate(gsl_multimin_fdfminimizer *minimizer) {
     if (gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS) return true;
     return gsl_multimin_fdfminimizer_restart(minimizer) == GSL_SUCCESS &&

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a dataset can be trained on as the options say. */
+/* Validates training options against a dataset. */
 #pragma once
 #include "training/training.h"
 
-/* ERROR_INPUT: shapes, laws, or a network to go on from that do not fit; no rows to train on or to test on. */
+/* ERROR_INPUT: layer widths, laws or a start network that do not match the dataset; no training rows or no test rows. */
 bool training_check(const Dataset *dataset, const TrainingOptions *options, Error *error);

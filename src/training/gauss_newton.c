@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The derivative of output k by the weight from unit i to unit j is d_j(k) x_i, so an entry of J^T J is
+/* The derivative of output k with respect to the weight from unit i to unit j is d_j(k) x_i, so an entry of J^T J is
 
        sum over rows of D x_i x_i',   D = sum over outputs k of d_j(k) d_j'(k)
 
-   D is formed once for a pair of units and the products x_i x_i' once for a pair of layers: a third of the
-   multiplications of J^T J from J for 10-10-2, a seventh for 10-8-8-6. Measured on two cores with 10^6 rows
-   of 10-10-2: 0.8 s, against 2.2 s by OpenBLAS's dsyrk on blocks of J. */
+   D is computed once per pair of units and x_i x_i' once per pair of layers: a third of the multiplications of forming
+   J^T J from J for 10-10-2, a seventh for 10-8-8-6. Two cores, 10^6 rows of 10-10-2: 0.8 s; OpenBLAS's dsyrk on blocks
+   of J: 2.2 s. */
 #include "training/gauss_newton.h"
 
 #include "training/loss.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As in loss.c, but each chunk has a matrix. */
+/* As in loss.c, but each chunk holds a matrix. */
 enum { MAX_CHUNKS = 32, MAX_MATRIX_NUMBERS = 1 << 24 };
 
 typedef struct Chunk {
@@ -21,13 +21,13 @@ typedef struct Chunk {
     double *deltas;   /* [outputs, units, BLOCK_ROWS]: d prediction k / d sum of each unit of all layers */
     double *products; /* [pairs of inputs, BLOCK_ROWS] of a pair of layers */
     double *jtu;      /* [parameters] */
-    double *jtj;      /* [parameters, parameters], lower half */
+    double *jtj;      /* [parameters, parameters], lower triangle */
 } Chunk;
 
 struct GaussNewton {
     const Network *shape;
     size_t parameters;
-    int units; /* of all layers but the inputs */
+    int units; /* in all layers except the inputs */
     int first_unit[NETWORK_MAX_LAYERS];
     size_t first_parameter[NETWORK_MAX_LAYERS];
     double ones[BLOCK_ROWS]; /* the input of a bias */
@@ -78,12 +78,12 @@ void gauss_newton_destroy(GaussNewton *work) {
     free(work);
 }
 
-/* The values that go into layer l by input i; the last is the bias's. */
+/* Input i of layer l; the last input is that of the bias. */
 static const double *input_values(const GaussNewton *work, const Chunk *chunk, int l, int i) {
     return i < work->shape->widths[l] ? chunk->block->values[l] + i * BLOCK_ROWS : work->ones;
 }
 
-/* Of the weight from input i to unit j of layer l. */
+/* Index of the weight from input i to unit j of layer l. */
 static size_t parameter_index(const GaussNewton *work, int l, int j, int i) {
     int inputs = work->shape->widths[l], outputs = work->shape->widths[l + 1];
     return work->first_parameter[l] + (size_t)(i < inputs ? j * inputs + i : outputs * inputs + j);
@@ -94,7 +94,7 @@ static void add_symmetric(const GaussNewton *work, Chunk *chunk, size_t a, size_
     chunk->jtj[row * work->parameters + column] += value;
 }
 
-/* x_i x_i' of layers l and m; of one layer with itself only i' <= i. */
+/* x_i x_i' of layers l and m; only i' <= i if l == m. */
 static void fill_products(const GaussNewton *work, Chunk *chunk, int l, int m) {
     double *product = chunk->products;
     for (int i = 0; i <= work->shape->widths[l]; i++)
@@ -135,7 +135,7 @@ static void add_layer_pair(const GaussNewton *work, Chunk *chunk, int l, int m) 
             if (!both_last || j == j2) add_unit_pair(work, chunk, l, j, m, j2); /* outputs share no prediction */
 }
 
-/* The deltas of every prediction by itself: backward from d prediction k / d prediction = 1. */
+/* One backward pass per output k, with output delta 1 for k and 0 for the others. */
 static void fill_deltas(const GaussNewton *work, Chunk *chunk, int rows, const double *parameters) {
     const Network *shape = work->shape;
     int outputs = shape->widths[shape->layers];
@@ -162,7 +162,6 @@ static void add_block(const GaussNewton *work, Chunk *chunk, const Samples *samp
         for (int m = 0; m <= l; m++) add_layer_pair(work, chunk, l, m);
 }
 
-/* total = the chunks' sums in rising order */
 static void add_chunk(double *total, const double *part, size_t count, bool first) {
     for (size_t i = 0; i < count; i++) total[i] = first ? part[i] : total[i] + part[i];
 }
@@ -170,7 +169,7 @@ static void add_chunk(double *total, const double *part, size_t count, bool firs
 void gauss_newton_sum(GaussNewton *work, const Samples *samples, const double *parameters, const double *u, double *jtu,
                       double *jtj) {
     size_t count = work->parameters;
-    /* Waking threads for less than a block each costs more than it saves. */
+    /* With less than one block per chunk, waking threads costs more than it saves. */
 #pragma omp parallel for schedule(dynamic, 1) if (samples->blocks >= work->chunk_count)
     for (int c = 0; c < work->chunk_count; c++) {
         Chunk *chunk = &work->chunks[c];

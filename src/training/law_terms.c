@@ -6,8 +6,8 @@
 
 static double inertia(float inverse) { return inverse > 0 ? 1 / (double)inverse : 0; }
 
-/* The velocity that a body's point at `arm` has along the normal, as weights of its velocity and spin. */
-static void put_approach(double approach[3], double sign, const double normal[2], const float arm[2]) {
+/* The normal velocity of a body's point at `arm`, as weights of the body's velocity and spin. */
+static void set_approach(double approach[3], double sign, const double normal[2], const float arm[2]) {
     approach[0] = sign * normal[0];
     approach[1] = sign * normal[1];
     approach[2] = sign * ((double)arm[0] * normal[1] - (double)arm[1] * normal[0]);
@@ -21,12 +21,12 @@ LawPair law_pair(const float context[PAIR_CONTEXT]) {
     pair.mass[3] = pair.mass[4] = inertia(context[CONTEXT_INV_MASS_B]);
     pair.mass[5] = inertia(context[CONTEXT_INV_INERTIA_B]);
     for (int k = 0; k < PAIR_CHANGES; k++) pair.velocity[k] = (double)context[CONTEXT_VELOCITIES + k];
-    if (pair.mass[0] > 0) put_approach(pair.approach, -1, pair.normal, context + CONTEXT_ARM_A);
-    if (pair.mass[3] > 0) put_approach(pair.approach + 3, 1, pair.normal, context + CONTEXT_ARM_B);
+    if (pair.mass[0] > 0) set_approach(pair.approach, -1, pair.normal, context + CONTEXT_ARM_A);
+    if (pair.mass[3] > 0) set_approach(pair.approach + 3, 1, pair.normal, context + CONTEXT_ARM_B);
     return pair;
 }
 
-/* The body whose change says what the pair's impulse was: where its numbers begin, and the mass that makes J of them. */
+/* The pair's impulse J is computed from one dynamic body's velocity change: its first index, and the factor of J. */
 static int impulse_body(const LawPair *pair) { return pair->mass[3] > 0 ? 3 : 0; }
 static double impulse_mass(const LawPair *pair) { return pair->mass[3] > 0 ? pair->mass[3] : -pair->mass[0]; }
 
@@ -89,7 +89,8 @@ static double cone_violation(const LawPair *pair, const double change[PAIR_CHANG
 }
 
 const Law laws_known[LAWS] = {
-    [LAW_MOMENTUM] = {"momentum", "N s", "what one body gains the other loses", momentum_violation, impulse_size},
-    [LAW_ENERGY] = {"energy", "J", "the pair's kinetic energy does not rise", energy_violation, energy_change},
+    [LAW_MOMENTUM] = {"momentum", "N s", "the pair's momentum is conserved", momentum_violation, impulse_size},
+    [LAW_ENERGY] = {"energy", "J", "the pair's kinetic energy does not increase", energy_violation, energy_change},
     [LAW_APPROACH] = {"approach", "m/s", "the bodies no longer approach", approach_violation, approach_size},
-    [LAW_CONE] = {"cone", "N s", "bodies push, with friction within Coulomb's cone", cone_violation, impulse_size}};
+    [LAW_CONE] = {"cone", "N s", "the impulse pushes and is within Coulomb's friction cone", cone_violation,
+                  impulse_size}};

@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The laws of physics for one touching pair: how far a change of its velocities breaks each of them, and the slope of
-   that by each number of the change. A static body takes no part, whatever is said to happen to it.
+/* Physical laws for one touching pair: the violation of each law by a change of the pair's velocities, and the gradient
+   of the violation with respect to that change. The change of a static body is ignored.
 
-       momentum  |ma dva + mb dvb|, N s: two bodies only push each other, so what one gains the other loses. A static
-                 body takes any momentum: 0 there
-       energy    J by which the kinetic energy of the pair rises: contacts have no springs
-       approach  m/s at which the middle of the contact points is still approached along the normal
-       cone      N s by which the pair's impulse J leaves Coulomb's cone: max(0, |J.t| - mu max(J.n, 0)) across, and
-                 max(0, -J.n) pulling. J is what b was given, or where b is static what a gave */
+       momentum  |ma dva + mb dvb|, N s: net momentum change; 0 if a body is static
+       energy    increase of the pair's kinetic energy, J
+       approach  approach velocity along the normal that remains at the mean contact point, m/s
+       cone      distance of the pair's impulse J from Coulomb's friction cone, N s: max(0, |J.t| - mu max(J.n, 0)) along
+                 the tangent plus max(0, -J.n) for pulling. J is the impulse on b, or if b is static minus that on a */
 #pragma once
 #include "pair/pair.h"
 #include "pair/pair_context.h"
 
 enum { LAW_MOMENTUM, LAW_ENERGY, LAW_APPROACH, LAW_CONE, LAWS };
 
-/* A pair, prepared from its context. The numbers of a change: velocity, spin of a, then of b. */
+/* A pair, prepared from its context. Arrays hold velocity (x, y) and spin of a, then of b. */
 typedef struct LawPair {
-    double mass[PAIR_CHANGES];     /* kg, kg m^2: inertia that each number of the change moves; 0 for a static body */
-    double velocity[PAIR_CHANGES]; /* before */
-    double approach[PAIR_CHANGES]; /* its sum with velocities is how fast the bodies part along the normal */
+    double mass[PAIR_CHANGES];     /* kg, kg m^2; 0 for a static body */
+    double velocity[PAIR_CHANGES]; /* before the change */
+    double approach[PAIR_CHANGES]; /* its dot product with velocities is the separation velocity along the normal */
     double normal[2], friction;
 } LawPair;
 
@@ -26,9 +25,9 @@ LawPair law_pair(const float context[PAIR_CONTEXT]);
 
 typedef struct Law {
     const char *name, *unit, *summary;
-    /* How far the change breaks the law, >= 0; slope[PAIR_CHANGES] of that, where it is above 0. */
+    /* Returns the violation, >= 0. slope[PAIR_CHANGES] is its gradient, valid if the violation is above 0. */
     double (*violation)(const LawPair *pair, const double change[PAIR_CHANGES], double slope[PAIR_CHANGES]);
-    /* What the violation is compared with: how much of its kind the change makes. */
+    /* The size of the change in the law's unit; normalises the violation (laws.h). */
     double (*size)(const LawPair *pair, const double change[PAIR_CHANGES]);
 } Law;
 

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Weights of the laws, in words. */
+/* Weights of the laws, parsed from text. */
 #pragma once
 #include "common/error.h"
 #include "training/law_terms.h"
 
-/* A number for each law: weights, or violations in the law's unit. */
+/* One number per law: weights, or violations in the law's unit. */
 typedef struct LawNumbers {
     double of[LAWS];
 } LawNumbers;
 
-/* Whether any weight is not 0. */
 bool law_weights_any(const LawNumbers *weights);
 
-/* "momentum=0.1,cone=1": laws that are not named have weight 0. ERROR_INPUT: an unknown law or one named twice, or what
-   is no number of 0 or more. */
+/* "momentum=0.1,cone=1"; laws not named have weight 0. ERROR_INPUT: an unknown or repeated law, or a weight that is
+   negative or not a number. */
 bool law_weights_parse(const char *text, LawNumbers *weights, Error *error);
 
-/* One weight for a law by name, for "all" of them, or for "none". ERROR_INPUT: another word. */
+/* Sets one weight for the law of this name, for "all" or for "none". ERROR_INPUT: another name. */
 bool law_weights_named(const char *laws, double weight, LawNumbers *weights, Error *error);

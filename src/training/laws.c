@@ -5,28 +5,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A row to train on. */
+/* A training row. */
 typedef struct LawRow {
     LawPair pair;
-    double label[LAWS]; /* how far the label breaks each law */
+    double label[LAWS]; /* violation of each law by the label */
 } LawRow;
 
 struct Laws {
     const Network *network;
-    double factor[LAWS]; /* weight / scale, times the outputs; 0: law not wanted */
+    double factor[LAWS]; /* weight / scale * outputs; 0: law not used */
     LawRow *rows;
 };
 
 bool laws_check(const Dataset *dataset, int outputs, const LawNumbers *weights, Error *error) {
     for (int law = 0; law < LAWS; law++)
         if (!(weights->of[law] >= 0 && isfinite(weights->of[law])))
-            return error_input(error, "laws", "a weight of %g for %s; 0 or more are possible", weights->of[law],
-                               laws_known[law].name);
+            return error_input(error, "laws", "the weight of %s must be 0 or more (got %g)", laws_known[law].name,
+                               weights->of[law]);
     if (dataset->target != TARGET_PAIR || pair_views[dataset->view].by_contact)
-        return error_input(error, "laws", "they are for the target pair in world axes, not for %s seen by %s",
+        return error_input(error, "laws", "need a dataset with target pair in world axes (got target %s, view %s)",
                            pair_target_names[dataset->target], pair_views[dataset->view].name);
     if (outputs != PAIR_CHANGES)
-        return error_input(error, "laws", "%d outputs; all %d are needed, such as 10-8-8-6", outputs, PAIR_CHANGES);
+        return error_input(error, "laws", "need a network with %d outputs, such as 10-8-8-6 (got %d)", PAIR_CHANGES,
+                           outputs);
     if (dataset->context != NULL) return true;
     return error_input(error, "laws", "the dataset has no context; record it again with --context");
 }
@@ -35,7 +36,6 @@ static void label_change(const Dataset *dataset, int64_t row, double change[PAIR
     for (int k = 0; k < PAIR_CHANGES; k++) change[k] = (double)dataset->changes[row * PAIR_CHANGES + k];
 }
 
-/* Prepares the rows and turns weights into factors. */
 static void fill(Laws *laws, const Dataset *dataset, const LawNumbers *weights) {
     double change[PAIR_CHANGES], slope[PAIR_CHANGES], squares[LAWS] = {0};
     int64_t count = 0;
@@ -74,7 +74,7 @@ void laws_destroy(Laws *laws) {
     free(laws);
 }
 
-/* Adds half the slope of factor * excess^2 by the outputs of one row. */
+/* Half the derivative of factor * excess^2 with respect to one row's outputs; `excess` includes the factor. */
 static void add_slope(const Laws *laws, double excess, const double slope[PAIR_CHANGES], double *half_slopes) {
     for (int k = 0; k < PAIR_CHANGES; k++)
         half_slopes[k * BLOCK_ROWS] += excess * slope[k] / (double)laws->network->output.scale[k];
@@ -99,7 +99,6 @@ double laws_add(const Laws *laws, const NetworkBlock *block, int64_t b, int rows
     return sum;
 }
 
-/* change[PAIR_CHANGES] that a network predicts for a row. */
 static void predicted_change(const Dataset *dataset, const Network *network, int64_t row, float *scratch,
                              double change[PAIR_CHANGES]) {
     float output[PAIR_CHANGES];
@@ -122,7 +121,7 @@ static bool measure(const Dataset *dataset, const Network *network, float *scrat
         for (int law = 0; law < LAWS; law++) violations->of[law] += laws_known[law].violation(&pair, change, slope);
         count++;
     }
-    if (count == 0) return error_input(error, "laws", "no rows are held out to measure them on");
+    if (count == 0) return error_input(error, "laws", "the dataset has no test rows");
     for (int law = 0; law < LAWS; law++) violations->of[law] /= (double)count;
     return true;
 }
@@ -133,7 +132,7 @@ bool laws_measure(const Dataset *dataset, const Network *network, LawNumbers *vi
         return false;
     if (network == NULL) return measure(dataset, NULL, NULL, violations, error);
     if (strcmp(network->inputs, pair_views[dataset->view].inputs) != 0)
-        return error_input(error, "laws", "the network takes other inputs (%.80s)", network->inputs);
+        return error_input(error, "laws", "the network has other inputs (%.80s)", network->inputs);
     float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
     if (scratch == NULL) return error_memory(error, "laws");
     const bool ok = measure(dataset, network, scratch, violations, error);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Levenberg-Marquardt: each step solves the least squares problem of the linearised residuals, damped by mu:
+/* Levenberg-Marquardt: each step solves the damped, linearised least-squares problem
 
        (J^T J + mu D^T D) step = -J^T residuals
 
-   Source: Marquardt (1963), More (1978), by GSL's gsl_multilarge_nlinear. J has a row for every output of
-   every row, gigabytes; so only J^T J and J^T u are formed. Needs far fewer steps than adam; its cost grows
-   with the square of the number of parameters, so it is for small networks. */
+   Source: Marquardt (1963), More (1978); implemented with GSL's gsl_multilarge_nlinear. J would take gigabytes, so only
+   J^T J and J^T u are computed. Needs far fewer steps than adam. For small networks: the cost of a step grows with the
+   square of the number of parameters. */
 #include "training/gauss_newton.h"
 #include "training/optimizer.h"
 
@@ -13,7 +13,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multilarge_nlinear.h>
 
-enum { MAX_PARAMETERS = 2000 }; /* J^T J of 32 MB, of which there are several */
+enum { MAX_PARAMETERS = 2000 }; /* 32 MB for each of several copies of J^T J */
 
 typedef struct LeastSquares {
     const Trainer *trainer;
@@ -28,7 +28,7 @@ static int residuals(const gsl_vector *x, void *context, gsl_vector *f) {
 
 static int derivatives(CBLAS_TRANSPOSE_t transpose, const gsl_vector *x, const gsl_vector *u, void *context,
                        gsl_vector *v, gsl_matrix *jtj) {
-    if (transpose != CblasTrans) return GSL_EUNIMPL; /* J u: only conjugate gradients ask for it */
+    if (transpose != CblasTrans) return GSL_EUNIMPL; /* J u: only conjugate gradients need it */
     LeastSquares *problem = context;
     gauss_newton_sum(problem->derivatives, problem->trainer->train, x->data, u->data, v->data,
                      jtj == NULL ? NULL : jtj->data);
@@ -40,7 +40,7 @@ static double loss_of(const Trainer *trainer, const gsl_vector *f) {
     return norm * norm / ((double)trainer->train->rows * trainer->train->outputs);
 }
 
-/* Ends early, without an error, where no damping gives a lower loss. */
+/* Ends early, without an error, if no damping lowers the loss. */
 static bool run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton, double *parameters,
                 Error *error) {
     LeastSquares problem = {trainer, gauss_newton};
@@ -59,12 +59,12 @@ static bool minimize(Trainer *trainer, double *parameters, Error *error) {
     const Samples *samples = trainer->train;
     long long numbers = (long long)samples->rows * samples->outputs;
     if (trainer->loss_kind != LOSS_MSE || trainer->laws != NULL)
-        return error_input(error, "lm", "is for least squares: loss mse and no laws; adam, bfgs and gd take others");
+        return error_input(error, "lm", "needs loss mse and no laws; use adam, bfgs or gd");
     if (trainer->parameters > MAX_PARAMETERS)
-        return error_input(error, "lm", "%d weights; at most %d are possible, adam, bfgs and gd take more",
-                           trainer->parameters, MAX_PARAMETERS);
+        return error_input(error, "lm", "at most %d weights (got %d); for more use adam, bfgs or gd", MAX_PARAMETERS,
+                           trainer->parameters);
     if (numbers < trainer->parameters)
-        return error_input(error, "lm", "%lld numbers to fit with %d weights; at least as many are needed", numbers,
+        return error_input(error, "lm", "needs at least as many target values as weights (got %lld and %d)", numbers,
                            trainer->parameters);
     gsl_multilarge_nlinear_parameters settings = gsl_multilarge_nlinear_default_parameters();
     settings.trs = gsl_multilarge_nlinear_trs_lm;

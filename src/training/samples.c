@@ -14,13 +14,12 @@ static float target_at(const Dataset *dataset, int64_t row, int outputs, int col
     return outputs == pair_change_count(dataset->target) ? changes[column] : changes[column + 3] - changes[column];
 }
 
-/* What a normalisation is made from. */
 typedef struct Spread {
     double minimum, maximum, mean, deviation;
 } Spread;
 
-/* Over the rows to train on; outputs 0 means an input column. Two passes: the deviation of a column far from
-   0 would drown in the rounding of its squares. */
+/* Over the training rows; outputs == 0 selects an input column. Two passes: with one, the rounding of the squares would
+   swamp the deviation of a column far from 0. */
 static Spread column_spread(const Dataset *dataset, int outputs, int column) {
     Spread spread = {.minimum = INFINITY, .maximum = -INFINITY};
     for (int pass = 0; pass < 2; pass++) {
@@ -42,7 +41,7 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
     return spread;
 }
 
-/* A column that never changes has width 0, without rounding: sums of equal float32 are exact in double. */
+/* A constant column has a width of exactly 0: sums of equal float32 are exact in double. */
 static void set_scale(Normalisation *normalisation, int column, double offset, double width) {
     float scale = (float)(1 / width);
     normalisation->offset[column] = (float)offset;
@@ -65,12 +64,12 @@ void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Networ
     }
 }
 
-/* The float32 expression of network_predict(), so that training sees what inference will. */
+/* The same float32 expression as in network_predict(), so that training and inference see the same inputs. */
 static float normalise(const Normalisation *normalisation, int column, float x) {
     return (x - normalisation->offset[column]) * normalisation->scale[column];
 }
 
-static void put_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row, const Network *network) {
+static void store_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row, const Network *network) {
     int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
     for (int i = 0; i < samples->inputs; i++)
         samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
@@ -94,7 +93,7 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
         return error_memory(error, "training"), samples_destroy(samples), NULL;
     int64_t to = 0;
     for (int64_t row = 0; row < dataset->rows; row++)
-        if (dataset_is_test(dataset, row) == test) put_row(samples, to++, dataset, row, network);
+        if (dataset_is_test(dataset, row) == test) store_row(samples, to++, dataset, row, network);
     return samples;
 }
 

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From dataset to network: checks, normalisation, first weights, the optimiser, the best weights it saw. */
 #include "training/training.h"
 
 #include "common/names.h"
 #include "training/checks.h"
-#include "training/form.h"
+#include "training/network_config.h"
 #include "training/optimizer.h"
 
 #include <float.h>
@@ -29,7 +28,7 @@ static const Optimizer *find_optimizer(const char *name, Error *error) {
 
 /* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
    uniform in +- sqrt(6 / (inputs + outputs)), biases 0. */
-static void set_first_weights(Network *network, const gsl_rng *rng) {
+static void draw_weights(Network *network, const gsl_rng *rng) {
     for (int l = 0; l < network->layers; l++) {
         int inputs = network->widths[l], outputs = network->widths[l + 1];
         double limit = sqrt(6.0 / (inputs + outputs));
@@ -42,23 +41,23 @@ static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     if (rng == NULL) return error_memory(error, "training");
     gsl_rng_set(rng, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* the generator takes 32 bits */
-    set_first_weights(network, rng);
+    draw_weights(network, rng);
     gsl_rng_free(rng);
     return true;
 }
 
 static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    Form form;
-    if (!form_choose(&form, options, error)) return NULL;
+    NetworkConfig config;
+    if (!network_config_parse(&config, options, error)) return NULL;
     Network *network = network_create(options->layers, options->widths, error);
     if (network == NULL) return NULL;
-    for (int l = 0; l < network->layers; l++) network->activations[l] = form.hidden;
-    network->activations[network->layers - 1] = form.output;
+    for (int l = 0; l < network->layers; l++) network->activations[l] = config.hidden;
+    network->activations[network->layers - 1] = config.output;
     snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
     snprintf(network->outputs, sizeof network->outputs, "%s",
              pair_output_names(dataset->view, dataset->target, options->widths[options->layers]));
     snprintf(network->target, sizeof network->target, "%s", pair_target_names[dataset->target]);
-    samples_fit_normalisation(dataset, form.scale, network);
+    samples_fit_normalisation(dataset, config.scale, network);
     if (set_random_weights(network, options->seed, error)) return network;
     network_destroy(network);
     return NULL;
@@ -88,7 +87,7 @@ static void report_score(Trainer *trainer) {
     trainer->options->on_score(trainer->options->context, &score);
 }
 
-/* Finite also as the float32 of the network. */
+/* Also false if a parameter overflows the network's float32. */
 static bool is_finite(const double *parameters, int count, double loss) {
     if (!isfinite(loss)) return false;
     for (int p = 0; p < count; p++)
@@ -100,7 +99,7 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
     size_t size = (size_t)trainer->parameters * sizeof *parameters;
     trainer->iteration++;
     if (!is_finite(parameters, trainer->parameters, train_loss))
-        return error_input(error, "training", "diverged: left the finite numbers in iteration %d", trainer->iteration);
+        return error_input(error, "training", "diverged: NaN or infinite in iteration %d", trainer->iteration);
     memcpy(trainer->now, parameters, size);
     trainer->loss_now = train_loss;
     if (trainer->iteration == 0 || train_loss < trainer->best_loss) {
@@ -123,7 +122,7 @@ static bool score_constant(Trainer *trainer, Error *error) {
     return true;
 }
 
-/* Minimises and puts the best weights into the network, whose numbers are one block from weights[0] on. */
+/* Runs the optimiser and stores the best weights in the network. All its parameters are one block from weights[0]. */
 static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *network, Error *error) {
     size_t count = (size_t)trainer->parameters;
     double *numbers = calloc(3 * count, sizeof *numbers);
@@ -146,7 +145,7 @@ static bool train(Network *network, const Dataset *dataset, const Optimizer *opt
     const bool with_laws = law_weights_any(&options->laws);
     Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
     LossKind kind = LOSS_MSE;
-    Loss *loss = form_choose_loss(&kind, options, error) ? loss_create(network, kind, error) : NULL;
+    Loss *loss = loss_kind_parse(&kind, options, error) ? loss_create(network, kind, error) : NULL;
     Samples *train_samples = samples_create(dataset, network, false, error);
     Samples *test_samples = samples_create(dataset, network, true, error);
     Trainer trainer = {.options = options,
@@ -170,7 +169,7 @@ static bool train(Network *network, const Dataset *dataset, const Optimizer *opt
 }
 
 Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error) {
-    /* GSL's default handler ends the process. */
+    /* GSL's default handler aborts. */
     gsl_set_error_handler_off();
     const Optimizer *optimizer = find_optimizer(options->optimizer, error);
     if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* chart.csv: figures made up after measured ones, twelve methods. */
+/* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
 #include "python.h"
 
 #include "chart/chart_plot.h"
@@ -35,7 +35,7 @@ static void three_files_are_drawn(void **state) {
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
     size_t size;
     char *png = read_drawn("pyramid_settled", "png", &size);
-    /* 174 x 85 mm at 300 dots an inch: 2055 x 1004. */
+    /* 174 x 85 mm at 300 dots per inch: 2055 x 1004. */
     assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x03\xec", 24);
     assert_true(size > 50000);
     free(png);
@@ -102,12 +102,13 @@ static void tables_without_a_mark_are_refused(void **state) {
                    "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
                    "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
                    "single", none);
-    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean cannot be -1");
+    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single",
+                   "error_mean: '-1' is less than 0");
     expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "cannot be the name of a scene");
     char many[8000] = "";
     for (int i = 0; i < 25; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
-    expect_refused(many, "single", "more than 24 methods");
+    expect_refused(many, "single", "at most 24 methods");
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
@@ -119,7 +120,7 @@ static void one_mark_and_one_panel_are_enough(void **state) {
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
-/* As many methods as there may be, with the longest names and settings. */
+/* The maximum number of methods, with the longest names and settings. */
 static void a_full_chart_is_drawn(void **state) {
     (void)state;
     Error error = {0};
@@ -131,7 +132,7 @@ static void a_full_chart_is_drawn(void **state) {
     assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
 }
 
-/* A name that became a part of the script could run any program. */
+/* A name that is interpreted as part of the script could run any program. */
 static void names_cannot_become_commands(void **state) {
     (void)state;
     static const char *const names[] = {
@@ -176,7 +177,7 @@ static void texts_become_plain(void **state) {
     char plain[CHART_TEXT_SIZE];
     chart_plain(plain, "engine, warm=off (k=10)");
     assert_string_equal(plain, "engine, warm=off (k=10)");
-    /* Every character that means something to gnuplot within or around a text. */
+    /* Every character that gnuplot interprets within or around a text. */
     chart_plain(plain, "'\"`\\@$#;!|&<>{}^~%\n\x7f\xc3\xa4?");
     assert_string_equal(plain, "???????????????????????");
     chart_plain(plain, "0123456789012345678901234567890123456789");
@@ -218,8 +219,8 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     chart_csv_free(&table);
 }
 
-/* Two names that are alike as far as they are shown. */
-static void long_names_stay_apart(void **state) {
+/* Two names that are equal where they are truncated. */
+static void truncated_names_stay_distinct(void **state) {
     (void)state;
     Error error = {0};
     ChartTable table;
@@ -236,7 +237,7 @@ static void long_names_stay_apart(void **state) {
     chart_csv_free(&table);
 }
 
-/* Without gnuplot in PATH: its package is named, and no file is left. */
+/* Without gnuplot in PATH: the error names its package, and no file is left. */
 static void a_missing_gnuplot_is_named(void **state) {
     (void)state;
     char path[4096];
@@ -261,7 +262,7 @@ int main(void) {
         cmocka_unit_test(names_cannot_become_commands),
         cmocka_unit_test(texts_become_plain),
         cmocka_unit_test(marks_are_gathered_by_line_and_time),
-        cmocka_unit_test(long_names_stay_apart),
+        cmocka_unit_test(truncated_names_stay_distinct),
         cmocka_unit_test(a_missing_gnuplot_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What a report has shown can be accepted, and nothing else, nowhere else.
+# Only what a report shows can be accepted, and only in the expected folder.
 . "$(dirname "$0")/checks.sh"
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
@@ -29,16 +29,16 @@ run 0 compare expected actual
 says "equal: 5 frames"
 equal "all is as in the actual folder" "$(sums expected)" "$(sums actual)"
 run 0 approve report
-says "0 replaced, 0 added, 0 removed, 7 already so"
+says "0 replaced, 0 added, 0 removed, 7 already accepted"
 
 restart
 run 0 approve report --only 'frame_00000[25]*'
-says "1 replaced, 1 added, 0 removed, 5 not asked for"
+says "1 replaced, 1 added, 0 removed, 5 not selected"
 cmp -s expected/frame_000002.png actual/frame_000002.png || fail "frame 2 was not taken over"
-cmp -s expected/frame_000003.png expected.kept/frame_000003.png || fail "frame 3 was not asked for"
-[ -e expected/frame_000000.png ] || fail "frame 0 was removed unasked"
+cmp -s expected/frame_000003.png expected.kept/frame_000003.png || fail "frame 3 was not selected"
+[ -e expected/frame_000000.png ] || fail "frame 0 was removed but not selected"
 
-# Frames that passed are no business of approve: equal ones, and, below, those within tolerance.
+# approve leaves frames that passed: equal ones and, below, those within tolerance.
 restart
 run 0 compare expected actual/../expected.kept --report report
 before=$(sums expected)
@@ -53,7 +53,7 @@ run 0 approve report
 says "replaced ./old.png"
 cmp -s old.png new.png || fail "a single file was not taken over"
 
-# Whatever is no longer as it was shown stops all, before anything is written.
+# If any file has changed since the report, nothing is written.
 touched() {
     before=$(sums expected)
     run 2 approve report
@@ -87,7 +87,7 @@ complains "report/results.json"
 run 2 approve nowhere
 complains "nowhere/results.json"
 
-# Names that lead out, in a report made by hand.
+# Names that lead out of the folder, in an edited report.
 restart
 cp report/results.json good.json
 for name in ../secret.png /etc/secret.png a/../../secret.png .hidden.png .. . "" secret.txt 'a\u000a.png' 'x\u002f..\u002fy.png'; do
@@ -122,7 +122,7 @@ run 0 approve report
 says "0 replaced, 0 added, 0 removed"
 equal "frames within tolerance stay" "$(sums large.a)" "$before"
 run 1 compare large.a large.b --report report --report-size 2
-[ "$(wc -c <report/report.html)" -lt 2200000 ] || fail "the report is larger than asked for"
+[ "$(wc -c <report/report.html)" -lt 2200000 ] || fail "the report is larger than --report-size"
 grep -q "The pictures of 2 frames are left out" report/report.html || fail "the page does not say what it leaves out"
 run 1 approve report
 says "1 replaced, 0 added, 0 removed, 2 not shown"

@@ -1,19 +1,22 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Speed against accuracy: the figures of a quick chart, times apart, and a run that is cut off.
+# Speed against accuracy: the numbers of a quick chart except times, and an interrupted run.
 . "$(dirname "$0")/checks.sh"
 
 without_times() { "$sources/golden/without_times" "$1"; }
 
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o quick --quick
 says "stack: "
+equal "left out of single" "$(grep -A1 '^single: ' out | tail -n 1)" "    left out, as no network is named for them: scene-net"
+equal "left out of stack" "$(grep -A1 '^stack: ' out | grep -c 'left out')" 0
+says "left out unless named in --methods: relu-net"
 says "reference: residual at most"
 for file in chart-single.png chart-stack.png chart-stack.svg chart-stack.pdf; do
     [ -s "quick/$file" ] || fail "no $file"
 done
 equal "files" "$(ls quick | wc -l)" 7
 without_times quick/chart.csv >figures.csv
-diff "$sources/golden/chart_quick.csv" figures.csv >difference || fail "other figures: $(head -5 difference)"
+diff "$sources/golden/chart_quick.csv" figures.csv >difference || fail "other numbers: $(head -5 difference)"
 /usr/bin/python3 - <<'PYTHON' || fail "times are not in order"
 import csv
 for row in csv.DictReader(open("quick/chart.csv")):
@@ -27,10 +30,10 @@ PYTHON
 few=engine:k=10,momentum:k=20,learned-momentum:k=20,substepping:substeps=10,pair-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
-    fail "other figures of the pyramid: $(head -5 difference)"
+    fail "other numbers of the pyramid: $(head -5 difference)"
 
-# What is cut off goes on where it stopped, to the same figures; what was done is not done again, so a figure that was
-# changed in between stays.
+# An interrupted chart continues where it stopped, with the same numbers. Finished parts are not run again: a number that
+# was edited in between stays.
 "$twinbox" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick >out 2>err </dev/null &
 for _ in $(seq 2000); do
     ls part/*.part.csv >/dev/null 2>&1 && break
@@ -38,14 +41,14 @@ for _ in $(seq 2000); do
 done
 kill -INT $!
 wait $!
-equal "exit status of a chart cut off" $? 2
+equal "exit status of an interrupted chart" $? 2
 complains "stopped after"
 equal "what was done is kept" "$(ls part | grep -c '\.part\.csv$')" 1
-[ -e part/chart.csv ] && fail "a chart cut off has a table"
+[ -e part/chart.csv ] && fail "an interrupted chart has a table"
 name=$(cd part && ls ./*.part.csv)
 cp "part/$name" part.csv
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-without_times part/chart.csv | cmp -s - figures.csv || fail "a chart gone on with has other figures"
+without_times part/chart.csv | cmp -s - figures.csv || fail "a continued chart has other numbers"
 mkdir changed
 sed '3s/^single,\([^,]*\),\([^,]*\),frozen,after,5,\(.*\),[^,]*,[^,]*,[^,]*,,[^,]*,,,,$/single,\1,\2,frozen,after,5,\3,0.375,0.25,0.5,,1,,,,/' \
     part.csv >"changed/$name"
@@ -55,10 +58,11 @@ equal "figures changed by hand that stay" "$(grep -c 'frozen,after,5,0.375' diff
 equal "other differences" "$(grep -c '^[<>]' difference)" 2
 equal "what was done is gone" "$(ls part | grep -c '\.part\.csv$')" 0
 
-# Launches of one's own.
+# Own launches.
 printf 'x,spin\n1.02,5\n-2.02,-5\n0.3,0\n' >launches.csv
 run 0 chart "$scenes/single.yaml" -o own --quick --methods engine:k=10,reference --launches launches.csv
 says "single: 2 methods and settings, 3 launches -> own/chart-single.png"
+equal "left out of a list" "$(grep -c 'left out' out)" 0
 equal "rows" "$(wc -l <own/chart.csv)" 13
 
 # The worst launch is the one that is worst on its own; frozen steps are no launch's.
@@ -87,7 +91,7 @@ printf 'x,colour\n1,red\n' >bad.csv
 run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv
 complains "bad.csv:1:3: error: "
 run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
-complains "single.yaml: error: there is a scene of that name already"
+complains "single.yaml: error: a scene of that name was given before"
 run 2 chart "$scenes/single.yaml" -o none --methods magic
 complains "'magic' is not a method; known: "
 run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10

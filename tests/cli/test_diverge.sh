@@ -12,39 +12,39 @@ run 0 diverge engine.npz engine.npz
 says "equal: 121 frames of 12 bodies, every bit of pose and velocity"
 equal "lines" "$(wc -l <out)" 3
 run 0 diverge engine.npz short.npz
-says "other lengths: compared are the first 61 frames"
+says "different lengths: only the first 61 frames are compared"
 says "equal: 61 frames"
 
-# Ten sweeps and twenty: equal until the first box lies on the ground.
+# Ten sweeps and twenty: equal until the first box touches the ground.
 run 1 diverge engine.npz more.npz
 says "run 1: stack by engine, 121 frames of 12 bodies (engine.npz)"
 says "run 2: stack by engine:k=20, 121 frames of 12 bodies (more.npz)"
-says "first bit: frame 5, body 1:"
+says "first difference: frame 5, body 1:"
 says "cause: the solver"
-says "all states of frame 4 are equal, and so are the 2 contacts of step 5, but not the impulses of 2"
+says "all states of frame 4 are equal, and so are the 2 contacts of step 5, but the impulses of 2 differ"
 says "contact of bodies 0 and 1, feature 03020000"
-says "by itself: --scene FILE is needed"
-grep -q "beyond" out && fail "without a tolerance the first bit is where they part"
+says "shifted run: give --scene FILE"
+grep -q "centres" out && fail "a distance is compared without --tolerance"
 
 run 1 diverge engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv
-says "centres beyond 0.01 m: frame 18, body 4:"
-says "the states before that step differ since frame 5: the past did it"
-says "by itself (body 1 shifted by 1e-06 m, the same frames): from"
+says "centres more than 0.01 m apart: frame 18, body 4:"
+says "the states before that step differ since frame 5: an earlier step is the cause"
+says "shifted run (body 1 shifted by 1e-06 m, the same frames): from"
 says "verdict: "
 equal "header" "$(head -1 distance.csv)" "frame,time,distance,shifted_distance"
 equal "lines" "$(wc -l <distance.csv)" 122
 equal "first frame" "$(sed -n 2p distance.csv)" "0,0,0,9.99999997e-07"
 run 0 diverge engine.npz more.npz --tolerance 1e6 --csv alone.csv
-says "centres within 1e+06 m: 121 frames of 12 bodies"
+says "centres at most 1e+06 m apart: 121 frames of 12 bodies"
 equal "first frame" "$(sed -n 2p alone.csv)" "0,0,0,"
 
-# The bomb is shifted: that grows as it does by itself.
+# Run 2 has a shifted bomb, as the shifted run has: both grow alike.
 run 1 diverge engine.npz moved.npz --scene "$stack"
-says "other scenes: the hashes are"
-says "first bit: frame 0, body 11 (the bomb):"
-says "cause: the start, before any step"
-says "by itself (body 11 shifted by 9.5e-07 m"
-says "verdict: grows like chaos"
+says "different scenes: hashes "
+says "first difference: frame 0, body 11 (the bomb):"
+says "cause: the initial state"
+says "shifted run (body 11 shifted by 9.5e-07 m"
+says "verdict: chaos: grows as fast as a tiny shift"
 
 /usr/bin/python3 - <<'PYTHON'
 # A warm start that differs by one bit, in step 30; a run that no program made.
@@ -61,10 +61,10 @@ run["contact_start"][5] = 1 << 60
 numpy.savez("hostile.npz", **run)
 PYTHON
 run 0 diverge engine.npz silent.npz
-says "no state shows it, but contacts of step 30 differ: 1 in impulse, 0 in place, 0 in one run only"
+says "the states do not show it, but contacts of step 30 differ: 1 in impulse, 0 in position, 0 in one run only"
 run 1 diverge engine.npz hidden.npz
-says "first bit: frame 40, body 3: 0 m apart, 0 rad, 1 m/s"
-says "cause: what no state shows, the warm start"
+says "first difference: frame 40, body 3: 0 m apart, 0 rad, 1 m/s"
+says "cause: the warm start, which no state shows"
 says "all states of frame 39 are equal, but contacts of step 30 differ: 1 in impulse"
 says "growth of the largest distance: there are no frames with a distance"
 
@@ -89,7 +89,7 @@ run 2 diverge engine.npz more.npz --tolerance -1
 complains "--tolerance: error:"
 run 2 diverge engine.npz more.npz --tolerance nan
 run 2 diverge engine.npz more.npz short.npz
-complains "two runs part, not more"
+complains "only two runs can be compared"
 run 3 diverge engine.npz more.npz --csv /nowhere/distance.csv
 complains "/nowhere/distance.csv"
 finish

@@ -51,7 +51,7 @@ PYTHON
 run 0 train raw.npz -o raw-net.npz --layers 12-8-6 --iterations 10
 run 0 simulate single.yaml --method pair-net:network=raw-net.npz -o raw-run.npz
 run 2 train raw.npz -o none.npz --layers 10-8-6
-complains "the first width is 10; a pair has 12 inputs"
+complains "the first width must be 12, the inputs of a pair (got 10)"
 run 2 dataset single.yaml -o none.npz --inputs sideways
 complains "--inputs: error: 'sideways' is not a valid value; known: relative, raw, raw-unturned, contact, neighbours"
 run 2 dataset single.yaml -o none.npz --target gross
@@ -98,9 +98,9 @@ cmp -s ten.hash three.hash && fail "k has no effect on single impulses"
 run 2 simulate unnamed.yaml --method contact-net
 complains "the scene names no network for it: use contact-net:network=FILE"
 run 2 simulate single.yaml --method contact-net:network=around-net.npz
-complains "around-net.npz: error: a network of the target net, which is pair-net's"
+complains "around-net.npz: error: the network has the target net, which is for pair-net"
 run 2 simulate single.yaml --method pair-net:network=points-net.npz
-complains "points-net.npz: error: a network of the target points, which are contact-net's"
+complains "points-net.npz: error: the network has the target points, which is for contact-net"
 
 run 0 train pairs.npz -o net.npz --iterations 100 --seed 3
 equal "iterations printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 10 50 100 "
@@ -157,7 +157,7 @@ equal "score of the other loss" "$(awk '$1 == 5 && $2 < $4 * 10 { print "yes" }'
 run 2 train pairs.npz -o x.npz --loss l1
 complains "known: mse, smooth-l1"
 run 2 train pairs.npz -o x.npz --loss smooth-l1 --optimizer lm
-complains "lm: error: is for least squares"
+complains "lm: error: needs loss mse and no laws"
 
 # Laws of physics in the loss need more than the inputs.
 run 2 train pairs.npz -o x.npz --layers 10-8-6 --laws momentum=1
@@ -184,7 +184,7 @@ assert str(numpy.load("lawful-net.npz")["command"]).endswith("--laws momentum=10
 assert str(numpy.load("smooth.npz")["command"]).endswith("--loss smooth-l1")
 PYTHON
 run 2 train lawful.npz -o x.npz --laws momentum=1
-complains "laws: error: 2 outputs; all 6 are needed"
+complains "laws: error: need a network with 6 outputs, such as 10-8-8-6 (got 2)"
 run 2 train lawful.npz -o x.npz --layers 10-8-6 --laws gravity=1
 complains "gravity"
 run 2 train lawful.npz -o x.npz --layers 10-8-6 --laws cone=-1
@@ -234,7 +234,7 @@ complains "known: sigmoid, linear"
 run 2 train pairs.npz -o x.npz --scale standard
 complains "standard needs linear outputs"
 run 2 train pairs.npz -o x.npz --from net.npz --hidden relu
-complains "other activations than relu"
+complains "the start network has a hidden activation other than relu"
 /usr/bin/python3 - <<'PYTHON'
 import numpy
 data = dict(numpy.load("pairs.npz", allow_pickle=False))
@@ -242,7 +242,7 @@ data["inputs"][:] = data["inputs"][:, 5:6]  # ten inputs that are the same: too 
 numpy.savez("steep.npz", **data)
 PYTHON
 run 2 train steep.npz -o x.npz --optimizer gd --layers 10-2 --output-activation linear
-complains "training: error: diverged: left the finite numbers in iteration"
+complains "training: error: diverged: NaN or infinite in iteration"
 head -c 2000 pairs.npz >cut.npz
 run 2 train cut.npz -o x.npz
 complains "cut.npz: error:"

@@ -41,7 +41,7 @@ for frame in pictures/frame_*.png; do
     cmp -s "$frame" "fast/${frame#*/}" || fail "$frame is not the same file"
 done
 
-# A part of it; then a shorter run, whose frames are all there is.
+# Some frames only; then a shorter run, which removes the later frames of the longer one.
 run 0 render one/single-engine.npz -o part --size 192x108 --frames 2:4
 equal "frames of a part" "$(ls part | tr '\n' ' ')" "frame_000002.png frame_000003.png frame_000004.png manifest.json single-engine.npz "
 run 0 simulate single.yaml --frames 3 -o short.npz
@@ -58,9 +58,9 @@ assert (~numpy.isnan(run['angle'][:, 11])).tolist() == [True, True, False, False
 run 2 render single.yaml short.npz short.npz -o x --set ratio=3
 complains "'ratio' is not a parameter"
 run 2 render short.npz -o x --set ratio=3
-complains "--set: error: is for one scene (here there are 0)"
+complains "--set: error: needs exactly one scene (got 0)"
 run 2 render top.yaml top.yaml -o x --set ratio=3
-complains "is for one scene (here there are 2)"
+complains "needs exactly one scene (got 2)"
 
 run 2 render single.yaml -o x --size 10x10
 complains "--size"
@@ -74,7 +74,7 @@ complains "'tiny' is neither fast nor small"
 run 2 render single.yaml -o x --context vulkan
 complains "neither osmesa nor egl"
 run 2 render single.yaml -o x --size 193x108 --video odd.mp4
-complains "even width and height"
+complains "width and height must be even"
 run 2 render single.yaml -o x --video clip.avi
 complains ".mp4"
 run 2 render nowhere.npz -o x
@@ -87,7 +87,7 @@ run 2 render single.yaml -o x --video a.mp4 --video a.mp4
 complains "'a.mp4' twice"
 mkdir folder.gif
 run 2 render single.yaml -o x --video folder.gif
-complains "folder.gif: error: is no regular file"
+complains "folder.gif: error: is not a regular file"
 run 2 render single.yaml -o x --slow 1
 complains "--slow"
 run 2 render single.yaml -o x --slow 17
@@ -101,7 +101,7 @@ run 0 render short.npz -o part --size 192x108 --frames 0:1 --video films/clip.mp
 [ -s films/clip.mp4 ] || fail "no video in a new folder"
 [ -z "$(ls | grep part.mp4)" ] || fail "half a video left behind"
 
-# No ffmpeg: told before anything is drawn.
+# No ffmpeg: reported before anything is drawn.
 mkdir empty
 PATH=$folder/empty run 3 render short.npz -o x --size 192x108 --video clip.mp4
 complains "ffmpeg: error: cannot be run"
@@ -142,7 +142,7 @@ says "129 frames -> short/frame_000050.png ... frame_000178.png"
 "$twinbox" render single.yaml -o grey --size 96x64 --frames 0:0 --video - 2>err </dev/null |
     ffmpeg -v error -colorspace bt709 -i - back.png
 /usr/bin/python3 - >out <<'PYTHON'
-# The way that README tells gives the colours back.
+# The ffmpeg command of src/render/README.md gives the colours back.
 import subprocess
 def pixels(path):
     command = ["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
@@ -159,7 +159,7 @@ complains "standard output: error: cannot write: Broken pipe"
 equal "status where standard output is full" $? 3
 complains "standard output: error: cannot write: No space left"
 
-# Interrupted, killed, damaged: what goes on ends with the same bytes.
+# Interrupted, killed, damaged: --resume ends with the same bytes.
 run 0 simulate "$scenes/stack.yaml" --frames 400 -o long.npz
 draw() { "$twinbox" render long.npz -o "$1" --size 480x270 --jobs 2 --slow 2 "${@:2}"; }
 draw whole >out 2>err || fail "status $?: $(cat err)"
@@ -174,18 +174,18 @@ for signal in INT KILL; do
     wait $! 2>/dev/null
     [ -e broken/manifest.json ] && fail "$signal came too late"
     draw broken --resume >out 2>err || fail "resumed: status $?: $(cat err)"
-    sed -n 's/.*, \([0-9]*\) of them there already/\1/p' out >kept
+    sed -n 's/.*, \([0-9]*\) of them kept/\1/p' out >kept
     [ "$(cat kept)" -gt 0 ] && [ "$(cat kept)" -lt 445 ] || fail "$signal: kept $(cat kept)"
     diff -r whole broken >out || fail "after $signal: $(cat out)"
 done
 run 0 render long.npz -o broken --size 480x270 --slow 2 --resume
-says "frame_000445.png, 446 of them there already"
+says "frame_000445.png, 446 of them kept"
 diff -r whole broken || fail "nothing was to be drawn"
 rm broken/frame_000010.png
 printf x >>broken/frame_000011.png
 cp broken/frame_000013.png broken/frame_000012.png
 run 0 render long.npz -o broken --size 480x270 --slow 2 --resume --video again.mp4
-says ", 443 of them there already"
+says ", 443 of them kept"
 diff -r whole broken || fail "damaged frames"
 equal "frames of the video" "$(count again.mp4)" 446
 run 0 render short.npz -o broken --size 480x270 --resume
@@ -193,10 +193,10 @@ says "nothing to resume: broken/manifest.json:"
 equal "frames of another run" "$(ls broken | grep -c png)" 4
 echo '{"mine": 1}' >broken/manifest.json
 run 2 render short.npz -o broken --size 480x270 --resume
-complains "broken/manifest.json: error: is no manifest of twinbox"
+complains "broken/manifest.json: error: is not a manifest of twinbox"
 equal "a foreign file" "$(cat broken/manifest.json)" '{"mine": 1}'
 
-# No name leaves the folder, whatever a run is called.
+# No file is written outside the folder, whatever the name of a run.
 /usr/bin/python3 -c "
 import numpy
 run = dict(numpy.load('short.npz', allow_pickle=False))

@@ -35,7 +35,7 @@ draw -o free --size 640x360 --jobs 1
 draw -o priced --size 640x360 --jobs 2 --costs chart/chart.csv
 run 1 compare free priced
 run 2 render "$runs/stack-engine.npz" -o x --costs chart/chart.csv
-complains "chart.csv: error: has no time of any of these runs"
+complains "chart.csv: error: has no closed-loop time at the impact for any of these runs"
 run 2 render "$engine" -o x --costs nowhere.csv
 complains "nowhere.csv"
 printf 'method,us\nengine,3\n' >other.csv
@@ -55,12 +55,12 @@ complains "'' is not a valid value"
 run 2 render "$engine" -o x --show "$(printf 'x%.0s' $(seq 5000))"
 complains "xxx' is not a valid value"
 run 2 render "$engine" -o x --show timeline
-complains "'timeline' compares runs, and there is but one"
+complains "'timeline' compares runs, but there is only one"
 run 2 render "$engine" "$runs/stack-engine.npz" -o x --compare overlay
-complains "of other worlds (bodies: "
+complains "their worlds differ (bodies: "
 sed "s|^frames:.*|frames: 3|; s|networks/|$scenes/networks/|; /^bomb:/d" "$scenes/single.yaml" >calm.yaml
 run 2 render calm.yaml -o x --camera bomb
-complains "no bomb"
+complains "the camera cannot follow the bomb"
 [ -e x ] && fail "a refused command made a folder"
 run 0 render calm.yaml --size 320x180 -o calm --show contacts,impulses,velocities,trails
 finish

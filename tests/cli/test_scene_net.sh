@@ -58,7 +58,7 @@ run 2 simulate stack.yaml --method scene-net:network=net.npz,near=-1
 complains "near"
 
 run 2 train --kind scene-net stack.yaml -o x.npz $small --width 20
-complains "--width: error: 20 is no multiple of 16"
+complains "--width: error: 20 is not a multiple of 16"
 run 2 train --kind scene-net stack.yaml -o x.npz $small --momentum maybe
 complains "--momentum: error: 'maybe' is neither on nor off"
 run 2 train --kind scene-net stack.yaml -o x.npz $small --launches 1
@@ -80,7 +80,7 @@ run 2 train --kind scene-net quiet.yaml -o x.npz $small
 complains "quiet: error: has no bomb to launch"
 sed 's/^frames:.*/frames: 5/' stack.yaml >short.yaml
 run 2 train --kind scene-net short.yaml -o x.npz $small
-complains "no launch touches a box"
+complains "no launch has an impact whose residual reaches the gate"
 run 3 train --kind scene-net stack.yaml -o nowhere/x.npz $small
 [ -e x.npz ] && fail "a refused command left a file"
 

@@ -33,7 +33,7 @@ run 0 simulate "$scenes/stack.yaml" --frames 100 --iterations 4 --hash four.hash
 run 0 simulate "$scenes/stack.yaml" --frames 100 --method engine:k=4 --hash other.hash
 cmp -s four.hash other.hash || fail "--iterations 4 and engine:k=4 differ"
 
-# A trajectory that stands in the way is replaced whole; a second run gives the same bytes.
+# An existing trajectory is replaced as a whole; a second run gives the same bytes.
 run 0 simulate "$scenes/stack.yaml" --frames 30 -o a.npz
 run 0 simulate "$scenes/stack.yaml" --frames 30 -o b.npz
 cmp -s a.npz b.npz || fail "two runs, two files"
@@ -56,7 +56,7 @@ run = numpy.load('late.npz', allow_pickle=False)
 there = ~numpy.isnan(run['angle'][:, 2])
 assert there.tolist() == 5 * [False] + 8 * [True], there" || fail "a body that is not there yet is NaN"
 
-# A parameter set is the same as the number in the file; what a scene names stays where it is.
+# --set has the effect of the same number in the file; the paths of networks stay relative to the scene.
 stability=$scenes/stability
 run 0 simulate "$stability/stack_height.yaml" --set height=7 --set iterations=4 --frames 50 --hash set.hash
 says "8 bodies"
@@ -92,7 +92,7 @@ complains "the parameter 'height' is set twice"
 run 2 simulate nowhere.yaml
 complains "nowhere.yaml: error:"
 run 2 simulate "$scenes/single.yaml" -o run.txt
-complains "ends in .npz or .csv"
+complains "must end in .npz or .csv"
 run 2 simulate "$scenes/single.yaml" --method magic
 complains "is not a method; known: engine, "
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
@@ -110,7 +110,7 @@ run 2 simulate "$scenes/pyramid.yaml" --frames 1000000
 complains "too many to record"
 run 2 simulate "$scenes/single.yaml" --no-bomb --bomb-x 3
 run 2 simulate "$scenes/single.yaml" "$scenes/stack.yaml"
-complains "one scene at a time"
+complains "only one scene can be given"
 run 2 simulate "$scenes/single.yaml" --method pair-net:network=nowhere.npz
 complains "nowhere.npz"
 run 2 simulate "$scenes/single.yaml" --method pair-net:network="$scenes/single.yaml"
@@ -118,7 +118,7 @@ complains "single.yaml"
 run 2 simulate "$scenes/single.yaml" --bomb-x 1e30
 [ -e run.txt ] && fail "a refused run left a file"
 
-# The disk says no: status 3, and nothing half-written.
+# The disk fails: status 3, and no partial file.
 run 3 simulate "$scenes/single.yaml" -o nowhere/run.npz
 complains "nowhere/run.npz"
 run 3 simulate "$scenes/single.yaml" -o /dev/full/run.npz

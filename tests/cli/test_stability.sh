@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where methods fail: the table that is printed, any number of threads, a run that is cut off, what is refused.
+# Where methods fail: the printed table, any number of threads, an interrupted run, refused input.
 . "$(dirname "$0")/checks.sh"
 
 few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
@@ -27,25 +27,25 @@ equal "cells" "$(wc -l <map/maps.csv)" 21
 equal "lines printed" "$(wc -l <out)" 5
 equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
 
-# The moving picture of one of its cells: 0.26 m in one step, and three seconds more.
+# The video of one of its cells: 0.26 m in one step, and three seconds more.
 run 0 stability --scenes "$scenes" -o map --clip speed_thickness:engine:12.6,0.27
 says "speed_thickness:engine:12.6,0.27: settles -> map/clips/speed_thickness-engine-12.57_0.2714.mp4"
 clip=map/clips/speed_thickness-engine-12.57_0.2714
 frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 $clip.mp4)
 equal "frames of the clip" "$frames" "$(ls $clip | grep -c png)"
 run 2 stability --scenes "$scenes" -o map --clip speed_thickness:momentum:200,0.1
-complains "map speed_thickness has no method momentum; it has engine"
+complains "map speed_thickness has no method momentum; its methods: engine"
 run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
-complains "there is no map speed_thickness in one/maps.csv; there are none"
+complains "there is no map speed_thickness in one/maps.csv; its maps: none"
 
 # 10,000 steps at rest.
 run 0 stability --scenes "$scenes" --study at_rest --methods robust,pair-net -o rest
-says "at_rest: the last height that holds, drift and energy from 10 s on"
+says "at_rest: the last height that holds, drift and energy after 10 s"
 says "  robust                   20 settles, 0 m, 0 J"
 says "  pair-net                 1 explodes"
 equal "runs at rest" "$(grep -c '^at_rest,robust,,height,boxes,[0-9]*,settles,10000,0,0$' rest/rest.csv)" 10
 
-# What is cut off goes on: a border that was changed in between stays.
+# An interrupted study continues: a border that was edited in between stays.
 "$twinbox" stability $few -o part >out 2>err </dev/null &
 for _ in $(seq 6000); do
     ls part/parts-*/heavy_on_one >/dev/null 2>&1 && break
@@ -53,8 +53,8 @@ for _ in $(seq 6000); do
 done
 kill -INT $!
 wait $!
-equal "exit status of a study cut off" $? 2
-complains "stopped; what was done before is kept"
+equal "exit status of an interrupted study" $? 2
+complains "stopped; finished parts are kept"
 equal "what was done is kept" "$(ls part/parts-*)" heavy_on_one
 sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/heavy_on_one
 run 0 stability $few -o part

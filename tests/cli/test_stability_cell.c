@@ -105,11 +105,12 @@ static void the_nearest_cell_within_a_percent_is_found(void **state) {
     expect_row("a:engine:-20.1,0", 2, NULL);
     expect_row("a:engine:k=4:10,1", 3, NULL);
     expect_row("b:engine:10,1", 6, NULL);
-    expect_row("a:engine:10.2,1", -1, "map a has no cell 10.2,1 by engine; its X are 10, 10.05, -20; its Y are 1, 0");
+    expect_row("a:engine:10.2,1", -1, "map a has no cell 10.2,1 of method engine; its X: 10, 10.05, -20; its Y: 1, 0");
     expect_row("a:engine:-20,0.001", -1, "map a has no cell");
     expect_row("c:engine:10,1", -1, "there is no map c in");
-    expect_row("c:engine:10,1", -1, "; there are a, b");
-    expect_row("a:engine:k=5:10,1", -1, "map a has no method engine:k=5; it has engine, engine:k=4, momentum, nncg");
+    expect_row("c:engine:10,1", -1, "; its maps: a, b");
+    expect_row("a:engine:k=5:10,1", -1,
+               "map a has no method engine:k=5; its methods: engine, engine:k=4, momentum, nncg");
 }
 
 static void the_first_method_that_holds_there_is_the_holder(void **state) {

@@ -59,7 +59,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     static const struct {
         const char *cell, *message;
     } cases[] = {{"m:engine", "'m:engine' is not MAP:METHOD:X,Y"},
-                 {"m:engine:30,2", "map m has no cell 30,2 by engine"},
+                 {"m:engine:30,2", "map m has no cell 30,2 of method engine"},
                  {"m:scene-net:20,2", "'m:scene-net:20,2' is not applicable"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
@@ -68,7 +68,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     }
     Error error = {0};
     assert_false(stability_clip(&(ClipOptions){temporary_folder, "m:engine:20,2", NULL, 0, 160, 90}, &error));
-    assert_error(error, ERROR_INPUT, "no scene is known for map m");
+    assert_error(error, ERROR_INPUT, "map m has no scene");
 }
 
 int main(void) {

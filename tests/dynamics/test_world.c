@@ -22,7 +22,7 @@ static bool fake_solve(void *state, const ContactProblem *problem, ContactSoluti
     return !fake->fails || error_input(error, "fake", "told to fail");
 }
 
-static const ContactSolverKind fake_kind = {.name = "fake", .solve = fake_solve};
+static const ContactSolverKind fake_kind = {.description.name = "fake", .solve = fake_solve};
 
 static World *box_on_ground(bool warm_starting, bool position_correction, float height) {
     Error error = {0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tests of figures of runs share. Include testing.h first. */
+/* Shared by tests of figures of runs. Include testing.h first. */
 #pragma once
-#include "figure/run_figures.h"
+#include "figure/figure.h"
 #include "render/runs.h"
 
 static inline FigureSpec spec_of(Trajectory *const *runs, int count) {
@@ -28,8 +28,8 @@ static inline void expect_kind_refused(const char *name, const FigureSpec *spec,
     sketch_free(&sketch);
 }
 
-/* How many of the sketch's texts are this one. */
-static inline int count_words(const Sketch *sketch, const char *words) {
+/* Number of the sketch's texts equal to this one. */
+static inline int count_texts(const Sketch *sketch, const char *words) {
     int count = 0;
     for (size_t i = 0; i < sketch->mark_count; i++)
         count += sketch->marks[i].kind == MARK_TEXT && strcmp(sketch->texts + sketch->marks[i].text, words) == 0;

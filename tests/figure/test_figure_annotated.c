@@ -12,7 +12,7 @@ static void add(Trajectory *run, int step, int a, int b, Vec2 point, float norma
     assert_ok(trajectory_add_contact(run, step, &contact, &error), error);
 }
 
-/* Both boxes lie on the ground from step 1 on; the bomb touches the second in step 5. */
+/* Both boxes rest on the ground from step 1 on; the bomb touches the second in step 5. */
 static Trajectory *run_with_contacts(void) {
     Trajectory *run = run_make("engine", 11);
     for (int step = 1; step <= 10; step++) {
@@ -24,14 +24,14 @@ static Trajectory *run_with_contacts(void) {
     return run;
 }
 
-/* Arrows are lines in the layer of arrows, one each. */
+/* Arrows are lines in the arrow layer, one each. */
 static int gather_arrows(const Sketch *sketch, Point vectors[8], Point tails[8]) {
     int count = 0;
     for (size_t i = 0; i < sketch->mark_count; i++) {
         const SketchMark *mark = &sketch->marks[i];
         if (mark->layer != LAYER_ARROWS || mark->closed) continue;
         assert_true(count < 8);
-        /* The head goes on to the tip. */
+        /* The head continues to the tip. */
         const Point from = sketch->points[mark->first], tip = sketch->points[sketch->marks[i + 1].first];
         tails[count] = from;
         vectors[count++] = (Point){tip.x - from.x, tip.y - from.y};
@@ -46,13 +46,13 @@ static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
     Sketch sketch;
     Point vectors[8], tails[8];
     draw_kind(&sketch, "annotated", &spec);
-    assert_int_equal(count_words(&sketch, "engine, 0.067 s"), 1); /* frame 4: what step 5 begins with */
-    assert_int_equal(count_words(&sketch, "3 contacts, impulses in N s"), 1);
-    assert_int_equal(count_words(&sketch, "1.00"), 1);
-    assert_int_equal(count_words(&sketch, "5.00"), 1);
-    assert_int_equal(count_words(&sketch, "10.3"), 1); /* sqrt(10^2 + 2.5^2) */
-    assert_int_equal(count_words(&sketch, "10 N s on the body with the higher number"), 1);
-    /* Rising by size, and the legend's last: 10 N s. */
+    assert_int_equal(count_texts(&sketch, "engine, 0.067 s"), 1); /* frame 4, the start of step 5 */
+    assert_int_equal(count_texts(&sketch, "3 contacts, impulses in N s"), 1);
+    assert_int_equal(count_texts(&sketch, "1.00"), 1);
+    assert_int_equal(count_texts(&sketch, "5.00"), 1);
+    assert_int_equal(count_texts(&sketch, "10.3"), 1); /* sqrt(10^2 + 2.5^2) */
+    assert_int_equal(count_texts(&sketch, "10 N s on the body with the higher number"), 1);
+    /* Ascending by size; the last is the legend's 10 N s. */
     assert_int_equal(gather_arrows(&sketch, vectors, tails), 4);
     double unit = vectors[3].x / 10;
     assert_near(vectors[3].y, 0, 1e-9);
@@ -61,7 +61,7 @@ static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
         assert_near(vectors[i].x, unit * (double)expected[i].x, 1e-6);
         assert_near(vectors[i].y, unit * (double)expected[i].y, 1e-6);
     }
-    /* They stand at their points: of one scale, 4.5 m, 4 m and 1 m apart. */
+    /* They start at their points, which are 4.5 m, 4 m and 1 m apart. */
     double scale = (tails[2].x - tails[0].x) / 4.5;
     assert_near(tails[1].x - tails[0].x, scale * 4, 1e-6);
     assert_near(tails[1].y - tails[0].y, scale * 1, 1e-6);
@@ -81,13 +81,13 @@ static void a_moment_without_impulses_has_points(void **state) {
     Point vectors[8], tails[8];
     draw_kind(&sketch, "annotated", &spec);
     assert_int_equal(gather_arrows(&sketch, vectors, tails), 0);
-    assert_int_equal(count_words(&sketch, "all impulses are 0"), 1);
-    assert_int_equal(count_words(&sketch, "0"), 1);
+    assert_int_equal(count_texts(&sketch, "all impulses are 0"), 1);
+    assert_int_equal(count_texts(&sketch, "0"), 1);
     sketch_free(&sketch);
     trajectory_destroy(run);
 }
 
-/* A hundred points in one place: some numbers are left out, and that is said. */
+/* A hundred points in one place: some numbers are left out, and the title states it. */
 static void numbers_without_room_are_left_out(void **state) {
     (void)state;
     Trajectory *run = run_make("engine", 2);
@@ -98,12 +98,12 @@ static void numbers_without_room_are_left_out(void **state) {
     spec.width = FIGURE_COLUMN_WIDTH;
     Sketch sketch;
     draw_kind(&sketch, "annotated", &spec);
-    int written = count_words(&sketch, "0.10") + count_words(&sketch, "3.00");
+    int written = count_texts(&sketch, "0.10") + count_texts(&sketch, "3.00");
     char line[64];
     snprintf(line, sizeof line, "101 contacts, impulses in N s, %d of them written", written);
     assert_true(written > 1 && written < 40);
-    assert_int_equal(count_words(&sketch, line), 1);
-    assert_int_equal(count_words(&sketch, "3.00"), 1);
+    assert_int_equal(count_texts(&sketch, line), 1);
+    assert_int_equal(count_texts(&sketch, "3.00"), 1);
     sketch_free(&sketch);
     trajectory_destroy(run);
 }
@@ -115,15 +115,16 @@ static void what_cannot_be_shown_is_refused(void **state) {
     expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");
     spec = spec_of(&run, 1);
     spec.time_count = 2, spec.times[1] = 0.1;
-    expect_kind_refused("annotated", &spec, "this kind shows one moment, not 2");
+    expect_kind_refused("annotated", &spec, "this kind of figure shows one moment (got 2)");
     spec.time_count = 1, spec.times[0] = 10 / 60.0;
-    expect_kind_refused("annotated", &spec, "a.npz: error: shows no moment at 0.166667 s: steps follow those from 0");
+    expect_kind_refused("annotated", &spec,
+                        "a.npz: error: has no moment at 0.166667 s with a step after it; its moments are 0");
     run->contact_start[1] = run->contact_start[2]; /* step 1 has them all, step 2 none */
     spec.times[0] = 1 / 60.0;
     run->contact_start[2] = run->contact_start[3];
     run->contact_start[1] = run->contact_start[2];
     expect_kind_refused("annotated", &spec,
-                        "a.npz: error: has no contacts with an impulse in the step from 0.0166667 s on");
+                        "a.npz: error: has no contacts with an impulse in the step after 0.0166667 s");
     trajectory_destroy(without);
     trajectory_destroy(run);
 }

@@ -44,16 +44,16 @@ static void every_weight_is_a_line_the_strongest_last(void **state) {
         if (mark->kind != MARK_PATH || mark->closed || lines == 8) continue;
         double share = rising[lines++] / 8;
         assert_near(mark->pen.width, 0.5 + 4 * fabs(share), 1e-9);
-        /* Of two alike the first layer's comes first. */
+        /* Of two equal weights, the first layer's comes first. */
         assert_int_equal(mark->pen.line, weight_colour(share));
     }
     assert_int_equal(lines, 8);
     assert_int_equal(dots, 6);
-    assert_int_equal(count_words(&sketch, "small.npz: 3-2-1, 11 parameters"), 1);
+    assert_int_equal(count_texts(&sketch, "small.npz: 3-2-1, 11 parameters"), 1);
     static const char *const words[] = {"3 inputs", "2 units", "1 output", "tanh", "linear",
                                         "dx",       "dy",      "spin",     "dv",   "weight 8.00"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (count_words(&sketch, words[i]) != 1) fail_msg("'%s' is not there once", words[i]);
+        if (count_texts(&sketch, words[i]) != 1) fail_msg("'%s' is not there once", words[i]);
     sketch_free(&sketch);
 }
 
@@ -62,12 +62,12 @@ static void inputs_without_names_have_numbers(void **state) {
     const FigureSpec spec = spec_for(write_small("dx dy"));
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
-    assert_int_equal(count_words(&sketch, "dx"), 0);
-    assert_int_equal(count_words(&sketch, "3"), 1);
+    assert_int_equal(count_texts(&sketch, "dx"), 0);
+    assert_int_equal(count_texts(&sketch, "3"), 1);
     sketch_free(&sketch);
 }
 
-/* White, blue and orange; sizes of a kind are as dark as each other, or nearly, and rise with the weight. In grey, above 0
+/* White, blue and orange; equal magnitudes have similar grey levels, which darken with the weight. In grey, above 0
    is darker than below. */
 static double grey(uint32_t colour) {
     return 0.299 * (colour >> 16 & 255) + 0.587 * (colour >> 8 & 255) + 0.114 * (colour & 255);
@@ -98,7 +98,7 @@ static void wide_layers_are_matrices(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
     assert_int_equal(count_marks(&sketch, MARK_IMAGE), 1);
-    assert_int_equal(count_words(&sketch, "50 to 2, at most 2"), 1);
+    assert_int_equal(count_texts(&sketch, "50 to 2, at most 2"), 1);
     const Image *image = nth_mark(&sketch, MARK_IMAGE, 0)->image;
     const uint8_t first[] = {0x00, 0x4C, 0x80, 255}, last[] = {0xF2, 0xCF, 0x80, 255}, none[] = {255, 255, 255, 255};
     const size_t row = 4 * (size_t)image->width;
@@ -110,7 +110,7 @@ static void wide_layers_are_matrices(void **state) {
     sketch_free(&sketch);
 }
 
-/* 37 weights share a pixel: the first, the largest, shows, not the last. */
+/* 37 weights share a pixel: the largest is shown, which is the first, not the last. */
 static void of_weights_in_a_pixel_the_largest_shows(void **state) {
     (void)state;
     Error error = {0};
@@ -148,7 +148,7 @@ static void the_networks_that_ship_are_shown(void **state) {
             if (column) spec.width = FIGURE_COLUMN_WIDTH;
             draw_kind(&sketch, "network", &spec);
             assert_int_equal(count_marks(&sketch, MARK_IMAGE), networks[i].pictures);
-            if (!column) assert_int_equal(count_words(&sketch, networks[i].title), 1);
+            if (!column) assert_int_equal(count_texts(&sketch, networks[i].title), 1);
             sketch_free(&sketch);
         }
 }
@@ -165,12 +165,12 @@ static void damaged_files_are_refused(void **state) {
     FigureSpec spec = spec_for(path);
     expect_kind_refused("network", &spec, "cut.npz: error:");
     spec.network = NETWORKS "momentum-stack.npz";
-    expect_kind_refused("network", &spec, "momentum-stack.npz: error: holds no network with layers");
+    expect_kind_refused("network", &spec, "momentum-stack.npz: error: contains no network with layers");
     spec.network = temporary_path("nowhere.npz");
     expect_kind_refused("network", &spec, "nowhere.npz");
     spec = spec_for(NETWORKS "contact-net.npz");
     spec.width = 40, spec.points = 14;
-    expect_kind_refused("network", &spec, "its names leave");
+    expect_kind_refused("network", &spec, "the names of inputs and outputs leave");
 }
 
 int main(void) {

@@ -12,7 +12,8 @@ static void add(Trajectory *run, int step, int a, int b) {
     assert_ok(trajectory_add_contact(run, step, &contact, &error), error);
 }
 
-/* From frame 3 on the second box, 2 x 1 m, lies 20 mm deep in the right side of the first, 1 x 1 m; no bomb is near. */
+/* From frame 3 on, the second box, 2 x 1 m, is 20 mm deep in the right side of the first, 1 x 1 m; the bomb is far
+   away. */
 static Trajectory *run_touching(void) {
     Trajectory *run = run_make("engine", 8);
     run->bomb = -1;
@@ -37,23 +38,23 @@ static void the_pairs_own_numbers_are_written(void **state) {
         if (column) spec.width = FIGURE_COLUMN_WIDTH;
         Sketch sketch;
         draw_kind(&sketch, "narrow-phase", &spec);
-        assert_int_equal(count_words(&sketch, "engine, 0.050 s, bodies 1 and 2"), 1);
-        assert_int_equal(count_words(&sketch, "normal (1.000, 0.000)"),
-                         1); /* the world's, though the picture is turned */
-        assert_int_equal(count_words(&sketch, "\xE2\x88\x92"
+        assert_int_equal(count_texts(&sketch, "engine, 0.050 s, bodies 1 and 2"), 1);
+        assert_int_equal(count_texts(&sketch, "normal (1.000, 0.000)"),
+                         1); /* in world coordinates, although the picture is rotated */
+        assert_int_equal(count_texts(&sketch, "\xE2\x88\x92"
                                               "20 mm"),
                          2);
-        assert_int_equal(count_words(&sketch, "box 1 x: 20 mm") + count_words(&sketch, "box 2 x: 20 mm"), 2);
-        assert_int_equal(count_words(&sketch, "box 1 y: 1000 mm"), 1);
-        assert_int_equal(count_words(&sketch, "down"), 1);
+        assert_int_equal(count_texts(&sketch, "box 1 x: 20 mm") + count_texts(&sketch, "box 2 x: 20 mm"), 2);
+        assert_int_equal(count_texts(&sketch, "box 1 y: 1000 mm"), 1);
+        assert_int_equal(count_texts(&sketch, "down"), 1);
         assert_near(sketch.width, spec.width, 0);
         sketch_free(&sketch);
     }
     trajectory_destroy(run);
 }
 
-/* Pairs like those of runs, and any normal: turned, the normal points up out of the reference box, and neither depths nor
-   distances have changed. */
+/* Typical pairs of runs, with any normal: after the rotation the normal points up out of the reference box, and
+   depths and distances are unchanged. */
 static void turning_changes_no_length(void **state) {
     (void)state;
     int turned = 0;
@@ -70,13 +71,13 @@ static void turning_changes_no_length(void **state) {
         assert_near(side * c.manifold.normal.y, 1, 1e-5);
         assert_near(c.manifold.normal.x, 0, 1e-5);
         assert_near(hypotf(down.x, down.y), 1, 1e-5);
-        /* Down is to the normal what it was. */
+        /* The angle between down and the normal is unchanged. */
         assert_near(vec2_dot(down, c.manifold.normal), -before.normal.y, 1e-5);
         assert_memory_equal(&c.normal, &before.normal, sizeof c.normal);
         Vec2 from = vec2_sub(c.boxes[1].position, c.boxes[0].position);
         Vec2 once = vec2_sub(before.boxes[1].position, before.boxes[0].position);
         assert_near(hypotf(from.x, from.y), hypotf(once.x, once.y), 1e-5);
-        /* Shadows of the turned boxes on the turned axes are those that were there. */
+        /* Projections of the rotated boxes on the rotated axes are unchanged. */
         for (int k = 0; k < SEPARATING_AXES; k++)
             for (int box = 0; box < 2; box++) {
                 const AxisOverlap *overlap = &c.overlaps[k];
@@ -91,12 +92,12 @@ static void what_cannot_be_shown_is_refused(void **state) {
     (void)state;
     Trajectory *run = run_touching(), *without = run_make("engine", 3);
     FigureSpec spec = spec_of(&without, 1);
-    expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two bodies that can move touch");
+    expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");
     spec = spec_of(&run, 1);
     spec.bodies[0] = 2, spec.bodies[1] = 3;
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: bodies 2 and 3 do not touch");
     spec.bodies[1] = 44;
-    expect_kind_refused("narrow-phase", &spec, "there is no body 44: the run has 4");
+    expect_kind_refused("narrow-phase", &spec, "there is no body 44; the run has 4");
     spec.bodies[0] = 0, spec.bodies[1] = 1;
     expect_kind_refused("narrow-phase", &spec, "bodies 0 and 1 have sides from 1 to 100 m");
     spec.bodies[0] = 1, spec.bodies[1] = 2;
@@ -104,7 +105,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     expect_kind_refused("narrow-phase", &spec, "bodies 1 and 2 do not touch in that step");
     spec.times[0] = 3 / 60.0;
     *run_position(run, 3, SECOND_BOX) = vec2(9, 9);
-    expect_kind_refused("narrow-phase", &spec, "touch in the step from 0.05 s on, but not at the poses");
+    expect_kind_refused("narrow-phase", &spec, "touch in the step after 0.05 s, but not at the poses");
     trajectory_destroy(run);
     trajectory_destroy(without);
 }

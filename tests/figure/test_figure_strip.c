@@ -14,12 +14,13 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
     assert_int_equal(count_marks(&sketch, MARK_IMAGE), 6);
-    assert_int_equal(count_words(&sketch, "0.00 s"), 1);
-    assert_int_equal(count_words(&sketch, "0.10 s"), 1);
-    assert_int_equal(count_words(&sketch, "0.50 s"), 1);
-    assert_int_equal(count_words(&sketch, "engine"), 1);
-    assert_int_equal(count_words(&sketch, "pair-net"), 1);
-    /* Rows in the order of the runs, columns in that of the moments, all of a size, none over another or the edge. */
+    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.10 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_texts(&sketch, "engine"), 1);
+    assert_int_equal(count_texts(&sketch, "pair-net"), 1);
+    /* Rows in the order of runs, columns in the order of moments, all of equal size, without overlap and inside the
+       page. */
     const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0);
     double height = first->width * first->image->height / first->image->width;
     for (int i = 0; i < 6; i++) {
@@ -42,15 +43,15 @@ static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void
     spec.moments = 3;
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
-    assert_int_equal(count_words(&sketch, "0.00 s"), 1);
-    assert_int_equal(count_words(&sketch, "0.50 s"), 1);
-    assert_int_equal(count_words(&sketch, "1.00 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_texts(&sketch, "1.00 s"), 1);
     sketch_free(&sketch);
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
 }
 
-/* The window is that of what moves: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
+/* The window covers the dynamic bodies: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
 static void the_window_holds_what_moves(void **state) {
     (void)state;
     Trajectory *run = run_make("engine", 3);
@@ -75,7 +76,7 @@ static void who_has_left_is_counted(void **state) {
     spec.moments = 2;
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
-    assert_int_equal(count_words(&sketch, "2 outside"), 1);
+    assert_int_equal(count_texts(&sketch, "2 outside"), 1);
     sketch_free(&sketch);
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
@@ -104,9 +105,9 @@ static void what_cannot_be_shown_is_refused(void **state) {
     FigureSpec spec = spec_of(runs, 2);
     spec.time_count = 1;
     spec.times[0] = 0.3;
-    expect_kind_refused("strip", &spec, "b.npz: error: shows no moment at 0.3 s: it goes from 0 to 0.16666");
+    expect_kind_refused("strip", &spec, "b.npz: error: has no moment at 0.3 s; its moments are 0 to 0.16666");
     spec.times[0] = -1;
-    expect_kind_refused("strip", &spec, "a.npz: error: shows no moment at -1 s");
+    expect_kind_refused("strip", &spec, "a.npz: error: has no moment at -1 s");
     spec.time_count = 0, spec.moments = 60;
     expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
     spec.moments = 1;

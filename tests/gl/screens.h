@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A canvas in each kind of context, for tests that look at single pixels. Include testing.h first. */
+/* A canvas in each kind of context, for tests of single pixels. Include testing.h first. */
 #pragma once
 #include "gl/canvas.h"
 #include "gl/context.h"
@@ -19,7 +19,7 @@ typedef struct Screen {
 static Screen screens[SCREENS] = {{.name = "osmesa"}, {.name = "egl"}};
 static Drawing drawing;
 
-/* A context that cannot be had fails the test: the frames of both are promised to be equal. */
+/* A missing context fails the test: both must give equal frames. */
 static inline int open_screens(void **state) {
     (void)state;
     for (int i = 0; i < SCREENS; i++) {
@@ -49,7 +49,7 @@ static inline int close_screens(void **state) {
     return 0;
 }
 
-/* Paints the drawing over black on every screen, and clears it. All must show the same picture. */
+/* Paints the drawing over black on every screen, then clears it. All screens must show the same picture. */
 static inline const Image *painted(void) {
     for (int i = 0; i < SCREENS; i++) {
         Error error = {0};

@@ -26,7 +26,7 @@ static const Image *paint(Shape shape) {
     return painted();
 }
 
-/* White on black: the sum of the whiteness of all pixels, in pixels. */
+/* White on black: the white area in pixels. */
 static double area(const Image *image) {
     double sum = 0;
     for (int i = 0; i < SCREEN_SIDE * SCREEN_SIDE; i++) sum += image->pixels[4 * i] / 255.0;
@@ -50,7 +50,7 @@ static void edges_between_pixels_are_sharp(void **state) {
     assert_only(painted(), (Rect){3, 4, 9, 17}, 0x123456);
 }
 
-/* 51 levels of 5: the covered share of a pixel, rounded. */
+/* 51 levels in steps of 5: the coverage of a pixel, rounded. */
 static void edges_within_pixels_cover_their_share(void **state) {
     (void)state;
     for (int i = 0; i <= 16; i++) {
@@ -71,7 +71,7 @@ static void area_does_not_depend_on_the_angle(void **state) {
     }
 }
 
-/* A box whose corners are round up to its middle. */
+/* A box with a corner radius of half its side. */
 static void a_disc_has_the_area_of_a_circle(void **state) {
     (void)state;
     for (double radius = 3; radius < 45; radius += 3.7) {
@@ -94,7 +94,7 @@ static void moving_by_whole_pixels_moves_the_pixels(void **state) {
     image_destroy(before);
 }
 
-/* Differences that small are beyond what every machine's arithmetic agrees on. */
+/* Smaller differences can be due to the machine's arithmetic. */
 static void positions_snap_to_a_256th_of_a_pixel(void **state) {
     (void)state;
     Shape shape = turned(box(30.25, 31.75, 25, 14), 0.6);
@@ -131,7 +131,7 @@ static void outline_and_fill_meet_where_they_should(void **state) {
 }
 
 /* Counter-clockwise: the band goes from the top to the left, to the bottom, to the right. */
-static void the_band_tells_quarter_turns(void **state) {
+static void the_band_shows_quarter_turns(void **state) {
     (void)state;
     static const int at[4][2] = {{48, 32}, {32, 48}, {48, 63}, {63, 48}};
     for (int quarter = 0; quarter < 4; quarter++) {
@@ -142,7 +142,7 @@ static void the_band_tells_quarter_turns(void **state) {
     }
 }
 
-/* What lies below shows inside, and a thick outline fills the box. */
+/* What is below is visible inside; a thick outline fills the box. */
 static void a_hollow_box_is_its_outline_alone(void **state) {
     (void)state;
     for (int i = 0; i < 20; i++) {
@@ -152,7 +152,7 @@ static void a_hollow_box_is_its_outline_alone(void **state) {
         const Image *image = paint(hollow);
         assert_near(area(image), 50 * 31 - inner, 0.012 * 50 * 31);
         assert_int_equal(rgb(image, 47, 48), BLACK);
-        for (int k = 0; k < SCREEN_SIDE * SCREEN_SIDE; k++) /* white over black is grey: no colour of the fill */
+        for (int k = 0; k < SCREEN_SIDE * SCREEN_SIDE; k++) /* white over black is grey: nothing of the fill's colour */
             assert_true(image->pixels[4 * k] == image->pixels[4 * k + 1]);
     }
     Shape thick = box(40, 30, 20, 10);
@@ -170,8 +170,8 @@ static void lines_have_their_length_and_thickness(void **state) {
     }
 }
 
-/* A slanted line is the box that it is, though it is drawn in tiles; with a clip as well. */
-static void long_lines_are_drawn_whole(void **state) {
+/* A slanted line equals the box that it represents, although it is drawn in tiles; also with a clip. */
+static void long_lines_are_drawn_completely(void **state) {
     (void)state;
     for (int i = 0; i < 24; i++) {
         double c = cos(0.26 * i), s = sin(0.26 * i), t = 2 + 0.3 * i;
@@ -187,8 +187,8 @@ static void long_lines_are_drawn_whole(void **state) {
     }
 }
 
-/* Dashes of 4 and gaps of 6 thicknesses, with round ends; in one piece, and in pieces that end anywhere. */
-static void dashes_go_on_from_piece_to_piece(void **state) {
+/* Dashes of 4 and gaps of 6 thicknesses, with round ends; one segment, or segments of any length. */
+static void dashes_continue_across_segments(void **state) {
     (void)state;
     for (int pieces = 1; pieces < 20; pieces += 3) {
         DashedLine line = {2, 0, WHITE, {4, 6, 0, 0}};
@@ -204,7 +204,7 @@ static void dashes_go_on_from_piece_to_piece(void **state) {
     }
 }
 
-/* The tip is where the arrow ends, and without a length there is none. */
+/* The tip is at the arrow's end; an arrow without length is not drawn. */
 static void arrows_point_where_they_end(void **state) {
     (void)state;
     const ArrowStyle style = {2, WHITE, BLACK};
@@ -242,7 +242,7 @@ static void large_boxes_keep_their_edges(void **state) {
         }
 }
 
-static void what_has_no_place_is_not_painted(void **state) {
+static void shapes_with_invalid_positions_are_not_painted(void **state) {
     (void)state;
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 3e9};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -272,7 +272,7 @@ static void glyphs_are_the_bitmaps_of_the_font(void **state) {
                              font_bitmaps[glyph.bitmap + (unsigned)(y * glyph.box[2] + x)]);
 }
 
-/* What the font lacks, an overlong form, a surrogate cut short, a lone byte. */
+/* A character missing from the font, an overlong encoding, a truncated surrogate, a lone byte. */
 static void unknown_characters_show_as_question_marks(void **state) {
     (void)state;
     Font font = font_pick(FONT_REGULAR, 20);
@@ -283,7 +283,7 @@ static void unknown_characters_show_as_question_marks(void **state) {
     assert_int_not_equal(font_width(&font, "\xC2\xB5"), font_width(&font, "?")); /* micro */
 }
 
-static void figures_are_all_as_wide(void **state) {
+static void digits_have_equal_width(void **state) {
     (void)state;
     for (double size = 9; size < 80; size++)
         for (FontFace face = FONT_REGULAR; face <= FONT_SEMIBOLD; face++) {
@@ -320,17 +320,17 @@ int main(void) {
         cmocka_unit_test(positions_snap_to_a_256th_of_a_pixel),
         cmocka_unit_test(small_movements_show),
         cmocka_unit_test(outline_and_fill_meet_where_they_should),
-        cmocka_unit_test(the_band_tells_quarter_turns),
+        cmocka_unit_test(the_band_shows_quarter_turns),
         cmocka_unit_test(a_hollow_box_is_its_outline_alone),
         cmocka_unit_test(lines_have_their_length_and_thickness),
-        cmocka_unit_test(long_lines_are_drawn_whole),
-        cmocka_unit_test(dashes_go_on_from_piece_to_piece),
+        cmocka_unit_test(long_lines_are_drawn_completely),
+        cmocka_unit_test(dashes_continue_across_segments),
         cmocka_unit_test(arrows_point_where_they_end),
         cmocka_unit_test(nothing_is_painted_outside_the_clip),
         cmocka_unit_test(large_boxes_keep_their_edges),
-        cmocka_unit_test(what_has_no_place_is_not_painted),
+        cmocka_unit_test(shapes_with_invalid_positions_are_not_painted),
         cmocka_unit_test(unknown_characters_show_as_question_marks),
-        cmocka_unit_test(figures_are_all_as_wide),
+        cmocka_unit_test(digits_have_equal_width),
         cmocka_unit_test(long_text_is_cut_to_fit),
         cmocka_unit_test(glyphs_are_the_bitmaps_of_the_font),
     };

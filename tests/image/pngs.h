@@ -18,8 +18,8 @@ static inline int channels(int color) {
                                                 : 1;
 }
 
-/* Sample of a channel at a pixel, in 0 .. 2^depth - 1; at 16 bits one that lies nearer to some 8-bit value
-   than its upper byte does. */
+/* Sample of a channel at a pixel, 0 .. 2^depth - 1. At 16 bits the nearest 8-bit value is sometimes not the upper
+   byte. */
 static inline unsigned sample(int x, int y, int channel, int depth) {
     unsigned value = (unsigned)(x * 3 + y * 5 + channel * 7 + x * y);
     if (depth < 16) return value % (1u << depth);
@@ -74,7 +74,7 @@ static inline void write_kind(const char *path, const PngKind *kind, int interla
     fclose(file);
 }
 
-/* A header that claims this size, and pixels of no bytes. */
+/* A header with this size, and no pixels. */
 static inline void write_claim(const char *path, uint32_t width, uint32_t height) {
     FILE *file = fopen(path, "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of the encoder, read back by libpng and pngcheck: every kind of picture, and sequences of which only the rows
-   said to have changed are compressed again. */
+/* Files of the encoder, read back by libpng and pngcheck: every kind of picture, and sequences of which only changed
+   rows are compressed again. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -28,7 +28,7 @@ static void set_pixel(Image *image, int x, int y, uint32_t rgb) {
 
 static uint32_t random_color(void) { return random_below(1u << 24); }
 
-/* Noise; one colour; stripes either way; rectangles; noise in rows here and there. */
+/* Noise; one colour; horizontal and vertical stripes; rectangles; noise in some rows. */
 enum { NOISE, FLAT, ACROSS, DOWN, BOXES, ROUGH, KINDS };
 
 static void fill(Image *image, int kind) {
@@ -65,7 +65,7 @@ static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
     image_destroy(back);
 }
 
-/* pngcheck looks at the stream more strictly than a decoder has to. */
+/* pngcheck is stricter than decoders. */
 static void assert_checked(void) {
     char command[512];
     snprintf(command, sizeof command, "pngcheck -q '%s' >/dev/null", temporary_path("holds.png"));
@@ -112,7 +112,7 @@ static void random_pictures_come_back(void **state) {
     }
 }
 
-/* The bytes are those of a fresh encoder, whatever came before. */
+/* The bytes equal those of a new encoder, whatever was encoded before. */
 static void kept_rows_change_no_byte(void **state) {
     (void)state;
     enum { WIDTH = 230, HEIGHT = 61 };
@@ -135,7 +135,7 @@ static void kept_rows_change_no_byte(void **state) {
     image_destroy(image);
 }
 
-/* What was not said to have changed is not looked at. */
+/* Rows not flagged as changed are not read. */
 static void only_changed_rows_are_read(void **state) {
     (void)state;
     Error error = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FLIP in closed form, where no filter has a say: of plain pictures only the colours' distance counts. Elsewhere, laws. */
+/* FLIP in closed form where filters have no effect: uniform pictures differ only by colour. Elsewhere, laws. */
 #include "testing.h"
 
 #include "image/flip.h"
@@ -45,8 +45,8 @@ static double flip_plain(uint32_t first, uint32_t second) {
     return flip(NULL);
 }
 
-/* CIELab of a grey is its lightness alone, so the paper's equations are a few lines. The largest distance, between
-   green and blue, was computed apart, in double precision. */
+/* For greys CIELab is only lightness, so the paper's equations are short. The largest distance, between green and
+   blue, was computed independently in double precision. */
 static double expected_grey(double first, double second) {
     const double largest = 41.27609828519836;
     double light[2], value[2] = {first / 255, second / 255};
@@ -73,7 +73,7 @@ static void plain_greys_follow_the_equations(void **state) {
     assert_near(flip_plain(0xFFFFFF, 0x000000), 0.967380, 1e-5);
 }
 
-/* The pair that the paper scales by. */
+/* The pair that the paper normalises with. */
 static void green_and_blue_are_the_farthest(void **state) {
     (void)state;
     assert_near(flip_plain(0x00FF00, 0x0000FF), 1, 1e-5);
@@ -105,7 +105,7 @@ static void a_larger_shift_looks_larger(void **state) {
     }
 }
 
-/* From far away, so many pixels to the degree, the eye blurs stripes to the grey of the same light. */
+/* At many pixels per degree, the eye blurs stripes to the grey of equal luminance. */
 static void fine_stripes_vanish_with_distance(void **state) {
     (void)state;
     Error error = {0};
@@ -119,7 +119,7 @@ static void fine_stripes_vanish_with_distance(void **state) {
     assert_true(near > 0.9 && far < 0.1);
 }
 
-/* Only what is near the difference is computed; a lone pixel reaches as far as the widest filter, 10 pixels. */
+/* Only the neighbourhood of differences is computed; a single pixel reaches as far as the widest filter, 10 pixels. */
 static void the_map_is_local_and_its_mean_the_mean(void **state) {
     (void)state;
     static float map[SIDE * SIDE];
@@ -137,11 +137,11 @@ static void the_map_is_local_and_its_mean_the_mean(void **state) {
     assert_near(mean, sum / (SIDE * SIDE), 1e-9);
 }
 
-/* Nowhere plain: what a filter reads beyond its part shows. */
+/* Nowhere uniform: reading beyond the region would show. */
 static uint32_t busy_grey(int x) { return (uint32_t)(x * 37 % 200) * 0x010101; }
 
-/* Far from the edges a part of the picture has what it has in a larger one, of which all is computed. */
-static void what_lies_around_does_not_count(void **state) {
+/* Away from the edges, a region has the same values as in a larger picture, which is computed whole. */
+static void the_surroundings_do_not_matter(void **state) {
     (void)state;
     static float small[SIDE * SIDE], large[SIDE * SIDE * 4];
     Error error = {0};
@@ -168,7 +168,8 @@ static double sum_of(const FlipKernel *kernel, bool above) {
     return sum;
 }
 
-/* Half a feature of 0.082 degrees is the deviation: 2.75 pixels. The first derivative turns at 0, the second there. */
+/* The deviation is half a feature of 0.082 degrees, 2.75 pixels. The first derivative changes sign at 0, the second
+   there. */
 static void kernels_are_derivatives_of_a_gaussian(void **state) {
     (void)state;
     FlipFeatures features;
@@ -188,7 +189,7 @@ static void kernels_are_derivatives_of_a_gaussian(void **state) {
     }
 }
 
-/* The kernels sum to 1, so a plain plane stays as it is, and a step of one is an edge of one. */
+/* The kernels sum to 1: a uniform plane stays unchanged, and a step of 1 gives an edge of 1. */
 static void filters_are_scaled_by_what_they_find(void **state) {
     (void)state;
     enum { WIDTH = 40, HEIGHT = 30 };
@@ -211,7 +212,7 @@ static void filters_are_scaled_by_what_they_find(void **state) {
     flip_filter(&in, &features.edge, &features.across, &between, padded, &out);
     double largest = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) largest = fmax(largest, fabs((double)to[i]));
-    assert_near(largest, 1, 0.15); /* the step lies beside a pixel's middle */
+    assert_near(largest, 1, 0.15); /* the step is beside a pixel's centre */
     flip_filter(&in, &features.across, &features.edge, &between, padded, &out);
     for (int i = 0; i < WIDTH * HEIGHT; i++) assert_near(to[i], 0, 1e-6);
 }
@@ -234,7 +235,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_larger_shift_looks_larger, make, destroy),
         cmocka_unit_test_setup_teardown(fine_stripes_vanish_with_distance, make, destroy),
         cmocka_unit_test_setup_teardown(the_map_is_local_and_its_mean_the_mean, make, destroy),
-        cmocka_unit_test_setup_teardown(what_lies_around_does_not_count, make, destroy),
+        cmocka_unit_test_setup_teardown(the_surroundings_do_not_matter, make, destroy),
         cmocka_unit_test(kernels_are_derivatives_of_a_gaussian),
         cmocka_unit_test(filters_are_scaled_by_what_they_find),
         cmocka_unit_test(pictures_of_one_pixel_are_pictures),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparison and hash of pictures made by hand. */
+/* Comparison and hash of synthetic pictures. */
 #include "testing.h"
 
 #include "image/image.h"
@@ -66,7 +66,7 @@ static void the_shape_counts(void **state) {
     image_destroy(turned);
 }
 
-/* Only rows that are said to have changed are looked at. */
+/* Only rows flagged as changed are read. */
 static void the_hash_of_a_sequence_is_that_of_its_pictures(void **state) {
     (void)state;
     uint64_t rows[3];

@@ -32,7 +32,7 @@ static void rectangles_are_cut_at_the_edges(void **state) {
     free(masked);
 }
 
-/* White, dark, black; the last two with nothing of them to be seen, of which the file, opaque, knows nothing. */
+/* White, dark, black; the last two transparent, which the opaque file does not preserve. */
 static void pictures_mask_where_they_are_not_black(void **state) {
     (void)state;
     Error error = {0};
@@ -46,7 +46,7 @@ static void pictures_mask_where_they_are_not_black(void **state) {
     for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(masked[i], i == 3 || i == 7);
     free(masked);
     assert_null(mask_make(&mask, WIDTH + 1, HEIGHT, "frame.png", &error));
-    assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png 7 x 4");
+    assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png has 7 x 4");
     image_destroy(image);
 }
 
@@ -63,7 +63,7 @@ static void masked_pixels_do_not_count(void **state) {
     assert_int_equal(difference.largest, 7);
     assert_true(difference.first_x == 4 && difference.first_y == 1);
     assert_true(difference.left == 4 && difference.top == 1 && difference.right == 5 && difference.bottom == 4);
-    image_cover(b, a, masked);
+    image_copy_masked(b, a, masked);
     assert_true(a->pixels[4 * 8] == 0 && a->pixels[4 * 10] == 3);
     masked[10] = masked[22] = 1;
     image_compare_masked(a, b, masked, &difference);
@@ -72,7 +72,7 @@ static void masked_pixels_do_not_count(void **state) {
     image_destroy(b);
 }
 
-static void there_is_an_end_of_masks(void **state) {
+static void the_number_of_masks_is_limited(void **state) {
     (void)state;
     Error error = {0};
     for (int i = 0; i < MASK_PARTS; i++) assert_ok(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), error);
@@ -85,7 +85,7 @@ int main(void) {
         cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
         cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
         cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
-        cmocka_unit_test_teardown(there_is_an_end_of_masks, clear),
+        cmocka_unit_test_teardown(the_number_of_masks_is_limited, clear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNG files of every kind come in as the pixels they hold, and none that is damaged comes in at all. */
+/* PNG files of every kind are read as the pixels they hold; damaged ones are refused. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -91,7 +91,7 @@ enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 static uint8_t to_byte(unsigned value, unsigned largest) { return (uint8_t)((value * 255 + largest / 2) / largest); }
 
-/* What the format's specification says that a sample means. */
+/* The meaning of a sample according to the PNG specification. */
 static void expected_pixel(const PngKind *kind, int x, int y, uint8_t pixel[4]) {
     unsigned first = sample(x, y, 0, kind->depth), largest = (1u << kind->depth) - 1;
     bool alpha = kind->color & PNG_COLOR_MASK_ALPHA;
@@ -156,12 +156,12 @@ static void truncated_files_are_refused(void **state) {
     const char *path = temporary_path("truncated.png");
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
-        assert_refused(path, "no PNG file, or a damaged one");
+        assert_refused(path, "not a PNG file, or damaged");
     }
     free(data);
 }
 
-/* Checksums guard every byte of a PNG behind its signature. */
+/* Checksums cover every byte of a PNG after its signature. */
 static void every_flipped_bit_is_noticed(void **state) {
     (void)state;
     size_t size;
@@ -186,7 +186,7 @@ static void large_claims_are_refused_before_they_cost(void **state) {
     write_claim(path, 100000001, 1);
     assert_refused(path, "100000001 x 1 pixels");
     write_claim(path, 100000000, 1);
-    assert_refused(path, "damaged"); /* for its missing pixels, not its size */
+    assert_refused(path, "damaged"); /* for missing pixels, not for its size */
 }
 
 static void the_limit_of_pixels_is_the_callers(void **state) {
@@ -202,7 +202,7 @@ static void the_limit_of_pixels_is_the_callers(void **state) {
     free(data);
 }
 
-/* acTL, before the pixels: libpng would show the first picture alone. */
+/* acTL before the pixels: libpng would read only the first picture. */
 static void animations_are_refused(void **state) {
     (void)state;
     const char *path = temporary_path("animated.png");
@@ -221,7 +221,7 @@ static void animations_are_refused(void **state) {
     assert_refused(path, "an animated PNG (chunk acTL at byte 33)");
 }
 
-/* Two pictures of 16 bits, the last of which differ; in 8 bits they are equal. */
+/* Two pictures that differ in 16 bits but not in 8. */
 static void sixteen_bits_count_in_full(void **state) {
     (void)state;
     Error error = {0};
@@ -231,14 +231,14 @@ static void sixteen_bits_count_in_full(void **state) {
         write_kind(path, &kind, interlace);
         Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
         assert_ok(a != NULL && b != NULL, error);
-        assert_non_null(a->deep);
+        assert_non_null(a->pixels16);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++)
-                assert_int_equal(a->deep[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
+                assert_int_equal(a->pixels16[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
         ImageDifference difference;
         image_compare(a, b, &difference);
         assert_true(difference.equal);
-        b->deep[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
+        b->pixels16[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
         image_compare(a, b, &difference);
         assert_true(difference.pixels == 1 && difference.largest == 1);
         assert_true(difference.first_x == 7 && difference.first_y == 5);
@@ -255,7 +255,7 @@ static void depths_are_compared_by_what_they_mean(void **state) {
     Image deep = {1, 1, (uint8_t[]){1, 128, 255, 255}, (uint16_t[]){257, 128 * 257, 65535, 65535}};
     image_compare(&shallow, &deep, &difference);
     assert_true(difference.equal);
-    deep.deep[0]++;
+    deep.pixels16[0]++;
     image_compare(&shallow, &deep, &difference);
     assert_true(difference.pixels == 1 && difference.largest == 1);
 }

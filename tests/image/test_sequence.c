@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of files, and which belongs to which. */
+/* File names, and the pairs of two sequences. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -62,7 +62,7 @@ static void a_longer_stem_is_another(void **state) {
                  "a_1.png=a_1.png a_b_1.png=- -=a_b_2.png");
 }
 
-/* Two tools name their frames each in its way. */
+/* Two tools name their frames differently. */
 static void where_there_is_one_stem_numbers_decide(void **state) {
     (void)state;
     assert_pairs(folder_of("ours", "frame_000002.png frame_000010.png"), folder_of("theirs", "0010.png 0003.png 2.png"),
@@ -95,8 +95,8 @@ static void assert_refused(const char *path, const char *text) {
 static void doubtful_folders_are_refused(void **state) {
     (void)state;
     assert_refused(folder_of("twice", "frame_1.png frame_01.png"), "has the same number as");
-    assert_refused(folder_of("bytes", "frame_\xFF.png"), "no text");
-    assert_refused(folder_of("line", "frame_\x01.png"), "no text");
+    assert_refused(folder_of("bytes", "frame_\xFF.png"), "is not UTF-8 or has control characters");
+    assert_refused(folder_of("line", "frame_\x01.png"), "is not UTF-8 or has control characters");
     assert_refused(temporary_path("nowhere"), "nowhere: error: cannot be read");
     Error error = {0};
     int count;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Impacts of the stack, for networks of slots to learn from. */
+/* Impacts of the stack as training samples for slot networks. */
 #pragma once
 #include "testing.h"
 
 #include "solvers/solvers.h"
 #include "impact_training/slot_rollout.h"
-#include "impact_training/slot_shape.h"
+#include "impact_training/slot_network_init.h"
 
 enum { IMPACT_STEPS = 8, IMPACT_VISITS = 20000 };
 
@@ -22,12 +22,12 @@ static inline Scene *read_stack(void) {
 static inline bool make_momentum(void *context, ContactSolver *solver, Error *error) {
     (void)context;
     Settings settings;
-    if (!settings_parse(&settings, "k=20", solver_momentum.settings, solver_momentum.name, error)) return false;
+    if (!settings_parse(&settings, "k=20", solver_momentum.description.settings, "momentum", error)) return false;
     *solver = (ContactSolver){&solver_momentum, solver_momentum.create(&settings, error)};
     return solver->state != NULL;
 }
 
-/* Over the midpoints of the paper's grid; every second one turned. */
+/* Over the midpoints of the paper's grid; every second one rotated. */
 static inline void throw_over_grid(const Scene *scene, int count, Launch *launches) {
     launches_for_scoring(scene, count, launches);
     for (int i = 1; i < count; i += 2) launches[i].rotation = 0.4f;
@@ -60,7 +60,7 @@ static inline SlotSamples labelled_impacts(int launches) {
 
 static inline SlotNetwork *network_for(SlotSamples *samples) {
     Error error = {0};
-    SlotNetwork *network = slot_network_for(samples, &small_widths, 1, &error);
+    SlotNetwork *network = slot_network_from_samples(samples, &small_widths, 1, &error);
     assert_ok(network != NULL, error);
     return network;
 }

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* Rosenbrock's valley in six dimensions: 0 at (1, ..., 1), curved, so that the covariance has to be learned. */
+/* The Rosenbrock function in six dimensions: 0 at (1, ..., 1) in a curved valley that needs an adapted covariance. */
 static double rosenbrock(void *context, const double *x) {
     int *calls = context;
     (*calls)++;
@@ -14,7 +14,7 @@ static double rosenbrock(void *context, const double *x) {
     return sum;
 }
 
-static void the_bottom_of_a_valley_is_found(void **state) {
+static void rosenbrock_is_minimised(void **state) {
     (void)state;
     int calls = 0;
     Error error = {0};
@@ -25,7 +25,7 @@ static void the_bottom_of_a_valley_is_found(void **state) {
     assert_int_equal(calls, 1 + 600 * 9);
 }
 
-static void a_seed_decides_the_search(void **state) {
+static void same_seed_same_bits(void **state) {
     (void)state;
     double x[3][6] = {{0}};
     for (int i = 0; i < 3; i++) {
@@ -48,7 +48,7 @@ static bool stop_at_ten(void *context, double done, double total) {
     return done < 10;
 }
 
-static void a_search_cut_off_keeps_the_best(void **state) {
+static void a_stopped_search_keeps_the_best(void **state) {
     (void)state;
     double x[1] = {0};
     Error error = {0};
@@ -58,8 +58,7 @@ static void a_search_cut_off_keeps_the_best(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_bottom_of_a_valley_is_found),
-                                       cmocka_unit_test(a_seed_decides_the_search),
-                                       cmocka_unit_test(a_search_cut_off_keeps_the_best)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rosenbrock_is_minimised), cmocka_unit_test(same_seed_same_bits),
+                                       cmocka_unit_test(a_stopped_search_keeps_the_best)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

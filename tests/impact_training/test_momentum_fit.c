@@ -36,7 +36,7 @@ static MomentumSchedules fit(const Scene *scene, Scores *scores, const Progress 
     return schedules;
 }
 
-static void learned_factors_leave_less_error_than_those_by_hand(void **state) {
+static void learned_factors_beat_hand_tuned_ones(void **state) {
     (void)state;
     Scene *scene = read_scene("stack");
     Scores scores = {0};
@@ -51,7 +51,7 @@ static void learned_factors_leave_less_error_than_those_by_hand(void **state) {
     scene_destroy(scene);
 }
 
-static void threads_change_no_bit(void **state) {
+static void same_bits_for_any_number_of_threads(void **state) {
     (void)state;
     Scene *scene = read_scene("stack");
     Scores scores[2] = {{0}};
@@ -74,7 +74,7 @@ static bool stop_after_the_recording(void *context, double done, double total) {
     return done < 0.51 * total;
 }
 
-static void a_fit_cut_off_keeps_what_there_is(void **state) {
+static void a_stopped_fit_keeps_the_best_so_far(void **state) {
     (void)state;
     Scene *scene = read_scene("stack");
     Scores scores = {0};
@@ -113,7 +113,7 @@ static void a_scene_without_impacts_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(learned_factors_leave_less_error_than_those_by_hand), cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(a_fit_cut_off_keeps_what_there_is), cmocka_unit_test(a_scene_without_impacts_is_refused)};
+        cmocka_unit_test(learned_factors_beat_hand_tuned_ones), cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(a_stopped_fit_keeps_the_best_so_far), cmocka_unit_test(a_scene_without_impacts_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

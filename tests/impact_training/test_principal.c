@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Principal components against their definition, and against all eigenvalues of the covariance where it is small. */
+/* Principal components against their definition, and against the eigenvalues of small covariances. */
 #include "testing.h"
 
 #include "impact_training/principal.h"
@@ -10,7 +10,7 @@
 #include <math.h>
 #include <omp.h>
 
-/* Rows with room for every number. */
+/* Sparse rows with capacity for dense ones. */
 typedef struct Table {
     SparseRows sparse;
     int64_t *begin;
@@ -34,7 +34,7 @@ static void free_table(Table *table) {
     free(table->value);
 }
 
-/* With the numbers that are 0 or without. */
+/* sparse: omits the zeros. */
 static void add_row(Table *table, const float *numbers, bool sparse) {
     int64_t end = table->begin[table->sparse.rows];
     for (int j = 0; j < table->sparse.columns; j++) {
@@ -83,7 +83,7 @@ static double component(const Table *table, const Projection *projection, int ro
     return sum;
 }
 
-/* The first `rank` components are of mean 0, variance 1 and uncorrelated; the others are 0. */
+/* The first `rank` components have mean 0 and variance 1 and are uncorrelated; the others are 0. */
 static void assert_white(const Table *table, const Projection *projection, int rank, double tolerance) {
     const int rows = table->sparse.rows;
     for (int a = 0; a < projection->to; a++)
@@ -102,7 +102,7 @@ static void assert_white(const Table *table, const Projection *projection, int r
     for (int c = rank; c < projection->to; c++) assert_true(projection->centre[c] == 0);
 }
 
-/* Of the direction of component c: the component is the direction's number divided by its deviation. */
+/* The variance along the direction of component c: whitening scaled the direction by 1 / sqrt(variance). */
 static double variance(const Projection *projection, int c) {
     double square = 0;
     for (int j = 0; j < projection->from; j++) square += pow((double)projection->rows[j * projection->to + c], 2);
@@ -137,7 +137,7 @@ static gsl_vector *eigenvalues(const Table *table) {
     return all;
 }
 
-/* Normal numbers about 1, neighbours correlated, of deviation falloff^column; a third of them are 0 instead. */
+/* Gaussian numbers scaled by falloff^column, with correlated neighbours; a third of them are set to 0. */
 static Table make_random(int rows, int columns, double falloff, bool sparse) {
     Table table = make_table(rows, columns);
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
@@ -159,7 +159,7 @@ static Table make_random(int rows, int columns, double falloff, bool sparse) {
 
 static void directions_of_known_variance_are_found(void **state) {
     (void)state;
-    /* About (7, -1), along (3, 4) / 5 with variance 4 and along (4, -3) / 5 with variance 1/4. */
+    /* Mean (7, -1); variance 4 along (3, 4) / 5 and 1/4 along (4, -3) / 5. */
     Table table = make_table(4, 2);
     for (int i = 0; i < 4; i++) {
         const float along = i % 2 == 0 ? 2 : -2, across = i < 2 ? 0.5F : -0.5F;
@@ -178,11 +178,11 @@ static void components_are_white_and_the_strongest(void **state) {
     (void)state;
     Table table = make_random(400, 40, 0.9, true);
     gsl_vector *all = eigenvalues(&table);
-    const int wanted[] = {40, 8};
+    const int counts[] = {40, 8};
     for (int i = 0; i < 2; i++) {
-        Projection projection = fit(&table, wanted[i], 1);
-        assert_white(&table, &projection, wanted[i], 1e-5);
-        for (int c = 0; c < wanted[i]; c++)
+        Projection projection = fit(&table, counts[i], 1);
+        assert_white(&table, &projection, counts[i], 1e-5);
+        for (int c = 0; c < counts[i]; c++)
             assert_near(variance(&projection, c) / gsl_vector_get(all, (size_t)c), 1, 1e-5);
         free_projection(&projection);
     }
@@ -190,24 +190,24 @@ static void components_are_white_and_the_strongest(void **state) {
     free_table(&table);
 }
 
-static void variances_that_hardly_fall_off_are_nearly_caught(void **state) {
+static void a_flat_spectrum_is_nearly_captured(void **state) {
     (void)state;
     Table table = make_random(400, 60, 1, true);
     gsl_vector *all = eigenvalues(&table);
     Projection projection = fit(&table, 8, 1);
-    double caught = 0, most = 0;
+    double captured = 0, most = 0;
     for (int c = 0; c < 8; c++) {
-        caught += variance(&projection, c);
+        captured += variance(&projection, c);
         most += gsl_vector_get(all, (size_t)c);
     }
     assert_white(&table, &projection, 8, 1e-5);
-    assert_near(caught / most, 0.95, 0.05 + 1e-6);
+    assert_near(captured / most, 0.95, 0.05 + 1e-6);
     free_projection(&projection);
     gsl_vector_free(all);
     free_table(&table);
 }
 
-/* Whole numbers, so that nothing is rounded: three hidden ones make twelve columns. */
+/* Integers, so that nothing is rounded: twelve columns depend on three hidden numbers. */
 static void components_beyond_the_rank_are_0(void **state) {
     (void)state;
     Table table = make_table(200, 12), few = make_table(5, 12), narrow = make_table(200, 3);
@@ -235,7 +235,7 @@ static void components_beyond_the_rank_are_0(void **state) {
     free_table(&narrow);
 }
 
-/* One of two independent columns is weaker by a factor: of deviation, so the variance by its square. */
+/* Two independent columns, one with a deviation (and its square as variance) that is `weak` times the other's. */
 static void components_too_weak_for_float_are_0(void **state) {
     (void)state;
     const float weak[] = {1e-4F, 1e-6F};
@@ -249,7 +249,7 @@ static void components_too_weak_for_float_are_0(void **state) {
     }
 }
 
-/* Of independent deviations 1/2 and 1/4, which are 1e-6 of the mean and less. */
+/* Independent deviations 1/2 and 1/4, at most 1e-6 of the mean. */
 static void a_large_mean_costs_no_digits(void **state) {
     (void)state;
     Table table = make_table(1000, 2);
@@ -262,8 +262,8 @@ static void a_large_mean_costs_no_digits(void **state) {
     free_table(&table);
 }
 
-/* What differs between rows of the same numbers is only rounding, and that must not be taken for variance. */
-static void rows_that_are_all_the_same_have_no_components(void **state) {
+/* Rounding must not be taken for variance. */
+static void equal_rows_have_no_components(void **state) {
     (void)state;
     Table table = make_table(1000, 10);
     for (int i = 0; i < 1000; i++) {
@@ -277,7 +277,7 @@ static void rows_that_are_all_the_same_have_no_components(void **state) {
     free_table(&table);
 }
 
-static void columns_that_never_change_have_no_part(void **state) {
+static void constant_columns_contribute_nothing(void **state) {
     (void)state;
     Table table = make_table(1000, 3), faint = make_table(1000, 3);
     for (int i = 0; i < 1000; i++) {
@@ -286,7 +286,7 @@ static void columns_that_never_change_have_no_part(void **state) {
     }
     Projection projection = fit(&table, 3, 1);
     for (int i = 0; i < 9; i++) assert_true(projection.rows[i] == 0 || i == 3);
-    assert_near(projection.rows[3], 2.5, 1e-6); /* 1 in every fifth row: a variance of 1/5 - 1/25 */
+    assert_near(projection.rows[3], 2.5, 1e-6); /* 1 in every fifth row: variance 1/5 - 1/25 */
     assert_white(&table, &projection, 1, 1e-5);
     free_projection(&projection);
     projection = fit(&faint, 3, 1);
@@ -296,7 +296,7 @@ static void columns_that_never_change_have_no_part(void **state) {
     free_table(&faint);
 }
 
-static void seed_and_numbers_decide_every_bit(void **state) {
+static void same_seed_same_bits(void **state) {
     (void)state;
     Table sparse = make_random(300, 40, 0.99, true), dense = make_random(300, 40, 0.99, false);
     assert_true(sparse.begin[300] < dense.begin[300]);
@@ -304,20 +304,20 @@ static void seed_and_numbers_decide_every_bit(void **state) {
     omp_set_num_threads(1);
     Projection first = fit(&sparse, 8, 1);
     omp_set_num_threads(2);
-    Projection threaded = fit(&sparse, 8, 1), spelled = fit(&dense, 8, 1), other = fit(&sparse, 8, 2);
+    Projection threaded = fit(&sparse, 8, 1), with_zeros = fit(&dense, 8, 1), other = fit(&sparse, 8, 2);
     omp_set_num_threads(threads);
     assert_true(same(&first, &threaded));
-    assert_true(same(&first, &spelled));
+    assert_true(same(&first, &with_zeros));
     assert_false(same(&first, &other));
     free_projection(&first);
     free_projection(&threaded);
-    free_projection(&spelled);
+    free_projection(&with_zeros);
     free_projection(&other);
     free_table(&sparse);
     free_table(&dense);
 }
 
-/* In double, where the order of a sum shows. */
+/* In double, where the order of sums would show. */
 static void sums_do_not_depend_on_threads(void **state) {
     (void)state;
     enum { COLUMNS = 40, WIDTH = 2 * DIRECTIONS_BLOCK };
@@ -363,14 +363,14 @@ static void assert_refused(const SparseRows *rows, int from, const char *text) {
     free_projection(&projection);
 }
 
-static void rows_that_are_none_are_refused(void **state) {
+static void invalid_rows_are_refused(void **state) {
     (void)state;
     const int64_t begin[] = {0, 2, 4};
     const int32_t column[] = {1, 0, 2, 0}, below[] = {1, 0, -1, 0}, beyond[] = {1, 0, 3, 0}, twice[] = {1, 0, 2, 2};
     const float value[] = {1, 2, 3, 4}, unknown[] = {1, 2, 3, NAN}, endless[] = {INFINITY, 2, 3, 4};
     assert_refused(&(SparseRows){2, 3, begin, below, value}, 3, "row 1: column -1 of 3");
     assert_refused(&(SparseRows){2, 3, begin, beyond, value}, 3, "row 1: column 3 of 3");
-    assert_refused(&(SparseRows){2, 3, begin, twice, value}, 3, "row 1: column 2 comes twice");
+    assert_refused(&(SparseRows){2, 3, begin, twice, value}, 3, "row 1: column 2 is repeated");
     assert_refused(&(SparseRows){2, 3, begin, column, unknown}, 3, "row 1: column 0 is not finite");
     assert_refused(&(SparseRows){2, 3, begin, column, endless}, 3, "row 0: column 1 is not finite");
     assert_refused(&(SparseRows){0, 3, begin, column, value}, 3, "0 rows of 3 columns");
@@ -381,16 +381,16 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(directions_of_known_variance_are_found),
         cmocka_unit_test(components_are_white_and_the_strongest),
-        cmocka_unit_test(variances_that_hardly_fall_off_are_nearly_caught),
+        cmocka_unit_test(a_flat_spectrum_is_nearly_captured),
         cmocka_unit_test(components_beyond_the_rank_are_0),
         cmocka_unit_test(components_too_weak_for_float_are_0),
         cmocka_unit_test(a_large_mean_costs_no_digits),
-        cmocka_unit_test(rows_that_are_all_the_same_have_no_components),
-        cmocka_unit_test(columns_that_never_change_have_no_part),
-        cmocka_unit_test(seed_and_numbers_decide_every_bit),
+        cmocka_unit_test(equal_rows_have_no_components),
+        cmocka_unit_test(constant_columns_contribute_nothing),
+        cmocka_unit_test(same_seed_same_bits),
         cmocka_unit_test(sums_do_not_depend_on_threads),
         cmocka_unit_test(the_largest_number_is_positive),
-        cmocka_unit_test(rows_that_are_none_are_refused),
+        cmocka_unit_test(invalid_rows_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whole trainings, small: what they keep when they are cut off, and that threads do not matter. */
+/* Small complete trainings: determinism, and what a stopped training keeps. */
 #include "impacts.h"
 
 #include "impact_training/scene_training.h"
@@ -11,10 +11,10 @@ enum { ROUNDS = 2, SWEEPS = 4 };
 
 typedef struct Scores {
     int count;
-    SceneScore items[ROUNDS];
+    SceneNetScore items[ROUNDS];
 } Scores;
 
-static void note(void *context, const SceneScore *score) {
+static void note(void *context, const SceneNetScore *score) {
     Scores *scores = context;
     assert_in_range(scores->count, 0, ROUNDS - 1);
     scores->items[scores->count++] = *score;
@@ -34,7 +34,7 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
     return scene_training_run(scene, &training, progress, error);
 }
 
-static void threads_change_no_bit(void **state) {
+static void same_bits_for_any_number_of_threads(void **state) {
     (void)state;
     Error error = {0};
     Scene *scene = read_stack();
@@ -51,7 +51,7 @@ static void threads_change_no_bit(void **state) {
     assert_int_equal(networks[0]->parameter_count, networks[1]->parameter_count);
     assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
     for (int i = 0; i < ROUNDS; i++) {
-        const SceneScore *one = &scores[0].items[i], *two = &scores[1].items[i];
+        const SceneNetScore *one = &scores[0].items[i], *two = &scores[1].items[i];
         assert_int_equal(one->round, i);
         assert_int_equal(one->samples, two->samples);
         assert_true(one->train == two->train && one->held_out == two->held_out && one->momentum == two->momentum);
@@ -63,22 +63,22 @@ static void threads_change_no_bit(void **state) {
     scene_destroy(scene);
 }
 
-/* Stops where so much is done; progress never falls. */
+/* Stops at a fraction of the total; progress never decreases. */
 typedef struct Stop {
     double at, last;
-    int asked_after; /* it had said so */
+    int calls_after; /* the stop */
 } Stop;
 
 static bool stop_at(void *context, double done, double total) {
     Stop *stop = context;
     assert_true(done >= stop->last && done <= total * (1 + 1e-9));
-    stop->asked_after += stop->last >= stop->at * total;
+    stop->calls_after += stop->last >= stop->at * total;
     stop->last = done;
     return done < stop->at * total;
 }
 
-/* In the first fit, in the labels behind it, in the second fit. */
-static void a_training_cut_off_keeps_the_rounds_so_far(void **state) {
+/* Stopped in the first fit, in the labels after it, in the second fit. */
+static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
     (void)state;
     Scene *scene = read_stack();
     static const double at[] = {0.27, 0.67, 0.87};
@@ -89,7 +89,7 @@ static void a_training_cut_off_keeps_the_rounds_so_far(void **state) {
         SlotNetwork *network = train(scene, &scores, &(Progress){stop_at, &stop}, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(error.kind, ERROR_NONE);
-        assert_int_equal(stop.asked_after, 0);
+        assert_int_equal(stop.calls_after, 0);
         assert_int_equal(scores.count, i < 2 ? 1 : 2);
         for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
         slot_network_destroy(network);
@@ -97,7 +97,7 @@ static void a_training_cut_off_keeps_the_rounds_so_far(void **state) {
     scene_destroy(scene);
 }
 
-static void a_training_cut_off_before_there_is_a_network_says_so(void **state) {
+static void a_training_stopped_before_the_first_network_fails(void **state) {
     (void)state;
     Error error = {0};
     Scene *scene = read_stack();
@@ -108,7 +108,7 @@ static void a_training_cut_off_before_there_is_a_network_says_so(void **state) {
     scene_destroy(scene);
 }
 
-/* The bounds are those that the samples of the training had, and some more: the box in which the network is asked. */
+/* The bounds are the range of the training samples with a margin. */
 static void the_network_is_for_its_scene(void **state) {
     (void)state;
     Error error = {0};
@@ -137,9 +137,9 @@ static void a_scene_without_a_bomb_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(a_training_cut_off_keeps_the_rounds_so_far),
-        cmocka_unit_test(a_training_cut_off_before_there_is_a_network_says_so),
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(a_stopped_training_keeps_the_rounds_so_far),
+        cmocka_unit_test(a_training_stopped_before_the_first_network_fails),
         cmocka_unit_test(the_network_is_for_its_scene),
         cmocka_unit_test(a_scene_without_a_bomb_is_refused),
     };

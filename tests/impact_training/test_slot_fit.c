@@ -9,7 +9,7 @@
 
 enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };
 
-/* With plain sweeps behind it. */
+/* Followed by sweeps without momentum. */
 static SlotNetwork *begin_with(SlotSamples *samples, int launches) {
     *samples = labelled_impacts(launches);
     SlotNetwork *network = network_for(samples);
@@ -53,7 +53,12 @@ static void a_few_samples_are_learned(void **state) {
     SlotNetwork *network = begin(&samples);
     const double before = mean_error(network, &samples);
     fit_to(network, &samples,
-           &(SlotFit){.near = 0.1, .near_epochs = 60, .epochs = 200, .rate = 0.02, .learn_factors = true, .seed = 1});
+           &(SlotFit){.impulse_weight = 0.1,
+                      .impulse_epochs = 60,
+                      .epochs = 200,
+                      .rate = 0.02,
+                      .learn_factors = true,
+                      .seed = 1});
     const double after = mean_error(network, &samples);
 
     assert_true(after < before / 3);
@@ -67,32 +72,38 @@ static void a_few_samples_are_learned(void **state) {
     end(&samples, network);
 }
 
-/* Only the sweeps' own error tells what a factor is good for. */
-static void factors_stay_where_they_are_not_learned(void **state) {
+/* Only the velocity loss has a gradient with respect to the factors. */
+static void factors_change_only_if_learned(void **state) {
     (void)state;
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     for (int s = 1; s < SWEEPS; s++) network->factors[s] = 0.5f;
-    fit_to(network, &samples, &(SlotFit){.near = 0.1, .near_epochs = 0, .epochs = 3, .rate = 0.01, .seed = 1});
-    for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
     fit_to(network, &samples,
-           &(SlotFit){.near = 0.1, .near_epochs = 3, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+           &(SlotFit){.impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .seed = 1});
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
-    fit_to(network, &samples,
-           &(SlotFit){.near = 0.1, .near_epochs = 0, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    fit_to(
+        network, &samples,
+        &(SlotFit){
+            .impulse_weight = 0.1, .impulse_epochs = 3, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
+    fit_to(
+        network, &samples,
+        &(SlotFit){
+            .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] != 0.5f);
     end(&samples, network);
 }
 
-/* Adam's first step is of its rate, against the derivative's sign: also half a cosine later, at the end of the fit. */
-static void the_first_step_is_of_the_rate(void **state) {
+/* Adam's first step has the size of the rate for every parameter with a gradient. */
+static void the_first_step_has_the_size_of_the_rate(void **state) {
     (void)state;
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     float *before = malloc(network->parameter_count * sizeof *before);
     assert_non_null(before);
     memcpy(before, network->parameters, network->parameter_count * sizeof *before);
-    fit_to(network, &samples, &(SlotFit){.near = 1, .near_epochs = 0, .epochs = 1, .rate = 0.01, .seed = 1});
+    fit_to(network, &samples,
+           &(SlotFit){.impulse_weight = 1, .impulse_epochs = 0, .epochs = 1, .rate = 0.01, .seed = 1});
     int moved = 0;
     for (size_t p = 0; p < network->parameter_count; p++) {
         const double step = fabs((double)(network->parameters[p] - before[p]));
@@ -104,8 +115,8 @@ static void the_first_step_is_of_the_rate(void **state) {
     end(&samples, network);
 }
 
-/* So many samples that all parts of a batch are met, and a second batch. */
-static void threads_change_no_bit(void **state) {
+/* Enough samples to fill all parts of a batch and to need more than one batch. */
+static void same_bits_for_any_number_of_threads(void **state) {
     (void)state;
     SlotSamples samples[2];
     SlotNetwork *networks[2];
@@ -115,7 +126,12 @@ static void threads_change_no_bit(void **state) {
         networks[i] = begin_with(&samples[i], 24);
         assert_true(samples[i].count > 130);
         fit_to(networks[i], &samples[i],
-               &(SlotFit){.near = 0.1, .near_epochs = 2, .epochs = 5, .rate = 0.01, .learn_factors = true, .seed = 5});
+               &(SlotFit){.impulse_weight = 0.1,
+                          .impulse_epochs = 2,
+                          .epochs = 5,
+                          .rate = 0.01,
+                          .learn_factors = true,
+                          .seed = 5});
     }
     omp_set_num_threads(threads);
     assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
@@ -123,13 +139,13 @@ static void threads_change_no_bit(void **state) {
     for (int i = 0; i < 2; i++) end(&samples[i], networks[i]);
 }
 
-static void what_is_no_number_is_refused_with_the_epoch(void **state) {
+static void a_loss_of_nan_is_an_error_naming_the_epoch(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
-    const SlotFit fit = {.near = 0.1, .near_epochs = 2, .epochs = 9, .rate = 0.01, .seed = 1};
-    /* Velocities are not looked at before the third epoch. */
+    const SlotFit fit = {.impulse_weight = 0.1, .impulse_epochs = 2, .epochs = 9, .rate = 0.01, .seed = 1};
+    /* The velocity loss starts in the third epoch. */
     samples.items[7].reference[3].x = NAN;
     assert_false(slot_fit(network, &samples, &fit, NULL, &error));
     assert_error(error, ERROR_INPUT, "diverged in epoch 3");
@@ -148,7 +164,7 @@ static bool stop_after_three(void *context, double done, double total) {
     return done < 3;
 }
 
-static void a_fit_cut_off_keeps_what_there_is(void **state) {
+static void a_stopped_fit_keeps_its_parameters(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples samples;
@@ -156,7 +172,8 @@ static void a_fit_cut_off_keeps_what_there_is(void **state) {
     int epochs = 0;
     const Progress progress = {stop_after_three, &epochs};
     const double before = mean_error(network, &samples);
-    const SlotFit fit = {.near = 0.1, .near_epochs = 0, .epochs = 90, .rate = 4e-3, .learn_factors = true, .seed = 1};
+    const SlotFit fit = {
+        .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 90, .rate = 4e-3, .learn_factors = true, .seed = 1};
     assert_ok(slot_fit(network, &samples, &fit, &progress, &error), error);
     assert_int_equal(epochs, 3);
     assert_true(is_finite(network));
@@ -168,13 +185,13 @@ static void a_fit_cut_off_keeps_what_there_is(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_few_samples_are_learned),
-        cmocka_unit_test(factors_stay_where_they_are_not_learned),
-        cmocka_unit_test(the_first_step_is_of_the_rate),
-        cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(what_is_no_number_is_refused_with_the_epoch),
-        cmocka_unit_test(a_fit_cut_off_keeps_what_there_is),
+        cmocka_unit_test(factors_change_only_if_learned),
+        cmocka_unit_test(the_first_step_has_the_size_of_the_rate),
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(a_loss_of_nan_is_an_error_naming_the_epoch),
+        cmocka_unit_test(a_stopped_fit_keeps_its_parameters),
     };
-    /* So little work that two threads would mostly wait for each other. */
+    /* With so little work, two threads would mostly wait for each other. */
     omp_set_num_threads(1);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loss of a slot network on impacts of the stack, and its gradient against differences. */
+/* The loss of a slot network on impacts of the stack, and its gradient against finite differences. */
 #include "impacts.h"
 
 #include "collision/uniform.h"
@@ -10,9 +10,9 @@
 
 enum { LAUNCHES = 4, SWEEPS = 6, OF_EACH_BLOCK = 6 };
 
-static const double by_hand[SWEEPS] = {0, 0.3, 0.5, 0.6, 0.7, 0.8}, plain[SWEEPS] = {0};
+static const double hand_tuned[SWEEPS] = {0, 0.3, 0.5, 0.6, 0.7, 0.8}, no_momentum[SWEEPS] = {0};
 
-/* A network, where its loss is looked at. */
+/* A network and the sample that its loss is evaluated on. */
 typedef struct Trial {
     SlotSamples samples;
     SlotNetwork *network;
@@ -22,7 +22,7 @@ typedef struct Trial {
     double factors[SWEEPS];
 } Trial;
 
-/* Outputs as large as the scales, and biases that do something. */
+/* Outputs as large as the scales, and nonzero biases. */
 static void begin(Trial *trial) {
     uint32_t seed = 4;
     *trial = (Trial){.samples = labelled_impacts(LAUNCHES)};
@@ -41,10 +41,10 @@ static void end(Trial *trial) {
     slot_samples_free(&trial->samples);
 }
 
-static void choose(Trial *trial, int sample, double near, double far, const double *factors) {
+static void choose(Trial *trial, int sample, double impulse_weight, double velocity_weight, const double *factors) {
     memcpy(trial->factors, factors, sizeof trial->factors);
     trial->sample = &trial->samples.items[sample];
-    trial->task = (SlotTask){near, far, SWEEPS, trial->factors};
+    trial->task = (SlotTask){impulse_weight, velocity_weight, SWEEPS, trial->factors};
 }
 
 static double loss_of(Trial *trial) {
@@ -53,7 +53,7 @@ static double loss_of(Trial *trial) {
     return score.loss;
 }
 
-/* Pieces that the sweeps took: where they differ, a kink lies between. */
+/* The pieces that the sweeps took. If they differ between two evaluations, there is a kink between these. */
 static uint8_t *pieces_of(const Trial *trial) {
     const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
     uint8_t *pieces = malloc(count + 1);
@@ -66,12 +66,12 @@ typedef struct Tally {
     int checked, kinks, moved;
 } Tally;
 
-/* What a step either way did to the loss, beside what the gradient says it does. Outputs are of single precision, which is
-   what the tolerance has to be for. */
+/* Compares the change of the loss between two steps with the gradient's prediction. The tolerance covers the single
+   precision of the outputs. */
 static void compare(Trial *trial, double ahead, const uint8_t *taken, double behind, double expected, double unit,
                     Tally *tally) {
     const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
-    if (trial->task.far > 0 && memcmp(taken, trial->loss.unrolled.pieces, count) != 0) {
+    if (trial->task.velocity_weight > 0 && memcmp(taken, trial->loss.unrolled.pieces, count) != 0) {
         tally->kinks++;
         return;
     }
@@ -80,7 +80,7 @@ static void compare(Trial *trial, double ahead, const uint8_t *taken, double beh
     tally->moved += fabs(ahead - behind) > 10 * unit;
 }
 
-/* A step of every number of a block along its derivatives, or of one number of it. */
+/* Steps a block along its gradient (only < 0) or one number of it. */
 static void check_block(Trial *trial, float *block, const float *gradient, int count, int only, double step,
                         Tally *tally) {
     double length = 0, expected = 0;
@@ -105,7 +105,7 @@ static void check_block(Trial *trial, float *block, const float *gradient, int c
     free(kept);
 }
 
-/* Packed rows change by a step of a number, or all numbers of a row by its unit. */
+/* Steps one number of packed rows by its unit. */
 static void check_byte(Trial *trial, const PackedRows *packed, const float *gradient, int64_t place, Tally *tally) {
     const int8_t kept = packed->numbers[place];
     if (kept == INT8_MAX || kept == -INT8_MAX) return;
@@ -167,8 +167,9 @@ static void check_factors(Trial *trial, const double *by_factors, Tally *tally) 
     }
 }
 
-/* Gradients are added to what is there. Kinks and numbers without effect must be few, or errors would go unseen. */
-static void assert_gradient(double near, double far, const double *factors) {
+/* Gradients are added to the given array. Kinks and numbers without effect must be few, or errors would go
+   unnoticed. */
+static void assert_gradient(double impulse_weight, double velocity_weight, const double *factors) {
     Trial trial;
     Tally parameters[6] = {{0}}, of_factors = {0};
     uint32_t seed = 8;
@@ -179,7 +180,7 @@ static void assert_gradient(double near, double far, const double *factors) {
     for (int i = 0; i < trial.samples.count; i += 3) {
         double by_factors[SWEEPS];
         SlotScore score;
-        choose(&trial, i, near, far, factors);
+        choose(&trial, i, impulse_weight, velocity_weight, factors);
         for (size_t p = 0; p < count; p++) gradient[p] = 1;
         for (int s = 0; s < SWEEPS; s++) by_factors[s] = 7;
         assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, gradient, by_factors, &score));
@@ -187,41 +188,41 @@ static void assert_gradient(double near, double far, const double *factors) {
         for (size_t p = 0; p < count; p++) gradient[p] -= 1;
         for (int s = 0; s < SWEEPS; s++) by_factors[s] -= 7;
         check_parameters(&trial, gradient, &seed, parameters);
-        if (far > 0) check_factors(&trial, by_factors, &of_factors);
+        if (velocity_weight > 0) check_factors(&trial, by_factors, &of_factors);
     }
     for (int b = 0; b < 6; b++) {
         assert_true(parameters[b].kinks * 4 < parameters[b].checked);
         assert_true(parameters[b].moved >= 5);
     }
-    assert_true(of_factors.kinks * 4 < of_factors.checked || far == 0);
-    assert_true(of_factors.moved * 2 > of_factors.checked || far == 0);
+    assert_true(of_factors.kinks * 4 < of_factors.checked || velocity_weight == 0);
+    assert_true(of_factors.moved * 2 > of_factors.checked || velocity_weight == 0);
     free(gradient);
     end(&trial);
 }
 
-static void nearness_has_the_gradient_of_differences(void **state) {
+static void impulse_loss_has_the_gradient_of_differences(void **state) {
     (void)state;
-    assert_gradient(1, 0, by_hand);
+    assert_gradient(1, 0, hand_tuned);
 }
 
-static void what_sweeps_leave_has_the_gradient_of_differences(void **state) {
+static void velocity_loss_has_the_gradient_of_differences(void **state) {
     (void)state;
-    assert_gradient(0, 1, plain);
-    assert_gradient(0, 1, by_hand);
+    assert_gradient(0, 1, no_momentum);
+    assert_gradient(0, 1, hand_tuned);
 }
 
 static void both_have_the_gradient_of_differences(void **state) {
     (void)state;
-    assert_gradient(0.4, 2, by_hand);
+    assert_gradient(0.4, 2, hand_tuned);
 }
 
-/* As solution_error.h counts it, and bent into a square where there is nearly none. */
+/* The error is that of solution_error.h; the loss is nearly quadratic for small errors. */
 static void the_error_is_that_of_the_studies(void **state) {
     (void)state;
     Trial trial;
     begin(&trial);
     for (int i = 0; i < trial.samples.count; i++) {
-        choose(&trial, i, 0, 3, by_hand);
+        choose(&trial, i, 0, 3, hand_tuned);
         SlotScore score;
         assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, NULL, NULL, &score));
         BodyVelocity velocities[16];
@@ -236,18 +237,18 @@ static void the_error_is_that_of_the_studies(void **state) {
     end(&trial);
 }
 
-/* A network that says nothing stays at the base: what it costs is a mean over normals and tangents of the slots. */
-static void nearness_is_a_mean_over_slots(void **state) {
+/* With outputs of 0 the impulses are those of the base. */
+static void impulse_loss_is_a_mean_over_slots(void **state) {
     (void)state;
     Trial trial;
-    int straight = 0, bent = 0;
+    int linear = 0, quadratic = 0;
     begin(&trial);
     SlotNetwork *network = trial.network;
     memset(network->rows, 0,
            (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
     slot_network_pack(network);
     for (int i = 0; i < trial.samples.count; i++) {
-        choose(&trial, i, 2, 0, plain);
+        choose(&trial, i, 2, 0, no_momentum);
         const SceneView *view = &trial.sample->view;
         double sum = 0;
         for (int k = 0; k < view->slots.slot_count; k++) {
@@ -257,23 +258,23 @@ static void nearness_is_a_mean_over_slots(void **state) {
                                      fabs((double)base.tangent - (double)goal.tangent) / scale};
             for (int c = 0; c < 2; c++) {
                 sum += apart[c] < 0.3 ? apart[c] * apart[c] / 0.6 : apart[c] - 0.15;
-                straight += apart[c] >= 0.3;
-                bent += apart[c] < 0.3;
+                linear += apart[c] >= 0.3;
+                quadratic += apart[c] < 0.3;
             }
         }
         assert_near(loss_of(&trial), 2 * sum / view->slots.slot_count, 1e-9 * sum);
     }
-    assert_true(straight > 50 && bent > 50);
+    assert_true(linear > 50 && quadratic > 50);
     end(&trial);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nearness_has_the_gradient_of_differences),
-        cmocka_unit_test(what_sweeps_leave_has_the_gradient_of_differences),
+        cmocka_unit_test(impulse_loss_has_the_gradient_of_differences),
+        cmocka_unit_test(velocity_loss_has_the_gradient_of_differences),
         cmocka_unit_test(both_have_the_gradient_of_differences),
         cmocka_unit_test(the_error_is_that_of_the_studies),
-        cmocka_unit_test(nearness_is_a_mean_over_slots),
+        cmocka_unit_test(impulse_loss_is_a_mean_over_slots),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
 /* Which steps of a scene's launches become samples. */
 #include "impacts.h"
 
-#include "solvers/gaps.h"
+#include "solvers/residuals.h"
 
 #include <omp.h>
 
@@ -25,7 +25,7 @@ static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
     }
 }
 
-static void threads_change_no_bit(void **state) {
+static void same_bits_for_any_number_of_threads(void **state) {
     (void)state;
     SlotSamples samples[2] = {{0}};
     const int threads = omp_get_max_threads();
@@ -38,7 +38,7 @@ static void threads_change_no_bit(void **state) {
     for (int i = 0; i < 2; i++) slot_samples_free(&samples[i]);
 }
 
-static void samples_rise_by_launch_and_step(void **state) {
+static void samples_are_ordered_by_launch_and_step(void **state) {
     (void)state;
     SlotSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 100);
@@ -78,7 +78,7 @@ static bool bomb_touches(const ContactProblem *problem) {
     return touches;
 }
 
-/* A world of its own, run by hand: of the steps from the touch on, those with a gap, and no others. */
+/* A separate run: the samples must be exactly the steps from the first touch whose residual reaches the gate. */
 static int check_launch(const Scene *scene, const ContactSolver *solver, const SlotSample *samples) {
     Error error = {0};
     Scene quiet = *scene;
@@ -91,7 +91,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
         assert_ok(world_step(world, solver, scene->dt, &error), error);
         const ContactProblem *problem = world_problem(world);
         if (since >= 0 || (problem->bomb >= 0 && bomb_touches(problem))) since++;
-        if (since < 0 || gap_of(problem) < (double)impact_gate) continue;
+        if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
         assert_int_equal(samples[found].since, since);
         assert_same_problem(&samples[found++].problem, problem);
     }
@@ -99,7 +99,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
     return found;
 }
 
-static void samples_are_the_steps_that_miss_their_bias(void **state) {
+static void samples_are_the_steps_with_a_large_residual(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples samples = {0};
@@ -123,10 +123,10 @@ static void samples_are_the_steps_that_miss_their_bias(void **state) {
 
 static bool no_solver(void *context, ContactSolver *solver, Error *error) {
     (void)context, (void)solver;
-    return error_input(error, "solver", "there is none");
+    return error_input(error, "solver", "not available");
 }
 
-static void a_solver_that_cannot_be_made_is_told(void **state) {
+static void a_solver_that_cannot_be_made_is_an_error(void **state) {
     (void)state;
     Error error = {0};
     Scene *scene = read_stack();
@@ -135,18 +135,18 @@ static void a_solver_that_cannot_be_made_is_told(void **state) {
     const SlotRollout rollout = {
         .scene = scene, .launches = &launch, .launch_count = 1, .steps = 1, .make_solver = no_solver};
     assert_false(slot_rollout(&rollout, &samples, NULL, &error));
-    assert_error(error, ERROR_INPUT, "there is none");
+    assert_error(error, ERROR_INPUT, "not available");
     assert_int_equal(samples.count, 0);
     scene_destroy(scene);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(samples_rise_by_launch_and_step),
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(samples_are_ordered_by_launch_and_step),
         cmocka_unit_test(samples_are_appended),
-        cmocka_unit_test(samples_are_the_steps_that_miss_their_bias),
-        cmocka_unit_test(a_solver_that_cannot_be_made_is_told),
+        cmocka_unit_test(samples_are_the_steps_with_a_large_residual),
+        cmocka_unit_test(a_solver_that_cannot_be_made_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

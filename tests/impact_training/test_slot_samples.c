@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples are copies, labelled by the reference and shown to a network. */
+/* Samples: copies, labels of the reference, inputs of a network. */
 #include "impacts.h"
 
 #include <omp.h>
@@ -17,9 +17,9 @@ static void a_sample_is_a_copy(void **state) {
     bodies[1].inv_mass = 9;
     contact.feature = 9;
     for (int i = 20; i < 22; i++) assert_true(slot_samples_add(&more, &problem, i, 2 * i));
-    assert_true(slot_samples_take(&samples, &more));
+    assert_true(slot_samples_move(&samples, &more));
     assert_int_equal(more.count, 0);
-    assert_true(slot_samples_take(&samples, &more));
+    assert_true(slot_samples_move(&samples, &more));
     assert_int_equal(samples.count, 22);
     for (int i = 0; i < 22; i++) {
         const SlotSample *sample = &samples.items[i];
@@ -32,12 +32,12 @@ static void a_sample_is_a_copy(void **state) {
     slot_samples_free(&samples);
 }
 
-/* A run that touches nothing gives none. */
-static void nothing_is_taken_from_nothing(void **state) {
+/* A launch without impacts has no samples; an impact may have no contacts. */
+static void empty_samples_can_be_moved(void **state) {
     (void)state;
     SlotSamples samples = {0}, none = {0};
     const ProblemBody body = {.inv_mass = 1};
-    assert_true(slot_samples_take(&samples, &none));
+    assert_true(slot_samples_move(&samples, &none));
     assert_int_equal(samples.count, 0);
     assert_true(slot_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
     assert_int_equal(samples.items[0].problem.contact_count, 0);
@@ -76,7 +76,7 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-static void only_those_from_the_first_asked_for_are_labelled(void **state) {
+static void only_samples_from_the_given_index_are_labelled(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples samples = {0};
@@ -92,14 +92,14 @@ static void only_those_from_the_first_asked_for_are_labelled(void **state) {
     slot_samples_free(&samples);
 }
 
-static void those_looked_at_have_inputs_of_the_network(void **state) {
+static void inputs_are_those_of_the_network(void **state) {
     (void)state;
     Error error = {0};
     SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
     SlotNetwork *network = network_for(&shaped);
     record_impacts(&samples, LAUNCHES, 0);
     assert_int_equal(samples.count, shaped.count);
-    assert_ok(slot_samples_look(&samples, 3, network, &error), error);
+    assert_ok(slot_samples_compute_inputs(&samples, 3, network, &error), error);
     for (int i = 0; i < samples.count; i++) {
         assert_int_equal(samples.items[i].inputs != NULL, i >= 3);
         if (i < 3) continue;
@@ -114,10 +114,10 @@ static void those_looked_at_have_inputs_of_the_network(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sample_is_a_copy),
-        cmocka_unit_test(nothing_is_taken_from_nothing),
+        cmocka_unit_test(empty_samples_can_be_moved),
         cmocka_unit_test(labels_are_the_references),
-        cmocka_unit_test(only_those_from_the_first_asked_for_are_labelled),
-        cmocka_unit_test(those_looked_at_have_inputs_of_the_network),
+        cmocka_unit_test(only_samples_from_the_given_index_are_labelled),
+        cmocka_unit_test(inputs_are_those_of_the_network),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

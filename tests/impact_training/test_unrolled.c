@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps in double against the engine's, and their derivative against differences. */
+/* Sweeps in double against the engine's, and their derivatives against finite differences. */
 #include "testing.h"
 
 #include "simulate/simulate.h"
@@ -11,7 +11,7 @@ static const double factors[20] = {9,   0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.8, 0.8, 
                                    0.9, 0.9, 0.9, 0,   0.9, 0.9, 0.9, 0.9, 0.9, 0.9};
 enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
 
-/* Calls observe after each step of the engine's run of a scene. */
+/* Runs a scene with the engine; calls observe after each step. */
 static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
@@ -47,40 +47,40 @@ static void assert_same_solution(const ContactProblem *problem, const Unrolled *
     }
 }
 
-static void assert_equals_plain(Unrolled *unrolled, const ContactProblem *problem, int sweeps, double roundings) {
+static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *problem, int sweeps, double roundings) {
     double start[NUMBERS_MAX];
     float in_float[SWEEPS];
     UnrolledProblem rows;
-    ContactSolution plain = make_solution(problem), before = make_solution(problem);
+    ContactSolution expected = make_solution(problem), before = make_solution(problem);
     for (int s = 0; s < sweeps; s++) in_float[s] = (float)factors[s];
     warm_start(problem, start);
     assert_true(unrolled_problem_make(&rows, problem));
     assert_true(unrolled_run(unrolled, &rows, start, factors, sweeps));
-    momentum_solve_plain(problem, rows.visits, in_float, sweeps, &before, &plain);
-    assert_same_solution(problem, unrolled, &plain, roundings * rounding_of(problem));
+    momentum_solve_scalar(problem, rows.visits, in_float, sweeps, &before, &expected);
+    assert_same_solution(problem, unrolled, &expected, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
-    free_solution(&plain);
+    free_solution(&expected);
     free_solution(&before);
 }
 
-static bool frame_equals_plain(void *context, int frame, const World *world, Error *error) {
+static bool frame_equals_scalar(void *context, int frame, const World *world, Error *error) {
     (void)frame, (void)error;
-    assert_equals_plain(context, world_problem(world), 10, 200);
-    assert_equals_plain(context, world_problem(world), 0, 100);
+    assert_equals_scalar(context, world_problem(world), 10, 200);
+    assert_equals_scalar(context, world_problem(world), 0, 100);
     return true;
 }
 
-static void every_frame_is_swept_as_the_plain_text_does(void **state) {
+static void sweeps_match_the_scalar_reference_implementation(void **state) {
     (void)state;
     Unrolled unrolled = {0};
-    observe_scene("single", frame_equals_plain, &unrolled);
-    observe_scene("stack", frame_equals_plain, &unrolled);
-    observe_scene("pyramid", frame_equals_plain, &unrolled);
+    observe_scene("single", frame_equals_scalar, &unrolled);
+    observe_scene("stack", frame_equals_scalar, &unrolled);
+    observe_scene("pyramid", frame_equals_scalar, &unrolled);
     unrolled_free(&unrolled);
 }
 
-/* Random problems have warm impulses outside the cone: the plain text must be given them projected. */
-static void a_start_is_brought_into_the_cone(void **state) {
+/* Random problems have warm impulses outside the cone; the scalar reference implementation needs them projected. */
+static void the_start_is_projected_into_the_cone(void **state) {
     (void)state;
     uint32_t seed = 1;
     int outside = 0;
@@ -99,19 +99,19 @@ static void a_start_is_brought_into_the_cone(void **state) {
             outside += (double)contact->warm_tangent != start[2 * i + 1];
         }
         UnrolledProblem rows;
-        ContactSolution plain = make_solution(&random.problem);
+        ContactSolution expected = make_solution(&random.problem);
         assert_true(unrolled_problem_make(&rows, &random.problem));
         assert_true(unrolled_run(&unrolled, &rows, start, NULL, 0));
-        sequential_impulses_begin(&random.problem, &engine_options, &plain);
-        assert_same_solution(&random.problem, &unrolled, &plain, 1e-4);
+        sequential_impulses_begin(&random.problem, &engine_options, &expected);
+        assert_same_solution(&random.problem, &unrolled, &expected, 1e-4);
         unrolled_problem_free(&rows);
-        free_solution(&plain);
+        free_solution(&expected);
     }
     assert_true(outside > 100);
     unrolled_free(&unrolled);
 }
 
-/* A problem, where to start, and a loss of where that leads: sum over velocities of c v + v^2 / 2. */
+/* A problem, start impulses, and a loss of the final velocities: sum of c v + v^2 / 2. */
 typedef struct Case {
     UnrolledProblem rows;
     Unrolled unrolled;
@@ -150,8 +150,8 @@ static void free_case(Case *given) {
     unrolled_free(&given->unrolled);
 }
 
-/* Between kinks the loss is a square of each number, of which central differences make no error whatever the step: what
-   remains is rounding. Returns false where a kink lies between. */
+/* Between kinks the loss is quadratic in each number, so central differences are exact up to rounding. Returns false if
+   there is a kink within the step. */
 static bool difference(Case *given, double *number, double step, double *slope) {
     const size_t pieces = (size_t)(given->sweeps + 1) * (size_t)given->rows.contact_count;
     const double kept = *number;
@@ -183,8 +183,7 @@ static void check(Case *given, double *number, double derivative, Tally *tally) 
     tally->moved += fabs(slope) > 1e-3;
 }
 
-/* Kinks and numbers without effect must be few, or errors would go unseen. A cone without friction has kinks that are
-   none, and an impulse that is clamped has no effect. */
+/* Kinks and numbers without effect must be few, or errors would go unnoticed. */
 static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32_t *seed) {
     Case given = make_case(problem, sweeps, seed);
     double by_velocity[3 * BODIES_MAX], by_start[NUMBERS_MAX], by_factors[SWEEPS];
@@ -197,7 +196,7 @@ static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32
     for (int s = 0; s < sweeps; s++) check(&given, &given.factors[s], by_factors[s] - 7, &of_factors);
     assert_true(of_start.kinks * 4 < of_start.checked);
     assert_true(of_start.moved * 4 > of_start.checked);
-    /* Only the first has none: nothing was swept before. */
+    /* The first factor has no effect: no sweep precedes it. */
     assert_int_equal(of_factors.moved, sweeps > 0 ? sweeps - 1 : 0);
     free_case(&given);
 }
@@ -214,14 +213,14 @@ static bool derive_impact(void *context, int frame, const World *world, Error *e
     return true;
 }
 
-static void derivatives_are_those_of_differences_at_a_stacks_impact(void **state) {
+static void derivatives_match_differences_at_an_impact_of_the_stack(void **state) {
     (void)state;
     bool met = false;
     observe_scene("stack", derive_impact, &met);
     assert_true(met);
 }
 
-static void derivatives_are_those_of_differences_on_random_problems(void **state) {
+static void derivatives_match_differences_on_random_problems(void **state) {
     (void)state;
     uint32_t seed = 5;
     for (int run = 0; run < 8; run++) {
@@ -231,9 +230,8 @@ static void derivatives_are_those_of_differences_on_random_problems(void **state
     }
 }
 
-/* What the impulses do to the velocities is J' over the masses; so back from there to here it is J of what is over the
-   masses. Written out anew, from the problem itself. */
-static void without_sweeps_the_derivative_is_that_of_a_push(void **state) {
+/* Impulses change velocities by W J^T, so the derivative is J W by_velocity; computed here from the problem itself. */
+static void without_sweeps_the_derivative_is_that_of_an_impulse(void **state) {
     (void)state;
     uint32_t seed = 9;
     RandomProblem random;
@@ -265,7 +263,7 @@ static void without_sweeps_the_derivative_is_that_of_a_push(void **state) {
     free_case(&given);
 }
 
-/* A contact that would pull is out of the cone, and stays out whatever its tangent impulse. */
+/* A pulling start is clamped to 0, so neither of its impulses has an effect. */
 static void a_start_that_pulls_has_no_effect(void **state) {
     (void)state;
     uint32_t seed = 15;
@@ -280,8 +278,8 @@ static void a_start_that_pulls_has_no_effect(void **state) {
     free_case(&given);
 }
 
-/* Impulses are equal and opposite, so no start and no factor changes the sum of m v where nothing is fixed. */
-static void momentum_depends_on_nothing(void **state) {
+/* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
+static void total_momentum_is_conserved(void **state) {
     (void)state;
     uint32_t seed = 11;
     RandomProblem random;
@@ -299,8 +297,8 @@ static void momentum_depends_on_nothing(void **state) {
     free_case(&given);
 }
 
-/* Larger problems before, and other ways back, leave no trace. */
-static void a_used_work_space_changes_no_bit(void **state) {
+/* Earlier, larger problems and earlier backward passes do not change the result. */
+static void a_reused_work_space_gives_the_same_bits(void **state) {
     (void)state;
     uint32_t seed = 13;
     RandomProblem large, small;
@@ -324,13 +322,13 @@ static void a_used_work_space_changes_no_bit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_is_swept_as_the_plain_text_does),
-                                       cmocka_unit_test(a_start_is_brought_into_the_cone),
-                                       cmocka_unit_test(derivatives_are_those_of_differences_at_a_stacks_impact),
-                                       cmocka_unit_test(derivatives_are_those_of_differences_on_random_problems),
-                                       cmocka_unit_test(without_sweeps_the_derivative_is_that_of_a_push),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sweeps_match_the_scalar_reference_implementation),
+                                       cmocka_unit_test(the_start_is_projected_into_the_cone),
+                                       cmocka_unit_test(derivatives_match_differences_at_an_impact_of_the_stack),
+                                       cmocka_unit_test(derivatives_match_differences_on_random_problems),
+                                       cmocka_unit_test(without_sweeps_the_derivative_is_that_of_an_impulse),
                                        cmocka_unit_test(a_start_that_pulls_has_no_effect),
-                                       cmocka_unit_test(momentum_depends_on_nothing),
-                                       cmocka_unit_test(a_used_work_space_changes_no_bit)};
+                                       cmocka_unit_test(total_momentum_is_conserved),
+                                       cmocka_unit_test(a_reused_work_space_gives_the_same_bits)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,7 +70,7 @@ static void what_is_not_whole_does_not_count(void **state) {
     study.laws = "gravity";
     error = (Error){0};
     assert_false(law_study_train(dataset, &study, &result, NULL, &error));
-    assert_error(error, ERROR_INPUT, "there is no 'gravity'");
+    assert_error(error, ERROR_INPUT, "'gravity' is not a law");
     dataset_destroy(without);
     dataset_destroy(dataset);
 }

@@ -59,8 +59,8 @@ static void errors_stand_beside_the_constant(void **state) {
     dataset_destroy(pyramid);
 }
 
-/* Without a step, a network that comes from elsewhere differs from one that begins here by its normalisation alone, which
-   is that of its first stage: not at all where that was the same rows. */
+/* After 0 iterations, a network with transfer differs from one from scratch only by its normalisation, which is that of
+   its first stage. It does not differ if that stage had the same rows. */
 static void the_first_stage_decides_the_units(void **state) {
     (void)state;
     Error error = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the camera must hold, and what must not move it. */
+/* What must be in view, and what must not affect it. */
 #include "testing.h"
 
 #include "picture/camera.h"
@@ -54,7 +54,7 @@ static void all_that_happens_is_held(void **state) {
         }
 }
 
-/* The ground is 100 m wide, and what happens 5 m. */
+/* The ground is 100 m wide, the movement 5 m. */
 static void the_ground_does_not_count(void **state) {
     (void)state;
     Camera camera = camera_fit(run, 900, 880), without;
@@ -62,7 +62,7 @@ static void the_ground_does_not_count(void **state) {
     run->size[GROUND_BODY] = vec2(5000, 20);
     without = camera_fit(run, 900, 880);
     assert_memory_equal(&camera, &without, sizeof camera);
-    assert_inside(&camera, 0, -0.2, sizes[0]); /* but its top can be seen */
+    assert_inside(&camera, 0, -0.2, sizes[0]); /* but its top is visible */
 }
 
 static void grid_lines_fall_between_pixels(void **state) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Three runs that part, with contacts, for tests of what pictures show of them. Include testing.h first. */
+/* Three diverging runs with contacts, for tests of what pictures show. Include testing.h first. */
 #pragma once
 #include "render/render.h"
 #include "runs.h"
@@ -9,7 +9,7 @@ enum { FRAMES = 40, RUNS = 3, WIDTH = 420, HEIGHT = 300, ALL_SHOWN = 127 };
 static Trajectory *runs[RUNS];
 static const Trajectory *panels[RUNS];
 
-/* The second run parts from the first in frame 5, the third falls apart; the bomb touches a box in frame 20. */
+/* The second run diverges from the first in frame 5, the third collapses; the bomb touches a box in frame 20. */
 static inline int make(void **state) {
     (void)state;
     static const char *const methods[RUNS] = {"engine", "momentum:k=20", "pair-net"};

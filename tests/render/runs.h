@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small runs made by hand. Include testing.h first. */
+/* Small synthetic runs. Include testing.h first. */
 #pragma once
 #include "trajectory/trajectory.h"
 
@@ -13,7 +13,7 @@ static inline Vec2 *run_position(Trajectory *run, int frame, int body) {
 
 static inline float *run_angle(Trajectory *run, int frame, int body) { return &run->angle[frame * run->bodies + body]; }
 
-/* Two boxes on a wide ground, one of them turning, and a bomb that appears in frame 2 and falls. */
+/* Two boxes on a wide ground, one rotating, and a bomb that appears in frame 2 and falls. */
 static inline Trajectory *run_make(const char *method, int frames) {
     static const Vec2 sizes[RUN_BODIES] = {{100, 20}, {1, 1}, {2, 1}, {1.5F, 1.5F}};
     Error error = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames drawn one after the other, of which only what changed is drawn, read and compressed, beside the same frames
-   drawn whole: equal pixels and equal bytes, along the runs of golden/ and across jumps. */
+/* Consecutive frames of which only the changes are drawn, read and compressed, compared with the same frames drawn
+   whole: equal pixels and equal bytes, along the runs of golden/ and across jumps. */
 #include "testing.h"
 
 #include "image/png_encoder.h"
@@ -14,7 +14,7 @@
 enum { WIDTH = 640, HEIGHT = 360, PANELS = 2 };
 static const char TRAJECTORIES[] = SOURCE_DIR "/golden/trajectories";
 
-/* The same picture twice: `next` follows the frames, `whole` begins anew with each. */
+/* The same picture twice: `next` draws the changes, `whole` every frame completely. */
 typedef struct Twins {
     Renderer *next, *whole;
     Image *next_image, *whole_image;
@@ -89,13 +89,13 @@ static void followed_frames_equal_whole_ones(void **state) {
         for (int frame = 0; frame <= last; frame += last / 60 > 1 ? last / 60 : 1) assert_same_frame(&twins, frame);
         const int jumps[] = {0, last, last, 1, last / 2, last / 2 + 1, 0};
         for (size_t jump = 0; jump < sizeof jumps / sizeof jumps[0]; jump++) assert_same_frame(&twins, jumps[jump]);
-        assert_true(twins.painted < (long)HEIGHT * twins.drawn * 3 / 4); /* or nothing would have been saved */
+        assert_true(twins.painted < (long)HEIGHT * twins.drawn * 3 / 4); /* otherwise nothing is saved */
         close_twins(&twins);
         for (int k = 0; k < PANELS; k++) trajectory_destroy(runs[k]);
     }
 }
 
-/* Bodies that come and go, shapes taller than the picture, a moving ground, and poses that are no numbers. */
+/* Bodies that appear and disappear, shapes taller than the picture, a moving ground, NaN and infinite poses. */
 static void wild_frames_equal_whole_ones(void **state) {
     (void)state;
     static const float wild[] = {0, 1, 40, -40, 3e38F, NAN, INFINITY, 5, -1e6F, 2};
@@ -121,7 +121,7 @@ static void wild_frames_equal_whole_ones(void **state) {
     trajectory_destroy(run);
 }
 
-/* A single frame drawn between two others takes the canvas from them; one that there is not takes nothing. */
+/* A single frame drawn in between invalidates the canvas; a frame that does not exist does not. */
 static void other_calls_may_come_between(void **state) {
     (void)state;
     Error error = {0};

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the pictures of golden/gallery again, one of every style, the dark ones by EGL: the pixels must be equal. A picture
-   that is not is written to actual_NAME.png in the working directory of the test. Given a folder like
-   golden/ the program writes the pictures into its gallery/, of the runs that are there: `golden/renew` does. */
+/* Redraws the pictures of golden/gallery, one of every style, the dark ones by EGL: the pixels must be equal. A
+   picture that differs is written to actual_NAME.png in the working directory of the test. Given a folder like
+   golden/, the program writes the pictures of its runs into its gallery/, as `golden/renew` does. */
 #include "testing.h"
 
 #include "image/png_encoder.h"
 #include "mesa.h"
+#include "simulate/method.h"
 #include "render/renderer.h"
 
 #include <limits.h>
@@ -32,7 +33,7 @@ static const char *const one[] = {"trajectories/pyramid-engine", NULL};
 #define SLOW \
     { MOMENT_BETWEEN, 33, 0.5, 4 }
 
-/* Each in both themes, where it says so. */
+/* Each in both themes, unless one is given. */
 static const struct {
     const char *name;
     const char *const *runs;
@@ -83,7 +84,8 @@ static Runs read_runs(const char *const *names) {
 static Image *draw(int i, bool dark, ContextChoice context) {
     Error error = {0};
     Runs runs = read_runs(entries[i].runs);
-    RenderOptions options = {.width = WIDTH, .height = HEIGHT, .context = context, .look = entries[i].look};
+    RenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .context = context, .look = entries[i].look, .describe = method_describe};
     if (dark) options.look.theme = LOOK_DARK;
     Renderer *renderer = renderer_create(runs.panels, runs.count, &options, &error);
     assert_ok(renderer != NULL, error);

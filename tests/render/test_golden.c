@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the frames of golden/frames again, in both contexts, from golden/trajectories: SCENE_NNNNNN.png is
-   frame NNNNNN of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture
-   that is not is written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
+/* Redraws the frames of golden/frames in both contexts, from golden/trajectories: SCENE_NNNNNN.png is frame NNNNNN
+   of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture that differs is
+   written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
 #include "testing.h"
 
 #include "mesa.h"
+#include "simulate/method.h"
 #include "render/render.h"
 
 #include <dirent.h>
@@ -56,7 +57,10 @@ static void unload(Golden *golden) {
 
 static Image *draw(const Golden *golden, ContextChoice context) {
     Error error = {0};
-    RenderOptions options = {.width = golden->image->width, .height = golden->image->height, .context = context};
+    RenderOptions options = {.width = golden->image->width,
+                             .height = golden->image->height,
+                             .context = context,
+                             .describe = method_describe};
     const Trajectory *const panels[PANELS] = {golden->panels[0], golden->panels[1]};
     Renderer *renderer = renderer_create(panels, PANELS, &options, &error);
     assert_ok(renderer != NULL, error);
@@ -66,7 +70,7 @@ static Image *draw(const Golden *golden, ContextChoice context) {
     return image;
 }
 
-/* Number of contexts in which the frame is another. */
+/* Number of contexts in which the frame differs. */
 static int compare(const Golden *golden) {
     int different = 0;
     for (size_t i = 0; i < sizeof contexts / sizeof contexts[0]; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every look: the same in both contexts and whether drawn whole or row by row, whatever the runs hold. */
+/* Every look gives equal pixels in both contexts, and drawn whole or row by row, for all contents of the runs. */
 #include "testing.h"
 
 #include "look_runs.h"
@@ -14,7 +14,7 @@ static const Moment moments[] = {
 };
 enum { MOMENTS = sizeof moments / sizeof moments[0] };
 
-/* Of two renderers one follows the moments, and one begins anew with each. */
+/* One renderer draws the moments one after another, the other starts again for each. */
 static void assert_followed(const RenderLook *look, int count, int width, int height) {
     Error error = {0};
     RenderOptions options = {.width = width, .height = height, .look = *look, .context = CONTEXT_OSMESA};

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The manifest says what was drawn, and an interrupted sequence goes on to the same bytes as one that was not. */
+/* The manifest describes what was drawn, and an interrupted sequence is resumed to the same bytes as an
+   uninterrupted one. */
 #include "testing.h"
 
 #include "common/hash.h"
-#include "common/json.h"
 #include "folders.h"
 #include "mesa.h"
 #include "render/render.h"
 #include "runs.h"
 
+#include <jansson.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -18,9 +19,9 @@ enum { FRAMES = 12, PICTURES = FRAMES + 2 * 11 + 3, WIDTH = 160, HEIGHT = 90 };
 
 static Trajectory *runs[2];
 static const Trajectory *panels[2];
-static char whole[256]; /* folder of a sequence that nothing interrupted */
+static char whole[256]; /* folder of an uninterrupted sequence */
 
-/* The impact is in step 5, and all is slow; three pictures are held at the end. */
+/* The impact is in step 5, and everything is in slow motion; three pictures hold the last frame. */
 static RenderOptions options_for(const char *directory) {
     return (RenderOptions){
         .width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = directory, .slow = 3, .hold = 0.05};
@@ -53,7 +54,7 @@ static const char *manifest_of(const char *directory) {
     return path;
 }
 
-/* Resumes in a folder, which must become as if nothing had happened; returns how many pictures were kept. */
+/* Resumes in a folder, which must then equal the uninterrupted one; returns the number of pictures kept. */
 static int resume(const char *directory, char why[256]) {
     Error error = {0};
     RenderResult result;
@@ -83,54 +84,52 @@ static const char *copied(const char *name) {
     return directory;
 }
 
-static uint64_t hash_of(const Json *json, const JsonValue *object, const char *key) {
-    Error error = {0};
-    const JsonValue *text = json_need(json, object, key, JSON_STRING, &error);
-    assert_ok(text != NULL, error);
-    return strtoull(text->text, NULL, 16);
+static uint64_t hash_of(const json_t *value) {
+    assert_int_equal(json_string_length(value), 16);
+    return strtoull(json_string_value(value), NULL, 16);
 }
 
-static void check_states(const JsonValue *states, int frame) {
-    int panel = 0;
-    for (const JsonValue *state = json_first(states); state != NULL; state = json_next(states, state), panel++) {
+static void check_states(const json_t *states, int frame) {
+    assert_int_equal(json_array_size(states), 2);
+    for (size_t panel = 0; panel < 2; panel++) {
         int last = panels[panel]->frames - 1;
         uint64_t hash = trajectory_frame_hash(panels[panel], frame < last ? frame : last);
-        assert_true(strtoull(state->text, NULL, 16) == hash);
+        assert_true(hash_of(json_array_get(states, panel)) == hash);
     }
-    assert_int_equal(panel, 2);
+}
+
+static void check_picture(const json_t *item, int index) {
+    Error error = {0};
+    size_t size;
+    const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
+    int frame = (int)json_integer_value(json_object_get(item, "frame"));
+    char *data = read_whole(path, &size), text[64] = "";
+    Image *image = image_read_png(path, &error);
+    assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
+    assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
+    assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
+    assert_true(json_is_integer(json_object_get(item, "frame")));
+    assert_in_range(frame, 0, FRAMES - 1);
+    check_states(json_object_get(item, "states"), frame);
+    /* The picture's own texts state the same. */
+    assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
+    assert_int_equal(atoi(text), frame);
+    text[0] = '\0';
+    image_read_text(path, "Part", text, sizeof text, &(Error){0});
+    assert_string_equal(text, part != NULL ? part : "");
+    image_destroy(image);
+    free(data);
 }
 
 static void a_manifest_tells_of_every_picture(void **state) {
     (void)state;
-    Error error = {0};
-    Json json;
-    assert_ok(json_read(&json, manifest_of(whole), 1 << 20, &error), error);
-    const JsonValue *pictures = json_need(&json, json.values, "pictures", JSON_ARRAY, &error);
-    assert_int_equal(pictures->count, PICTURES);
-    int index = 0;
-    for (const JsonValue *it = json_first(pictures); it != NULL; it = json_next(pictures, it), index++) {
-        int64_t frame;
-        size_t size;
-        const char *path = frame_path(whole, index),
-                   *part = json_member(it, "part") ? json_member(it, "part")->text : "";
-        char *data = read_whole(path, &size), text[64] = "";
-        Image *image = image_read_png(path, &error);
-        assert_true(hash_of(&json, it, "pixels") == image_hash(image));
-        assert_true(hash_of(&json, it, "file_hash") == hash_xxh3(data, size));
-        assert_non_null(strstr(path, json_member(it, "file")->text));
-        assert_ok(json_need_int(&json, it, "frame", 0, FRAMES - 1, &frame, &error), error);
-        check_states(json_member(it, "states"), (int)frame);
-        /* The picture's own texts say the same. */
-        assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
-        assert_int_equal(atoi(text), frame);
-        text[0] = '\0';
-        image_read_text(path, "Part", text, sizeof text, &(Error){0});
-        assert_string_equal(text, part);
-        image_destroy(image);
-        free(data);
-    }
-    assert_int_equal(index, PICTURES);
-    json_free(&json);
+    json_error_t failure;
+    json_t *manifest = json_load_file(manifest_of(whole), JSON_REJECT_DUPLICATES, &failure);
+    if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
+    const json_t *pictures = json_object_get(manifest, "pictures");
+    assert_int_equal(json_array_size(pictures), PICTURES);
+    for (int i = 0; i < PICTURES; i++) check_picture(json_array_get(pictures, (size_t)i), i);
+    json_decref(manifest);
 }
 
 static void a_manifest_names_no_place(void **state) {
@@ -150,7 +149,7 @@ static void nothing_is_drawn_twice(void **state) {
     assert_non_null(strstr(why, "fresh/manifest.json: error: cannot open"));
 }
 
-static void put(const char *path, const char *data, size_t size) {
+static void overwrite(const char *path, const char *data, size_t size) {
     Error error = {0};
     assert_ok(file_write_soon(path, data, size, &error), error);
 }
@@ -162,14 +161,14 @@ static void what_is_missing_or_damaged_is_drawn_again(void **state) {
     char *data = read_whole(frame_path(directory, 4), &size),
          *other = read_whole(frame_path(directory, 5), &other_size);
     assert_int_equal(unlink(frame_path(directory, 0)), 0);
-    put(frame_path(directory, 1), data, size / 2);    /* cut */
-    put(frame_path(directory, 2), data, 0);           /* empty */
-    put(frame_path(directory, 4), other, other_size); /* each other's */
-    put(frame_path(directory, 5), data, size);
+    overwrite(frame_path(directory, 1), data, size / 2);    /* truncated */
+    overwrite(frame_path(directory, 2), data, 0);           /* empty */
+    overwrite(frame_path(directory, 4), other, other_size); /* exchanged */
+    overwrite(frame_path(directory, 5), data, size);
     data[size / 2] ^= 1;
-    put(frame_path(directory, 7), data, size); /* a bit */
+    overwrite(frame_path(directory, 7), data, size); /* one bit changed */
     other = realloc(other, other_size + 1);
-    put(frame_path(directory, PICTURES - 1), other, other_size + 1); /* a byte behind the end */
+    overwrite(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
     assert_int_equal(unlink(frame_path(directory, 9)), 0);
     free(data);
     free(other);
@@ -217,7 +216,7 @@ static void a_killed_sequence_goes_on(void **state) {
     }
 }
 
-/* A write was cut off by the end of the machine: the last line is a part of one, and pictures may be as well. */
+/* A power failure cuts a write: the last line may be partial, and so may pictures. */
 static void every_cut_of_the_journal_is_survived(void **state) {
     (void)state;
     Error error = {0};
@@ -227,28 +226,29 @@ static void every_cut_of_the_journal_is_survived(void **state) {
     snprintf(journal, sizeof journal, "%s.part", manifest_of(options.directory));
     size_t size;
     char *text = read_whole(journal, &size);
-    /* In the head, in the first line, in and behind the last. */
+    /* In the head, in the first line, in and after the last. */
     const size_t cuts[] = {0,        50,  (size_t)(strstr(text, "{\"file\"") - text) + 30, size - 90, size - 20,
                            size - 1, size};
     for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
         assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
-        put(journal, text, cuts[i]);
+        overwrite(journal, text, cuts[i]);
         resume(options.directory, NULL);
     }
     free(text);
 }
 
-/* The pictures of another sequence pass for none of this. */
-static void another_sequence_is_drawn_anew(void **state) {
+/* Pictures of another sequence are not kept. */
+static void another_sequence_is_redrawn(void **state) {
     (void)state;
     static const struct {
         RenderOptions options;
         const char *why;
-    } others[] = {{{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "is of other runs"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 is of"},
-                  {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "is of other runs"}};
+    } others[] = {
+        {{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         Error error = {0};
@@ -267,8 +267,8 @@ static void another_sequence_is_drawn_anew(void **state) {
     }
 }
 
-/* One bit of a run, of which no picture tells, is another run. */
-static void another_run_is_drawn_anew(void **state) {
+/* One different bit of a run makes it another run, even if no picture shows it. */
+static void another_run_is_redrawn(void **state) {
     (void)state;
     const char *directory = copied("run");
     char why[256];
@@ -282,7 +282,7 @@ static void another_run_is_drawn_anew(void **state) {
     free(result.hashes);
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
     assert_int_equal(resume(directory, why), 0);
-    assert_non_null(strstr(why, "is of other runs"));
+    assert_non_null(strstr(why, "differs: other runs"));
 }
 
 static char *replaced(const char *text, const char *from, const char *to) {
@@ -293,7 +293,7 @@ static char *replaced(const char *text, const char *from, const char *to) {
     return result;
 }
 
-/* Whatever a manifest says, the pictures become what they must be. */
+/* Whatever a manifest contains, the pictures become correct. */
 static void a_manifest_is_not_trusted(void **state) {
     (void)state;
     static const char *const changes[][2] = {
@@ -312,30 +312,30 @@ static void a_manifest_is_not_trusted(void **state) {
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         char *changed = replaced(text, changes[i][0], changes[i][1]);
         bool ours = strncmp(changed, text, 12) == 0;
-        put(manifest_of(directory), changed, strlen(changed));
+        overwrite(manifest_of(directory), changed, strlen(changed));
         free(changed);
         if (ours) assert_true(resume(directory, NULL) < PICTURES);
     }
     char *large = calloc(1, 1 << 20);
     memcpy(large, text, size);
-    put(manifest_of(directory), large, 1 << 20);
+    overwrite(manifest_of(directory), large, 1 << 20);
     assert_int_equal(resume(directory, NULL), 0);
     free(large);
     free(text);
 }
 
-/* Nor is what somebody else keeps there touched. */
-static void what_is_no_manifest_stays(void **state) {
+/* Files of other programs are not touched. */
+static void files_that_are_not_manifests_stay(void **state) {
     (void)state;
     static const char foreign[] = "{\"name\": \"my own\"}";
     Error error = {0};
     RenderOptions options = options_for(copied("foreign"));
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;
-        put(manifest_of(options.directory), foreign, sizeof foreign - 1);
+        overwrite(manifest_of(options.directory), foreign, sizeof foreign - 1);
         error = (Error){0};
         assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
-        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is no manifest of twinbox");
+        assert_error(error, ERROR_INPUT, "foreign/manifest.json: error: is not a manifest of twinbox");
         size_t size;
         char *text = read_whole(manifest_of(options.directory), &size);
         assert_string_equal(text, foreign);
@@ -348,7 +348,7 @@ static void what_is_no_manifest_stays(void **state) {
     assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
-    put(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
+    overwrite(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
     assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(count_files(options.directory, ".png"), PICTURES);
@@ -363,10 +363,10 @@ int main(void) {
         cmocka_unit_test(a_stopped_sequence_goes_on),
         cmocka_unit_test(a_killed_sequence_goes_on),
         cmocka_unit_test(every_cut_of_the_journal_is_survived),
-        cmocka_unit_test(another_sequence_is_drawn_anew),
-        cmocka_unit_test(another_run_is_drawn_anew),
+        cmocka_unit_test(another_sequence_is_redrawn),
+        cmocka_unit_test(another_run_is_redrawn),
         cmocka_unit_test(a_manifest_is_not_trusted),
-        cmocka_unit_test(what_is_no_manifest_stays),
+        cmocka_unit_test(files_that_are_not_manifests_stay),
     };
     return cmocka_run_group_tests(tests, make, destroy);
 }

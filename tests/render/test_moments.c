@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a video: laws of counts, order and parts. */
+/* The order of a video: counts, order and fractions. */
 #include "testing.h"
 
 #include "render/moments.h"
@@ -66,13 +66,13 @@ static void without_options_a_picture_is_a_frame(void **state) {
         assert_int_equal(moments_last(&plan) + 1, FRAMES);
         for (int i = 0; i < FRAMES; i++) {
             Moment moment = moments_at(&plan, i);
-            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.part == 0 && moment.slow == 1);
+            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.fraction == 0 && moment.slow == 1);
         }
     }
 }
 
-/* The time of the run, in frames. */
-static double time_of(Moment moment) { return moment.frame + moment.part; }
+/* Simulated time, in frames. */
+static double time_of(Moment moment) { return moment.frame + moment.fraction; }
 
 static void slow_motion_adds_parts_around_the_impact(void **state) {
     (void)state;
@@ -84,10 +84,10 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
             Moment moment = moments_at(&plan, i);
             bool inside = moment.frame >= IMPACT - BEFORE && moment.frame < IMPACT + AFTER;
             assert_int_equal(moment.slow, inside ? slow : 1);
-            assert_int_equal(moment.kind, moment.part > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
+            assert_int_equal(moment.kind, moment.fraction > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
             stored += moment.kind == MOMENT_STORED;
             if (i == 0) continue;
-            /* From each to the next passes what the one before says. */
+            /* The time between two moments is given by the earlier one. */
             Moment before = moments_at(&plan, i - 1);
             assert_near(time_of(moment) - time_of(before), 1.0 / before.slow, 1e-12);
         }
@@ -126,7 +126,7 @@ static void the_first_impact_of_all_panels_counts(void **state) {
 }
 
 static void assert_same_moment(Moment a, Moment b) {
-    assert_true(a.kind == b.kind && a.frame == b.frame && a.part == b.part && a.slow == b.slow);
+    assert_true(a.kind == b.kind && a.frame == b.frame && a.fraction == b.fraction && a.slow == b.slow);
 }
 
 static void cards_and_hold_stand_around_the_run(void **state) {
@@ -153,8 +153,8 @@ static void cards_and_hold_stand_around_the_run(void **state) {
     assert_int_equal(moments_last(&end) + 1, FRAMES + CARD);
 }
 
-/* A part has cards and hold of its own, and the run's own moments in between; its numbers begin with the first frame. */
-static void a_part_is_a_sequence_of_its_own(void **state) {
+/* A range of frames has its own cards and hold around the run's moments; its indices begin with the first frame. */
+static void a_range_of_frames_is_a_complete_sequence(void **state) {
     (void)state;
     MomentPlan bare = plan_for((RenderOptions){.slow = 5});
     RenderOptions options = {.slow = 5, .hold = 0.5, .title_card = true, .end_card = true};
@@ -182,10 +182,10 @@ static void what_is_out_of_range_is_refused(void **state) {
     static const struct {
         RenderOptions options;
         const char *text;
-    } wrong[] = {{{.slow = -1}, "-1 times slower"},
-                 {{.slow = 17}, "17 times slower asked for; it can be up to 16"},
-                 {{.hold = -1}, "held for -1 s"},
-                 {{.hold = 61}, "held for 61 s; it can be up to 60"},
+    } wrong[] = {{{.slow = -1}, "must be 0 to 16 (got -1)"},
+                 {{.slow = 17}, "must be 0 to 16 (got 17)"},
+                 {{.hold = -1}, "held for 0 to 60 s (got -1)"},
+                 {{.hold = 61}, "held for 0 to 60 s (got 61)"},
                  {{.hold = NAN}, "held for"}};
     const Trajectory *panels[] = {run};
     MomentPlan plan;
@@ -197,7 +197,7 @@ static void what_is_out_of_range_is_refused(void **state) {
     Error error = {0};
     run->dt = 1e-9F;
     assert_false(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error));
-    assert_error(error, ERROR_INPUT, "more pictures than a sequence can have");
+    assert_error(error, ERROR_INPUT, "too many pictures for one sequence");
     run->dt = 10;
     assert_true(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.slow = 2, .title_card = true}, &error));
     assert_true(plan.title == 1 && plan.slow_first == IMPACT - 1 && plan.slow_last == IMPACT + 1);
@@ -212,7 +212,7 @@ int main(void) {
         cmocka_unit_test(slow_motion_ends_where_the_run_does),
         cmocka_unit_test(the_first_impact_of_all_panels_counts),
         cmocka_unit_test(cards_and_hold_stand_around_the_run),
-        cmocka_unit_test(a_part_is_a_sequence_of_its_own),
+        cmocka_unit_test(a_range_of_frames_is_a_complete_sequence),
         cmocka_unit_test(what_is_out_of_range_is_refused),
     };
     return cmocka_run_group_tests(tests, make, destroy);

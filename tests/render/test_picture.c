@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whole frames: the same in both contexts, whatever the trajectories hold, and steady from frame to frame. */
+/* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
 #include "testing.h"
 
 #include "mesa.h"
@@ -57,7 +57,7 @@ static void both_contexts_draw_the_same(void **state) {
     }
 }
 
-/* Of a frame, without the header and captions. */
+/* A panel without header and captions. */
 static void copy_panel(Image *to, const Image *from, const Rect *rect) {
     for (int y = rect->top; y < rect->bottom; y++) {
         size_t start = ((size_t)y * (size_t)from->width + (size_t)rect->left) * 4;
@@ -82,12 +82,13 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     copy_panel(b, later, &rects[0]);
     assert_true(image_hash(a) != image_hash(b));
     Rect caption = {rects[1].left, rects[1].top - 20, rects[1].right, rects[1].top - 2};
-    copy_panel(a, later, &rects[0]); /* the same but for the word "ended" */
+    copy_panel(a, later, &rects[0]); /* equal except for "ended" */
     assert_true(image_hash(a) == image_hash(b));
     copy_panel(a, last, &caption);
     copy_panel(b, later, &caption);
     assert_true(image_hash(a) != image_hash(b));
-    assert_true(isnan(picture_apart(&picture, moment_stored(9))) && picture_apart(&picture, moment_stored(5)) == 0);
+    assert_true(isnan(picture_distance(&picture, moment_stored(9))) &&
+                picture_distance(&picture, moment_stored(5)) == 0);
     image_destroy(last);
     image_destroy(later);
     image_destroy(a);
@@ -101,14 +102,14 @@ static void the_largest_distance_of_any_panel_counts(void **state) {
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
     run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
-    assert_true(fabs(picture_apart(&picture, moment_stored(4)) - 2) < 1e-6);
-    assert_true(picture_apart(&picture, moment_stored(3)) == 0);
-    assert_true(fabs(picture.largest_apart - 2) < 1e-6);
+    assert_true(fabs(picture_distance(&picture, moment_stored(4)) - 2) < 1e-6);
+    assert_true(picture_distance(&picture, moment_stored(3)) == 0);
+    assert_true(fabs(picture.largest_distance - 2) < 1e-6);
     assert_ok(picture_plan(&picture, panels, 1, 640, 360, &error), error);
-    assert_true(isnan(picture_apart(&picture, moment_stored(4))));
+    assert_true(isnan(picture_distance(&picture, moment_stored(4))));
 }
 
-/* Seen in the header: the distance and nothing else. */
+/* The header shows the distance, and nothing else changes. */
 static void the_distance_is_written_down(void **state) {
     (void)state;
     uint64_t before = hash_of(2, 640, 360, 4);
@@ -148,10 +149,10 @@ static void bodies_out_of_view_are_counted(void **state) {
     Error error = {0};
     *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
     *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
-    *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* not there at all */
+    *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* does not exist */
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
-    assert_int_equal(panel_count_unseen(&picture, 1, moment_stored(5)), 2);
-    assert_int_equal(panel_count_unseen(&picture, 0, moment_stored(5)), 0);
+    assert_int_equal(panel_count_out_of_view(&picture, 1, moment_stored(5)), 2);
+    assert_int_equal(panel_count_out_of_view(&picture, 0, moment_stored(5)), 0);
 }
 
 static void an_absent_body_is_not_drawn(void **state) {
@@ -179,7 +180,7 @@ static uint64_t hash_with_words(const char *title, const char *note) {
     return hash;
 }
 
-/* The scene's own name as the title is no other picture; each word that differs is one. */
+/* The scene's own name as title changes nothing; every other text does. */
 static void a_title_and_notes_are_drawn(void **state) {
     (void)state;
     uint64_t plain = hash_of(2, 1280, 720, 4);
@@ -190,7 +191,7 @@ static void a_title_and_notes_are_drawn(void **state) {
     assert_true(falls != plain && falls != hash_with_words(NULL, "sinks"));
 }
 
-/* From 9 to 10 and from 99 to 100 the words beside the numbers stay where they are. */
+/* From 9 to 10 and from 99 to 100, the text beside the numbers does not move. */
 static void captions_do_not_jump(void **state) {
     (void)state;
     trajectory_destroy(runs[0]);
@@ -214,7 +215,7 @@ static uint64_t hash_with_method(const char *method) {
     return hash_of(2, 640, 360, 4);
 }
 
-/* The same network elsewhere on a disk is the same picture; another setting is another. */
+/* The same network in another folder gives the same picture; another setting another one. */
 static void folders_of_networks_are_left_out(void **state) {
     (void)state;
     uint64_t hash = hash_with_method("pair-net:network=b.npz,dt=1/60");
@@ -248,13 +249,13 @@ static void what_cannot_be_shown_is_refused(void **state) {
         Error error = {0};
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
         assert_null(renderer_create(panels, 1, &options, &error));
-        assert_error(error, ERROR_INPUT, "each side can be 64 to 8192");
+        assert_error(error, ERROR_INPUT, "must be 64 to 8192 pixels (got");
     }
     RenderOptions options = {.width = 64, .height = 64};
     for (int count = 0; count <= 7; count += 7) {
         Error error = {0};
         assert_null(renderer_create(panels, count, &options, &error));
-        assert_error(error, ERROR_INPUT, "1 to 6 can be shown");
+        assert_error(error, ERROR_INPUT, "the number of panels must be 1 to 6 (got");
     }
     Error error = {0};
     runs[1]->dt = 1.0F / 50;

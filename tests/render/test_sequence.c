@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sequences: the same files from any number of processes, and every way to fail has a reason. */
+/* Sequences: the same files with any number of processes, and an error message for every failure. */
 #include "testing.h"
 
 #include "folders.h"
@@ -86,7 +86,7 @@ static void frames_tell_their_origin(void **state) {
     char hashes[64];
     snprintf(hashes, sizeof hashes, "%016llx | %016llx",
              (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
-             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last: it has ended */
+             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last frame: it has ended */
     assert_text(path, "Scene", "two_boxes");
     assert_text(path, "Method", "engine | pair-net:network=nets/small.npz");
     assert_text(path, "Frame", "10");
@@ -118,7 +118,7 @@ static void progress_counts_the_frames(void **state) {
     assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
 }
 
-/* No process stays, and no file is half there. */
+/* No process remains, and no file is incomplete. */
 static void a_sequence_can_be_stopped(void **state) {
     (void)state;
     Error error = {0};
@@ -137,7 +137,7 @@ static void a_sequence_can_be_stopped(void **state) {
     }
 }
 
-/* A limit on the size of files stands for a full disk: with its signal ignored, write() fails. */
+/* A file size limit simulates a full disk: with its signal ignored, write() fails. */
 static void limit_files(rlim_t bytes, void (*handler)(int)) {
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -151,7 +151,7 @@ static void a_full_disk_is_told(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
-    /* No room for the manifest, for a picture (of 3 kB), for what the manifest grows by. */
+    /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
     static const struct {
         rlim_t bytes;
         const char *text;
@@ -168,8 +168,8 @@ static void a_full_disk_is_told(void **state) {
     }
 }
 
-/* The same limit, unheeded, kills the process. */
-static void a_killed_process_is_told(void **state) {
+/* With its signal, the same limit kills the process. */
+static void a_killed_process_is_reported(void **state) {
     (void)state;
     Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
@@ -177,7 +177,7 @@ static void a_killed_process_is_told(void **state) {
     bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
-    assert_error(error, ERROR_SYSTEM, "a drawing process was ended by signal");
+    assert_error(error, ERROR_SYSTEM, "a drawing process was killed by signal");
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
 }
 
@@ -202,13 +202,13 @@ static void wrong_options_are_refused(void **state) {
         RenderOptions options;
         const char *text;
     } wrong[] = {
-        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "0 jobs asked for; there can be 1 to 256"},
-        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "257 jobs"},
+        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "the number of jobs must be 1 to 256 (got 0)"},
+        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "(got 257)"},
         {{.width = 16, .height = 90, .last = -1, .jobs = 1}, "16 x 90"},
-        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "the frames are 0 to 10"},
-        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "frames 3 to 11 asked for"},
-        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "frames 3 to 2 asked for"},
-        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "frames -1 to 2 asked for"},
+        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "within 0 to 10 (got 11 to 10)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "(got 3 to 11)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "(got 3 to 2)"},
+        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "(got -1 to 2)"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         Error error = {0};
@@ -228,7 +228,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(progress_counts_the_frames, make, destroy),
         cmocka_unit_test_setup_teardown(a_sequence_can_be_stopped, make, destroy),
         cmocka_unit_test_setup_teardown(a_full_disk_is_told, make, destroy),
-        cmocka_unit_test_setup_teardown(a_killed_process_is_told, make, destroy),
+        cmocka_unit_test_setup_teardown(a_killed_process_is_reported, make, destroy),
         cmocka_unit_test_setup_teardown(folders_that_cannot_be_written_are_refused, make, destroy),
         cmocka_unit_test_setup_teardown(wrong_options_are_refused, make, destroy),
     };

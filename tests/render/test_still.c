@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bodies on nothing: what alpha says, and which are there. */
+/* Bodies on a transparent background: alpha, and which bodies are drawn. */
 #include "testing.h"
 
 #include "render/mesa.h"
@@ -8,7 +8,7 @@
 
 enum { SIDE = 200 };
 
-/* 20 pixels a metre; the ground's top is row 160. */
+/* 20 pixels per metre; the ground's top is row 160. */
 static const Camera camera = {20, 100, 160};
 
 static Image *shoot(const Trajectory *run, int frame, int colours, StillParts parts) {
@@ -34,7 +34,7 @@ static void bodies_stand_on_nothing(void **state) {
     expect_pixel(image, 60, 150, 0x0072B2FF);  /* the middle of the first box */
     expect_pixel(image, 100, 150, 0x00000000); /* between the boxes */
     expect_pixel(image, 100, 180, 0xD3D8DFFF); /* the ground */
-    expect_pixel(image, 120, 48, 0x00000000);  /* the bomb comes later */
+    expect_pixel(image, 120, 48, 0x00000000);  /* the bomb appears later */
     image_destroy(image);
     image = shoot(run, 0, 1, STILL_MOVING);
     expect_pixel(image, 60, 150, 0xE69F00FF);
@@ -47,7 +47,7 @@ static void bodies_stand_on_nothing(void **state) {
     trajectory_destroy(run);
 }
 
-/* Alpha adds up to the boxes' areas (their corners are round): an edge between pixels counts in part. */
+/* Alpha sums to the boxes' areas (corners are round): an edge within a pixel counts in part. */
 static void alpha_is_coverage(void **state) {
     (void)state;
     Trajectory *run = run_make("engine", 8);
@@ -69,11 +69,11 @@ static void alpha_is_coverage(void **state) {
 static void sizes_are_limited(void **state) {
     (void)state;
     Error error = {0};
-    assert_null(still_create(RENDER_LARGEST_SIDE + 1, 10, &error));
-    assert_error(error, ERROR_INPUT, "8193 x 10 pixels");
+    assert_null(still_create(RENDER_SIDE_MAX + 1, 10, &error));
+    assert_error(error, ERROR_INPUT, "(got 8193 x 10)");
     error = (Error){0};
     assert_null(still_create(10, 0, &error));
-    assert_error(error, ERROR_INPUT, "10 x 0 pixels");
+    assert_error(error, ERROR_INPUT, "(got 10 x 0)");
 }
 
 int main(void) {

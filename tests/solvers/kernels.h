@@ -27,8 +27,8 @@ static inline void free_solution(ContactSolution *solution) {
     free(solution->impulses);
 }
 
-/* What rounding makes of the fastest velocity of a problem, m/s and rad/s: the unit of what two solvers may differ by that
-   do the same in another order. */
+/* The rounding error of the largest velocity of a problem, m/s and rad/s: the unit of differences between solvers that
+   perform the same operations in another order. */
 static inline double rounding_of(const ContactProblem *problem) {
     float most = 1;
     for (int i = 0; i < problem->body_count; i++) {
@@ -70,7 +70,7 @@ static inline void assert_momentum_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], c
     assert_true(colours_order(&colours, problem));
     if (!coloured)
         for (int i = 0; i < problem->contact_count; i++) colours.visits[i] = i;
-    momentum_solve_plain(problem, colours.visits, factors, iterations, &before, &plain);
+    momentum_solve_scalar(problem, colours.visits, factors, iterations, &before, &plain);
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
         assert_true(coloured ? sweeps_begin_coloured(&sweeps[kernel], kernel, problem)

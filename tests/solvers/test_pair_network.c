@@ -9,18 +9,17 @@ static void texts_that_do_not_fit_each_other_are_refused(void **state) {
     assert_ok(network != NULL, error);
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     strcpy(network->target, "pair");
-    assert_network_refused(
-        &solver_pair_net, write_pair_network(network),
-        "a network with the inputs relative, the target pair and 3 outputs (); of outputs it needs 2 "
-        "(dvx dvy) or 6 (dvxa dvya dwa dvxb dvyb dwb)");
+    assert_network_refused(&solver_pair_net, write_pair_network(network),
+                           "the network has the inputs relative, the target pair and 3 outputs (); it needs outputs 2 "
+                           "(dvx dvy) or 6 (dvxa dvya dwa dvxb dvyb dwb)");
     network = make_pair_network(PAIR_CONTACT, TARGET_PAIR, 2);
     strcpy(network->outputs, "dvx dvy");
     assert_network_refused(&solver_pair_net, write_pair_network(network),
-                           "2 outputs (dvx dvy); of outputs it needs 2 (dvn");
+                           "2 outputs (dvx dvy); it needs outputs 2 (dvn");
     network = make_pair_network(PAIR_RAW, TARGET_PAIR, 2);
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     assert_network_refused(&solver_pair_net, write_pair_network(network),
-                           "a network with 12 inputs (dx dy vxa vya vxb vyb wa wb angle_a angle_b); a pair is seen by "
+                           "the network has 12 inputs (dx dy vxa vya vxb vyb wa wb angle_a angle_b); it needs "
                            "those of relative (10), raw (12), raw-unturned (10), contact (20), neighbours (32)");
     network = make_pair_network(PAIR_RAW, TARGET_PAIR, 2);
     strcpy(network->target, "gross");
@@ -29,7 +28,7 @@ static void texts_that_do_not_fit_each_other_are_refused(void **state) {
     network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, 6);
     strcpy(network->target, "points");
     assert_network_refused(&solver_contact_net, write_pair_network(network),
-                           "the target points with the inputs relative; it needs those of contact or neighbours");
+                           "the target points and the inputs relative; it needs those of contact or neighbours");
     network = make_pair_network(PAIR_NEIGHBOURS, TARGET_PAIR, 6);
     strcpy(network->target, "impulse");
     assert_network_refused(&solver_constant, write_pair_network(network),
@@ -38,13 +37,14 @@ static void texts_that_do_not_fit_each_other_are_refused(void **state) {
 
 static void other_methods_networks_are_refused(void **state) {
     (void)state;
-    assert_network_refused(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, six),
-                           "a network of the target points, which are contact-net's");
+    assert_network_refused(
+        &solver_pair_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, six),
+        "the network has the target points, which is for contact-net; pair-net needs the target pair, ");
     assert_network_refused(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_IMPULSE, 2, six),
-                           "it needs the impulses so far at the points");
+                           "which include accumulated impulses; pair-net has none");
     assert_network_refused(
         &solver_contact_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six),
-        "a network of the target net, which is pair-net's; contact-net needs one of the target points");
+        "the network has the target net, which is for pair-net; contact-net needs the target points");
     Error error = {0};
     assert_null(solver_pair_net.create(&(Settings){0}, &error));
     assert_error(error, ERROR_INPUT, "pair-net: error: the scene names no network for it: use pair-net:network=FILE");

@@ -133,10 +133,10 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     problem.contacts = contacts;
     ContactSolution plain = make_solution(&problem), before = make_solution(&problem), fast = make_solution(&problem);
     float factors[10];
-    for (int s = 0; s < 10; s++) factors[s] = momentum_factor_by_hand(s, 10);
+    for (int s = 0; s < 10; s++) factors[s] = momentum_factor_tuned(s, 10);
     Colours colours = {0};
     assert_true(colours_order(&colours, &problem));
-    momentum_solve_plain(&problem, colours.visits, factors, 10, &before, &plain);
+    momentum_solve_scalar(&problem, colours.visits, factors, 10, &before, &plain);
     solve_with(&solver_momentum, "", &problem, &fast);
     bool finite = isfinite(plain.velocities[1].linear.y);
     assert_false(finite);
@@ -152,7 +152,7 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
 static void assert_refused(const ContactSolverKind *kind, const char *text, const char *message) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
     assert_null(kind->create(&settings, &error));
     assert_error(error, ERROR_INPUT, message);
 }
@@ -177,7 +177,7 @@ static const char *write_schedules(void) {
     Error error = {0};
     MomentumSchedules schedules = {0};
     float factors[20];
-    for (int s = 0; s < 20; s++) factors[s] = momentum_factor_by_hand(s, 20);
+    for (int s = 0; s < 20; s++) factors[s] = momentum_factor_tuned(s, 20);
     assert_ok(momentum_schedules_add(&schedules, 5, factors, &error), error);
     assert_ok(momentum_schedules_add(&schedules, 20, factors, &error), error);
     const char *path = temporary_path("schedules.npz");

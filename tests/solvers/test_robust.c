@@ -23,9 +23,9 @@ static ContactProblem begin(World *world) {
     return problem;
 }
 
-static ForestAnswer answer_to(const ContactProblem *problem) {
+static ForestResult answer_to(const ContactProblem *problem) {
     Forest forest = {0};
-    ForestAnswer answer;
+    ForestResult answer;
     ContactSolution room = make_solution(problem);
     assert_true(forest_solve(&forest, problem, room.impulses, &answer));
     free_solution(&room);

@@ -86,7 +86,7 @@ static void another_scene_is_refused(void **state) {
     ContactProblem *problem = &known.random.problem;
     const int bomb = known.network->bomb, bodies = problem->body_count;
     problem->bomb = bomb == 0 ? 1 : 0;
-    snprintf(text, sizeof text, "scene-net: error: the network is for the scene random, where the bomb is body %d",
+    snprintf(text, sizeof text, "scene-net: error: the network is for the scene random, with the bomb as body %d",
              bomb);
     assert_refused(&known, text);
     problem->bomb = bomb;

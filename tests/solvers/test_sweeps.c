@@ -88,7 +88,7 @@ static void momentum_of_factor_zero_has_the_bits_of_the_engine(void **state) {
         ContactSolution engine = make_solution(&random.problem), before = make_solution(&random.problem);
         ContactSolution momentum = make_solution(&random.problem);
         sequential_impulses_solve(&random.problem, &engine_options, 17, &engine);
-        momentum_solve_plain(&random.problem, as_given, zeros, 17, &before, &momentum);
+        momentum_solve_scalar(&random.problem, as_given, zeros, 17, &before, &momentum);
         assert_same_bits(&random.problem, &momentum, &engine, "factors 0");
         free_solution(&engine);
         free_solution(&before);

@@ -12,7 +12,7 @@ static const float world_dt = 1.0f / 60.0f;
 static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
     Error error = {0};
     Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->settings, kind->name, &error), error);
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
     ContactSolver solver = {kind, kind->create(&settings, &error)};
     assert_ok(solver.state != NULL, error);
     return solver;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of a stability study made up by a test, and what is drawn of them. */
+/* Synthetic tables of a stability study, and their figures. */
 #pragma once
 #include "python.h"
 
@@ -46,7 +46,7 @@ static inline void draw(void) {
     "def expect(found, wanted, what):\n"                                                      \
     "    assert found == wanted, (what, found, wanted)\n"
 
-/* Nothing is drawn of a table that is refused. */
+/* Nothing is drawn of an invalid table. */
 static inline void expect_refused(const char *maps, const char *borders, const char *message) {
     Error error = {0};
     start_afresh(maps, borders);

@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Borders of functions that are known: where they lie, in which order they are listed, what luck does to them. */
+/* Borders of known functions: their values, their order, and undecided values. */
 #include "testing.h"
 
 #include "stability/border_search.h"
 
 #include <math.h>
 
-/* Fails, as `how`, in the intervals [from, to] of value; in luck's only with the seed that is named. */
+/* Fails, as `how`, in the intervals [from, to]; in the undecided interval only for failing_seed (-1: no such
+   interval). */
 typedef struct Made {
     double from[3], to[3];
     int intervals;
-    double luck_from, luck_to;
-    int luck_seed;
+    double undecided_from, undecided_to;
+    int failing_seed;
     Verdict how;
-    int asked;
+    int calls;
 } Made;
 
-static bool ask(void *context, double value, int seed, Verdict *verdict, Error *error) {
+static bool evaluate(void *context, double value, int seed, Verdict *verdict, Error *error) {
     Made *made = context;
-    made->asked++;
+    made->calls++;
     if (made->how == VERDICTS) return error_input(error, "made", "refused");
     *verdict = value > 5 ? VERDICT_CREEPS : VERDICT_SETTLES;
     for (int i = 0; i < made->intervals; i++)
         if (value >= made->from[i] && value <= made->to[i]) *verdict = made->how;
-    if (made->luck_seed >= 0 && value >= made->luck_from && value <= made->luck_to)
-        *verdict = seed == made->luck_seed ? VERDICT_EXPLODES : VERDICT_SETTLES;
+    if (made->failing_seed >= 0 && value >= made->undecided_from && value <= made->undecided_to)
+        *verdict = seed == made->failing_seed ? VERDICT_EXPLODES : VERDICT_SETTLES;
     return true;
 }
 
 static BorderList search(const BorderScan *scan, Made *made) {
     Error error = {0};
     BorderList list;
-    assert_ok(border_search(&list, scan, &(BorderProbe){ask, made, BORDER_SEEDS}, &error), error);
+    assert_ok(border_search(&list, scan, &(BorderProbe){evaluate, made, BORDER_SEEDS}, &error), error);
     return list;
 }
 
@@ -49,18 +50,18 @@ static const BorderScan heights = {.from = 2, .to = 40, .points = 10, .whole = t
 static void one_border_is_found_to_the_unit(void **state) {
     (void)state;
     for (int first = 3; first <= 40; first++) {
-        Made made = {.from = {first}, .to = {99}, .intervals = 1, .luck_seed = -1, .how = VERDICT_FALLS};
+        Made made = {.from = {first}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
         BorderList list = search(&heights, &made);
         assert_int_equal(list.count, 1);
         assert_border(&list, 0, first - 1, first, VERDICT_FALLS);
-        assert_true(made.asked <= 10 + 3 + 4 + 6); /* scan, bisection of a step of 5, seeds, two values beside */
+        assert_true(made.calls <= 10 + 3 + 4 + 6); /* scan, bisection of a step of 5, seeds, two values beside */
     }
 }
 
 static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
     (void)state;
     const BorderScan scan = {.from = 0, .to = 0.6, .points = 7};
-    Made made = {.from = {0.2345}, .to = {1}, .intervals = 1, .luck_seed = -1, .how = VERDICT_FALLS};
+    Made made = {.from = {0.2345}, .to = {1}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&scan, &made);
     assert_int_equal(list.count, 1);
     const Border *border = &list.items[0];
@@ -68,14 +69,14 @@ static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
     assert_true(border->fails_at - border->holds_at <= 0.006);
 }
 
-/* Iterations: fails at low values; 17 begins to hold. Between 16 and 17 there is nothing, though it is a factor of 1.06. */
+/* Iterations: fails at low values, holds from 17. 16 and 17 are neighbours, although their ratio is 1.06. */
 static void logarithmic_is_found_to_a_factor(void **state) {
     (void)state;
     const BorderScan counts = {
         .from = 1, .to = 100, .points = 8, .logarithmic = true, .whole = true, .fails_low = true};
     const BorderScan ratios = {.from = 1, .to = 1000, .points = 10, .logarithmic = true};
-    Made few = {.from = {0}, .to = {16}, .intervals = 1, .luck_seed = -1, .how = VERDICT_SINKS};
-    Made heavy = {.from = {77.7}, .to = {1e9}, .intervals = 1, .luck_seed = -1, .how = VERDICT_FALLS};
+    Made few = {.from = {0}, .to = {16}, .intervals = 1, .failing_seed = -1, .how = VERDICT_SINKS};
+    Made heavy = {.from = {77.7}, .to = {1e9}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&counts, &few);
     assert_int_equal(list.count, 1);
     assert_border(&list, 0, 17, 16, VERDICT_SINKS);
@@ -88,7 +89,7 @@ static void logarithmic_is_found_to_a_factor(void **state) {
 /* Holds to 9, fails from 10 to 20, holds to 30, fails from 31. */
 static void all_borders_are_listed(void **state) {
     (void)state;
-    Made made = {.from = {10, 31}, .to = {20, 99}, .intervals = 2, .luck_seed = -1, .how = VERDICT_FALLS};
+    Made made = {.from = {10, 31}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&heights, &made);
     assert_int_equal(list.count, 3);
     assert_border(&list, 0, 9, 10, VERDICT_FALLS);
@@ -102,10 +103,10 @@ static void all_borders_are_listed(void **state) {
     assert_border(&list, 2, 9, 10, VERDICT_FALLS);
 }
 
-/* Holds to 21, but for 20: too little for a scan of ..., 19, 23, ... and a bisection at 21 to see. */
+/* Holds to 21 except at 20, which a scan of ..., 19, 23, ... and a bisection at 21 miss. */
 static void a_hole_beside_a_border_is_found(void **state) {
     (void)state;
-    Made made = {.from = {20, 22}, .to = {20, 99}, .intervals = 2, .luck_seed = -1, .how = VERDICT_FALLS};
+    Made made = {.from = {20, 22}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&heights, &made);
     assert_int_equal(list.count, 3);
     assert_border(&list, 0, 19, 20, VERDICT_FALLS);
@@ -115,8 +116,8 @@ static void a_hole_beside_a_border_is_found(void **state) {
 
 static void without_a_border_there_is_one_side(void **state) {
     (void)state;
-    Made holds = {.luck_seed = -1, .how = VERDICT_FALLS};
-    Made fails = {.from = {0}, .to = {99}, .intervals = 1, .luck_seed = -1, .how = VERDICT_TUNNELS};
+    Made holds = {.failing_seed = -1, .how = VERDICT_FALLS};
+    Made fails = {.from = {0}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_TUNNELS};
     BorderScan backwards = heights;
     backwards.fails_low = true;
     BorderList list = search(&heights, &holds);
@@ -129,19 +130,19 @@ static void without_a_border_there_is_one_side(void **state) {
     assert_border(&list, 0, NAN, 2, VERDICT_TUNNELS);
     list = search(&backwards, &fails);
     assert_border(&list, 0, NAN, 40, VERDICT_TUNNELS);
-    assert_int_equal(holds.asked, 2 * 10);
+    assert_int_equal(holds.calls, 2 * 10);
 }
 
-/* Holds to 14 and fails from 20; between them, one seed of three explodes. */
-static void luck_is_no_side_of_a_border(void **state) {
+/* Holds to 14 and fails from 20; between them, one of three seeds explodes. */
+static void undecided_values_are_no_side_of_a_border(void **state) {
     (void)state;
     for (int seed = 0; seed < BORDER_SEEDS; seed++) {
         Made made = {.from = {20},
                      .to = {99},
                      .intervals = 1,
-                     .luck_from = 15,
-                     .luck_to = 19,
-                     .luck_seed = seed,
+                     .undecided_from = 15,
+                     .undecided_to = 19,
+                     .failing_seed = seed,
                      .how = VERDICT_FALLS};
         BorderList list = search(&heights, &made);
         assert_int_equal(list.count, 1);
@@ -149,21 +150,22 @@ static void luck_is_no_side_of_a_border(void **state) {
     }
 }
 
-/* From 33 on all but the first seed explode: the first one's scan sees a change at the end of the other interval only. */
-static void luck_at_an_end_is_told(void **state) {
+/* From 33 on only the first seed explodes. */
+static void undecided_values_at_the_end_are_reported(void **state) {
     (void)state;
-    Made made = {.luck_from = 33, .luck_to = 99, .luck_seed = 0, .how = VERDICT_FALLS};
+    Made made = {.undecided_from = 33, .undecided_to = 99, .failing_seed = 0, .how = VERDICT_FALLS};
     BorderList list = search(&heights, &made);
     assert_int_equal(list.count, 1);
     assert_border(&list, 0, 32, NAN, VERDICT_EXPLODES);
-    made = (Made){.from = {8}, .to = {12}, .intervals = 1, .luck_from = 33, .luck_to = 99, .how = VERDICT_FALLS};
+    made =
+        (Made){.from = {8}, .to = {12}, .intervals = 1, .undecided_from = 33, .undecided_to = 99, .how = VERDICT_FALLS};
     list = search(&heights, &made);
     assert_int_equal(list.count, 3);
     assert_border(&list, 1, 13, 12, VERDICT_FALLS);
     assert_border(&list, 2, 32, NAN, VERDICT_EXPLODES);
 }
 
-static void values_are_those_that_a_table_names(void **state) {
+static void values_are_rounded_as_in_tables(void **state) {
     (void)state;
     double values[BORDER_POINTS_MAX];
     const BorderScan few = {.from = 1, .to = 4, .points = 9, .logarithmic = true, .whole = true};
@@ -175,14 +177,14 @@ static void values_are_those_that_a_table_names(void **state) {
     assert_near(values[9], 1000, 0);
 }
 
-static void a_question_that_fails_ends_the_search(void **state) {
+static void a_failing_evaluation_ends_the_search(void **state) {
     (void)state;
     Error error = {0};
     BorderList list;
     Made made = {.how = VERDICTS};
-    assert_false(border_search(&list, &heights, &(BorderProbe){ask, &made, 1}, &error));
+    assert_false(border_search(&list, &heights, &(BorderProbe){evaluate, &made, 1}, &error));
     assert_error(error, ERROR_INPUT, "refused");
-    assert_int_equal(made.asked, 1);
+    assert_int_equal(made.calls, 1);
 }
 
 int main(void) {
@@ -192,9 +194,9 @@ int main(void) {
                                        cmocka_unit_test(all_borders_are_listed),
                                        cmocka_unit_test(a_hole_beside_a_border_is_found),
                                        cmocka_unit_test(without_a_border_there_is_one_side),
-                                       cmocka_unit_test(luck_is_no_side_of_a_border),
-                                       cmocka_unit_test(luck_at_an_end_is_told),
-                                       cmocka_unit_test(values_are_those_that_a_table_names),
-                                       cmocka_unit_test(a_question_that_fails_ends_the_search)};
+                                       cmocka_unit_test(undecided_values_are_no_side_of_a_border),
+                                       cmocka_unit_test(undecided_values_at_the_end_are_reported),
+                                       cmocka_unit_test(values_are_rounded_as_in_tables),
+                                       cmocka_unit_test(a_failing_evaluation_ends_the_search)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the method `robust` is for: the scenes that the engine fails with ten sweeps, and robust holds for a minute. */
+/* The purpose of the method `robust`: scenes in which the engine fails with ten sweeps and robust holds for a
+   minute. */
 #include "stability/trial.h"
 
 #include "collision/uniform.h"
@@ -29,7 +30,7 @@ static void converge(EnergyLog *log, const Scene *scene) {
     assert_ok(energy_log_run(log, scene, &reference, &error), error);
 }
 
-/* The engine does not hold it, robust comes to rest. */
+/* The engine fails, robust settles. */
 static void assert_only_robust_settles(const char *name, const SceneSetting *settings, int count) {
     Scene *scene = read_scene(name, settings, count);
     EnergyLog converged = {0};
@@ -61,8 +62,8 @@ static void ten_boxes_settle_at_30_hz(void **state) {
     assert_only_robust_settles("time_step", (SceneSetting[]){{"rate", 30}, {"height", 10}}, 2);
 }
 
-/* Boxes that a step has pushed apart push no more in the next: its impulses are no start. */
-static void a_stack_that_begins_in_itself_does_not_explode(void **state) {
+/* Impulses that push overlapping boxes apart must not be used as a warm start. */
+static void an_overlapping_stack_does_not_explode(void **state) {
     (void)state;
     Scene *scene = read_scene("overlap", NULL, 0);
     EnergyLog converged = {0};
@@ -84,8 +85,8 @@ static void assert_strike_does_not_explode(float x, float spin, float mass) {
     scene_destroy(scene);
 }
 
-/* A box that is struck may slide, tip or fly: what would hold it in its place is no start, nor is what has held the blow
-   one for the step after it. */
+/* A box that is hit may slide, tip or fly: neither the impulses that would hold it in place nor those of the impact
+   itself are a valid warm start for the next step. */
 static void stacks_that_bombs_strike_do_not_explode(void **state) {
     (void)state;
     uint32_t seed = 1;
@@ -101,7 +102,7 @@ int main(void) {
                                        cmocka_unit_test(two_hundred_to_one_settles),
                                        cmocka_unit_test(fifty_to_one_settles_on_nine),
                                        cmocka_unit_test(ten_boxes_settle_at_30_hz),
-                                       cmocka_unit_test(a_stack_that_begins_in_itself_does_not_explode),
+                                       cmocka_unit_test(an_overlapping_stack_does_not_explode),
                                        cmocka_unit_test(stacks_that_bombs_strike_do_not_explode)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of studies, single cases, and whole studies of what is quick to run. */
+/* The table of studies, single cases, and complete quick studies. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -8,7 +8,7 @@
 
 static const char scenes[] = SOURCE_DIR "/scenes";
 
-/* A parameter of the scene, within its bounds, whole where that is. */
+/* The scan is of a parameter of the scene, within its bounds, and whole if the parameter is. */
 static void assert_fits(const Scene *scene, const char *name, const BorderScan *scan) {
     for (int i = 0; i < scene->parameter_count; i++) {
         const SceneParameter *parameter = &scene->parameters[i];
@@ -28,7 +28,7 @@ static Scene *read_scene(const char *name) {
     return scene;
 }
 
-static void studies_are_of_parameters_that_there_are(void **state) {
+static void studies_scan_parameters_of_their_scenes(void **state) {
     (void)state;
     for (int i = 0; i < stability_study_count; i++) {
         const StabilityStudy *study = &stability_studies[i];
@@ -52,8 +52,8 @@ static void studies_are_of_parameters_that_there_are(void **state) {
     }
 }
 
-/* The first body that moves, by a micrometre; a shot has none but the bomb. */
-static void a_seed_shifts_the_first_that_moves(void **state) {
+/* The first dynamic body, by a micrometre; or the bomb, if it is the only one. */
+static void a_seed_shifts_the_first_dynamic_body(void **state) {
     (void)state;
     for (int seed = 0; seed < BORDER_SEEDS; seed++) {
         const float by = seed == 0 ? 0 : seed == 1 ? 1e-6f : -1e-6f;
@@ -77,7 +77,7 @@ static Method method_of(const char *text) {
     return method;
 }
 
-static void methods_that_do_not_go_with_a_scene_say_why(void **state) {
+static void methods_that_do_not_apply_have_a_reason(void **state) {
     (void)state;
     Error error = {0};
     Scene *stack = read_scene("stack_height");
@@ -98,8 +98,8 @@ static char *read_table(const char *folder, const char *name) {
     return text;
 }
 
-/* The stack's network is for ten boxes: the first step of two is refused, which is no number that is not finite. */
-static void a_method_that_goes_with_some_values_only_does_not_apply(void **state) {
+/* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
+static void a_method_that_fits_some_values_only_does_not_apply(void **state) {
     (void)state;
     Error error = {0};
     const char *folder = temporary_path("network");
@@ -116,7 +116,7 @@ static void a_method_that_goes_with_some_values_only_does_not_apply(void **state
     free(refusals);
 }
 
-static void iterations_are_the_scenes_where_a_method_leaves_them_open(void **state) {
+static void methods_without_k_use_the_scenes_iterations(void **state) {
     (void)state;
     static const struct {
         const char *method;
@@ -129,7 +129,7 @@ static void iterations_are_the_scenes_where_a_method_leaves_them_open(void **sta
     }
 }
 
-/* A shot of 0.25 m slabs and its map: ten seconds of one body. Stops after so many reports. */
+/* The study of shots at slabs, and its map: ten seconds of one body. Stops after so many progress reports. */
 typedef struct Reports {
     int count, stop_after;
 } Reports;
@@ -150,8 +150,8 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
     return stability_run(&options, &(Progress){count_report, reports}, error);
 }
 
-/* A box begins with its centre 0.51 m over the top of a slab 0.25 m thick and falls freely for one step. From there it is
-   pushed out on the side that is nearer: below, if its centre has passed the slab's. */
+/* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
+   pushed out on the nearer side: below, if its centre has passed the slab's. */
 static void a_study_writes_borders_maps_and_refusals(void **state) {
     (void)state;
     Error error = {0};
@@ -162,15 +162,16 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
     char *borders = read_table(folder, "stability"), *maps = read_table(folder, "maps");
     char *refusals = read_table(folder, "refusals");
     double holds_at, fails_at;
-    assert_non_null(strstr(borders, STABILITY_HEADER "\nbomb_speed,engine,,speed,m/s,"));
+    assert_non_null(strstr(
+        borders, "study,method,setting,parameter,unit,holds_at,fails_at,verdict\nbomb_speed,engine,,speed,m/s,"));
     assert_int_equal(sscanf(strstr(borders, "m/s,") + 4, "%lf,%lf,", &holds_at, &fails_at), 2);
     const double through = 60 * (0.51 + 0.25 / 2) - 10 / 60.0;
     assert_true(holds_at < through && through < fails_at && fails_at <= 1.05 * holds_at);
     assert_non_null(strstr(borders, "\nbomb_speed,engine,\"k=3,warm=off\",speed,m/s,"));
     assert_non_null(strstr(borders, ",tunnels\nbomb_speed,scene-net,,speed,m/s,,,not applicable\n"));
-    assert_string_equal(refusals,
-                        REFUSALS_HEADER "\nbomb_speed,scene-net,,scene-net: error: the scene names no network "
-                                        "for it: use scene-net:network=FILE\n");
+    assert_string_equal(refusals, "study,method,setting,reason\n"
+                                  "bomb_speed,scene-net,,scene-net: error: the scene names no network for it: use "
+                                  "scene-net:network=FILE\n");
     int lines = 0;
     for (const char *c = maps; *c != '\0'; c++) lines += *c == '\n';
     assert_int_equal(lines, 1 + 2 * 5 * 4); /* two methods, without the reference */
@@ -182,15 +183,14 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
     free(refusals);
 }
 
-/* Two boxes of the same weight stay where they are; where a network lifts them off within ten seconds there is nothing to
-   tell. */
+/* Two equal boxes stay in place; if a network lifts them off within ten seconds, drift and energy are empty. */
 static void a_study_at_rest_writes_drift_and_energy(void **state) {
     (void)state;
     Error error = {0};
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
-    assert_ok(contenders_read(&methods, "robust,pair-net", &error), error);
+    assert_ok(contenders_parse(&methods, "robust,pair-net", STUDY_STABILITY, &error), error);
     StabilityScan scan = {&study, scenes, &methods};
     char *text = NULL;
     size_t size = 0;
@@ -234,8 +234,8 @@ static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
     free(maps);
 }
 
-/* Stopped in the map, it keeps the study; the rest gives the same tables as in one go. */
-static void what_is_cut_off_goes_on(void **state) {
+/* Stopped in the map, the finished study is kept; resumed, it gives the same tables as an uninterrupted run. */
+static void an_interrupted_study_is_resumed(void **state) {
     (void)state;
     Error error = {0};
     char whole[300], cut[300];
@@ -245,7 +245,7 @@ static void what_is_cut_off_goes_on(void **state) {
     assert_ok(run_shots(whole, "engine,momentum", &all, &error), error);
     some.stop_after = all.count - 3;
     assert_false(run_shots(cut, "engine,momentum", &some, &error));
-    assert_error(error, ERROR_INPUT, "speed_thickness: error: stopped; what was done before is kept");
+    assert_error(error, ERROR_INPUT, "speed_thickness: error: stopped; finished parts are kept");
     error = (Error){0};
     assert_ok(run_shots(cut, "engine,momentum", &rest, &error), error);
     assert_int_equal(rest.count, 2 * 5 * 4);
@@ -258,17 +258,17 @@ static void what_is_cut_off_goes_on(void **state) {
     }
 }
 
-static void names_and_methods_that_there_are_not_are_refused(void **state) {
+static void unknown_names_and_methods_are_refused(void **state) {
     (void)state;
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "luck: error: no such study or map; there are stack_height, ");
+    assert_error(error, ERROR_INPUT, "'luck' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     error = (Error){0};
     assert_false(stability_run(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "no such method");
+    assert_error(error, ERROR_INPUT, "'sorcery' is not a method");
     options.methods = "engine";
     options.scenes = "nowhere";
     error = (Error){0};
@@ -277,15 +277,15 @@ static void names_and_methods_that_there_are_not_are_refused(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(studies_are_of_parameters_that_there_are),
-                                       cmocka_unit_test(a_seed_shifts_the_first_that_moves),
-                                       cmocka_unit_test(methods_that_do_not_go_with_a_scene_say_why),
-                                       cmocka_unit_test(a_method_that_goes_with_some_values_only_does_not_apply),
-                                       cmocka_unit_test(iterations_are_the_scenes_where_a_method_leaves_them_open),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(studies_scan_parameters_of_their_scenes),
+                                       cmocka_unit_test(a_seed_shifts_the_first_dynamic_body),
+                                       cmocka_unit_test(methods_that_do_not_apply_have_a_reason),
+                                       cmocka_unit_test(a_method_that_fits_some_values_only_does_not_apply),
+                                       cmocka_unit_test(methods_without_k_use_the_scenes_iterations),
                                        cmocka_unit_test(a_study_writes_borders_maps_and_refusals),
                                        cmocka_unit_test(a_study_at_rest_writes_drift_and_energy),
                                        cmocka_unit_test(a_map_of_slopes_has_its_border_at_the_friction),
-                                       cmocka_unit_test(what_is_cut_off_goes_on),
-                                       cmocka_unit_test(names_and_methods_that_there_are_not_are_refused)};
+                                       cmocka_unit_test(an_interrupted_study_is_resumed),
+                                       cmocka_unit_test(unknown_names_and_methods_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figure of borders, from tables made up here; and what holds for it and maps alike. */
+/* The borders figure, from synthetic tables; and what it has in common with maps. */
 #include "stability_drawn.h"
 
-static void borders_are_drawn_as_the_table_has_them(void **state) {
+static void borders_are_drawn_as_in_the_table(void **state) {
     (void)state;
     start_afresh(MAPS ONE_CELL,
                  BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
@@ -23,8 +23,8 @@ static void borders_are_drawn_as_the_table_has_them(void **state) {
     run_python(program, temporary_folder);
 }
 
-/* Of a method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar is where it fails. The
-   other holds throughout, and its bar tells where the panel ends. */
+/* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar where it fails. The
+   other method holds throughout; its bar shows the panel's width. */
 static void bars_end_at_the_next_border(void **state) {
     (void)state;
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,15,16,falls\na,engine,,h,,20,19,sinks\na,engine,,h,,25,26,falls\n"
@@ -39,9 +39,9 @@ static void bars_end_at_the_next_border(void **state) {
                temporary_folder);
 }
 
-/* Beyond 30 luck decides, to the end of the range: the bar ends there, and the tile stands at the far end; on an axis of
-   which smaller values are harder that is the left one. Of b luck is all there is. */
-static void where_luck_decides_no_bar_is_drawn(void **state) {
+/* Undecided beyond 30 to the end of the range: the bar ends there and the tile is at the far end, which is the left one
+   if smaller values are harder. All values of b are undecided. */
+static void undecided_values_have_no_bar(void **state) {
     (void)state;
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,30,,falls\na,nncg,,h,,20,40,sinks\nb,engine,,r,,,,falls\n"
                                         "b,nncg,,r,,60,50,sinks\nc,engine,,r,,60,,falls\nc,nncg,,r,,80,50,sinks\n");
@@ -59,8 +59,8 @@ static void where_luck_decides_no_bar_is_drawn(void **state) {
     run_python(program, temporary_folder);
 }
 
-/* Of nothing but what has no values, of one value, of zero and below, of forty decades. */
-static void odd_borders_are_drawn(void **state) {
+/* Only rows without values; one value; zero and negative values; forty decades. */
+static void unusual_ranges_are_drawn(void **state) {
     (void)state;
     static const char *const rows[] = {"a,engine,,x,,,,not applicable\n", "a,engine,,x,,0,,settles\n",
                                        "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
@@ -73,18 +73,19 @@ static void odd_borders_are_drawn(void **state) {
     }
 }
 
-static void borders_out_of_order_are_refused_with_their_place(void **state) {
+static void invalid_borders_are_refused_with_their_place(void **state) {
     (void)state;
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at must be a number"},
-        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: unknown verdict"},
-        {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
-        {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' does not fit the values"},
-        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' does not fit the values"},
-        {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have a value"},
-        {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n", "stability.csv:3:1: error: another parameter than study s"},
+        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at: 'one' is not a number"},
+        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: verdict: the field is empty"},
+        {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
+        {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
+        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' contradicts the values"},
+        {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have values"},
+        {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n",
+         "stability.csv:3:1: error: the study 's' had another parameter before"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char borders[1024];
@@ -120,7 +121,7 @@ static void the_same_tables_give_the_same_files(void **state) {
     free(maps);
 }
 
-/* Studies without a map, and a map alone. */
+/* Borders without maps, and maps without borders. */
 static void a_table_without_rows_has_no_figure(void **state) {
     (void)state;
     start_afresh(MAPS, BORDERS ONE_BORDER);
@@ -135,11 +136,11 @@ static void a_table_without_rows_has_no_figure(void **state) {
 int main(void) {
     temporary_path(""); /* makes the folder */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(borders_are_drawn_as_the_table_has_them),
+        cmocka_unit_test(borders_are_drawn_as_in_the_table),
         cmocka_unit_test(bars_end_at_the_next_border),
-        cmocka_unit_test(where_luck_decides_no_bar_is_drawn),
-        cmocka_unit_test(odd_borders_are_drawn),
-        cmocka_unit_test(borders_out_of_order_are_refused_with_their_place),
+        cmocka_unit_test(undecided_values_have_no_bar),
+        cmocka_unit_test(unusual_ranges_are_drawn),
+        cmocka_unit_test(invalid_borders_are_refused_with_their_place),
         cmocka_unit_test(the_same_tables_give_the_same_files),
         cmocka_unit_test(a_table_without_rows_has_no_figure),
     };

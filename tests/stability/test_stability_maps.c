@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of maps, from tables made up here. */
+/* The figures of maps, from synthetic tables. */
 #include "stability_drawn.h"
 
 /* One cell of each verdict, and one sample in the legend. */
@@ -20,9 +20,9 @@ static void each_verdict_has_its_tile(void **state) {
     run_python(program, temporary_folder);
 }
 
-/* Two edges: between two cells side by side, and between two one above the other with a row's gap in their values. A cell
-   without a row and one that is not applicable have none. */
-static void the_border_parts_holding_from_failing(void **state) {
+/* Two edges: between two cells side by side, and between two cells one above the other, with a gap in their values.
+   Missing and not applicable cells have no edges. */
+static void the_border_separates_holding_from_failing(void **state) {
     (void)state;
     start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,sways,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
                       "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
@@ -36,7 +36,7 @@ static void the_border_parts_holding_from_failing(void **state) {
                temporary_folder);
 }
 
-/* Every cell that was run has a link over its tile and nowhere else. */
+/* Every cell that was run has one link, over its tile. */
 static void cells_link_to_their_clips(void **state) {
     (void)state;
     start_afresh(
@@ -65,7 +65,7 @@ static void cells_link_to_their_clips(void **state) {
         temporary_folder);
 }
 
-/* 119 bytes of path, and characters that are nothing to SVG and gnuplot; 128 are too many. */
+/* A path of 119 bytes, and characters that are special in SVG and gnuplot; 128 bytes are too many. */
 static void settings_may_be_paths(void **state) {
     (void)state;
     char setting[200], maps[1024], borders[1024], program[2048];
@@ -82,10 +82,10 @@ static void settings_may_be_paths(void **state) {
              SVG_FUNCTIONS);
     run_python(program, temporary_folder);
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
-    expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting has more than 127 bytes");
+    expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting: '");
 }
 
-/* Whatever the order of the rows and the distance of the values: rising, and each a tic. */
+/* For any order of the rows and any distances of the values: ascending, one tic each. */
 static void axes_name_their_values(void **state) {
     (void)state;
     start_afresh(MAPS "m,engine,,rate,Hz,480,b_c,,1,falls,,,,\nm,engine,,rate,Hz,20,b_c,,1,falls,,,,\n"
@@ -99,7 +99,7 @@ static void axes_name_their_values(void **state) {
                temporary_folder);
 }
 
-static void titles_are_cut_where_they_tell_the_least(void **state) {
+static void titles_are_cut_in_the_methods_name(void **state) {
     (void)state;
     static const struct {
         const char *method, *setting, *text;
@@ -139,33 +139,35 @@ static void many_methods_and_large_grids_are_drawn(void **state) {
 
 #define START "stack,engine,,a,,1,b,,"
 
-static void maps_out_of_order_are_refused_with_their_place(void **state) {
+static void invalid_maps_are_refused_with_their_place(void **state) {
     (void)state;
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {START "1,dances,,,,\n", "maps.csv:2:25: error: unknown verdict (got dances)"},
-        {START "one,falls,,,,\n", "maps.csv:2:23: error: y must be a number"},
-        {START ",falls,,,,\n", "maps.csv:2:23: error: y must be"},
-        {START "inf,falls,,,,\n", "maps.csv:2:23: error: y must be"},
-        {START "1,falls,1e9,,,\n", "maps.csv:2:31: error: frame cannot be 1e9"},
-        {START "1,falls,,,\n", "maps.csv:2:1: error: 13 fields where the header has 14"},
-        {"stack,\"engine';system('x')\",,a,,1,b,,1,falls,,,,\n", "maps.csv:2:7: error: method cannot be drawn"},
-        {"../stack,engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: '../stack' cannot be the name of a map"},
-        {",engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: '' cannot be the name of a map"},
-        {START "1,falls,,,,\n" START "1,falls,,,,\n", "maps.csv:3:1: error: this cell was there before (a 1, b 1)"},
-        {START "1,falls,,,,\nstack,engine,,c,,1,b,,2,falls,,,,\n", "maps.csv:3:1: error: other parameters"},
+        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, sways"},
+        {START "one,falls,,,,\n", "maps.csv:2:23: error: y: 'one' is not a number"},
+        {START ",falls,,,,\n", "maps.csv:2:23: error: y: the field is empty"},
+        {START "inf,falls,,,,\n", "maps.csv:2:23: error: y: 'inf' is not a number"},
+        {START "1,falls,1e9,,,\n", "maps.csv:2:31: error: frame: '1e9' is greater than 1e+06"},
+        {START "1,falls,,,\n", "maps.csv:2:1: error: 13 fields, but the header has 14"},
+        {"stack,\"engine';system('x')\",,a,,1,b,,1,falls,,,,\n",
+         "maps.csv:2:7: error: method: 'engine';system('x')' may only have"},
+        {"../stack,engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: map: '../stack' is not a file name"},
+        {",engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: map: '' is not a file name"},
+        {START "1,falls,,,,\n" START "1,falls,,,,\n", "maps.csv:3:1: error: the cell appears twice (a 1, b 1)"},
+        {START "1,falls,,,,\nstack,engine,,c,,1,b,,2,falls,,,,\n", "maps.csv:3:1: error: the parameters differ"},
         {START "1,falls,,,,\nstack,nncg,,a,,1,b,,1,falls,,,,\n" START "2,falls,,,,\n",
-         "maps.csv:4:1: error: this method of map stack was there before"},
+         "maps.csv:4:1: error: the rows of this method of map 'stack' are not together"},
         {START "1,falls,,,,\nother,nncg,,a,,1,b,,1,falls,,,,\n" START "2,falls,,,,\n",
-         "maps.csv:4:1: error: map stack was there before"},
+         "maps.csv:4:1: error: the rows of map 'stack' are not together"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char maps[1024];
         snprintf(maps, sizeof maps, MAPS "%s", cases[i].rows);
         expect_refused(maps, BORDERS ONE_BORDER, cases[i].message);
     }
-    expect_refused("map,method\nstack,engine\n", BORDERS ONE_BORDER, "maps.csv:1:1: error: there is no column setting");
+    expect_refused("map,method\nstack,engine\n", BORDERS ONE_BORDER,
+                   "maps.csv:1:1: error: the column 'setting' is missing");
 }
 
 static void maps_too_large_are_refused(void **state) {
@@ -181,13 +183,13 @@ int main(void) {
     temporary_path(""); /* makes the folder */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_verdict_has_its_tile),
-        cmocka_unit_test(the_border_parts_holding_from_failing),
+        cmocka_unit_test(the_border_separates_holding_from_failing),
         cmocka_unit_test(cells_link_to_their_clips),
         cmocka_unit_test(settings_may_be_paths),
         cmocka_unit_test(axes_name_their_values),
-        cmocka_unit_test(titles_are_cut_where_they_tell_the_least),
+        cmocka_unit_test(titles_are_cut_in_the_methods_name),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
-        cmocka_unit_test(maps_out_of_order_are_refused_with_their_place),
+        cmocka_unit_test(invalid_maps_are_refused_with_their_place),
         cmocka_unit_test(maps_too_large_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

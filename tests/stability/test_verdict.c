@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Both sides of the limits of what holds, falls and sinks, on runs made by hand. */
+/* Both sides of the limits of holding, falling and sinking, on synthetic runs. */
 #include "stability/trial.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static VerdictReading run_at_speed(double energy, bool second_box) {
     return trial_end(&trial);
 }
 
-static void settled_is_kinetic_energy_a_body(void **state) {
+static void settling_is_judged_by_mean_kinetic_energy(void **state) {
     (void)state;
     assert_reading(run_at_speed(0.99e-4, false), VERDICT_SETTLES, -1, 1, 0.99e-4, 1e-9, "J");
     assert_reading(run_at_speed(1.01e-4, false), VERDICT_SWAYS, -1, TRIAL_FRAMES, 1.01e-4, 1e-9, "J");
@@ -34,7 +34,7 @@ static void settled_is_kinetic_energy_a_body(void **state) {
     assert_reading(run_at_speed(2.02e-4, true), VERDICT_SWAYS, -1, TRIAL_FRAMES, 1.01e-4, 1e-9, "J");
 }
 
-/* Moves up to this frame and rests from the next on. */
+/* Moves up to this frame, then rests. */
 static VerdictReading run_that_moves_until(int frame) {
     Trial trial;
     trial_begin(&trial);
@@ -45,7 +45,7 @@ static VerdictReading run_that_moves_until(int frame) {
     return trial_end(&trial);
 }
 
-static void settled_takes_sixty_frames(void **state) {
+static void settling_takes_sixty_frames(void **state) {
     (void)state;
     assert_reading(run_that_moves_until(TRIAL_FRAMES - 60), VERDICT_SETTLES, -1, TRIAL_FRAMES - 59, 0, 0, "J");
     assert_reading(run_that_moves_until(TRIAL_FRAMES - 59), VERDICT_SWAYS, -1, TRIAL_FRAMES - 59, 1.0 / 12, 1e-9, "J");
@@ -65,15 +65,15 @@ static VerdictReading run_with_jump(int frame, float way, bool stands, int bomb)
 
 static void creeping_is_five_centimetres_in_ten_seconds(void **state) {
     (void)state;
-    /* 15 s: found at 20 s, the first whole second that has one ten seconds before it, from 10 s on. */
+    /* Moved at 15 s, found at 20 s: the first comparison is that of 20 s with 10 s. */
     assert_verdict(run_with_jump(900, 0.0499f, true, -1), VERDICT_SETTLES);
     assert_reading(run_with_jump(900, 0.0501f, true, -1), VERDICT_CREEPS, 1, 1200, 0.0501, 1e-6, "m");
     assert_reading(run_with_jump(3599, -0.0501f, true, -1), VERDICT_CREEPS, 1, 3600, 0.0501, 1e-6, "m");
     assert_verdict(run_with_jump(599, 1, true, -1), VERDICT_SETTLES); /* before 10 s */
 }
 
-/* Ten seconds are 600 steps, whatever is in between: 0.0501 m in 601 would be less than 0.05 in 600. */
-static void creeping_goes_on_evenly(void **state) {
+/* Ten seconds are exactly 600 steps: 0.0501 m in 601 steps would be less than 0.05 m in 600. */
+static void creeping_may_be_even(void **state) {
     (void)state;
     for (int side = 0; side < 2; side++) {
         Trial trial;
@@ -87,7 +87,7 @@ static void creeping_goes_on_evenly(void **state) {
     }
 }
 
-static void creeping_of_what_was_not_built_counts_at_the_end(void **state) {
+static void creeping_counts_only_at_the_end_if_nothing_must_stand(void **state) {
     (void)state;
     assert_verdict(run_with_jump(900, 1, false, -1), VERDICT_SETTLES);
     assert_verdict(run_with_jump(2999, 1, false, -1), VERDICT_SETTLES); /* 50 s: just before the last ten */
@@ -111,7 +111,7 @@ static void the_last_ten_seconds_end_with_the_run(void **state) {
     }
 }
 
-/* A box of 2 x 1 is put elsewhere in the step after the first; the ground is well below it. */
+/* A box of 2 x 1 is moved in the second step, well above the ground. */
 static VerdictReading run_with_pose(float lower, float degrees, bool stands) {
     Trial trial;
     trial_begin(&trial);
@@ -137,7 +137,7 @@ static void falling_is_half_a_side_or_thirty_degrees(void **state) {
     assert_verdict(run_with_pose(-3, 0, true), VERDICT_SETTLES);     /* higher */
 }
 
-/* Down is where gravity pulls. */
+/* Down is the direction of gravity. */
 static void falling_goes_along_gravity(void **state) {
     (void)state;
     for (int side = 0; side < 2; side++) {
@@ -151,7 +151,7 @@ static void falling_goes_along_gravity(void **state) {
     }
 }
 
-/* It comes down 3 m before it touches, and then 0.1 m a step. */
+/* It drops 3 m before its first contact, then 0.1 m per step. */
 static void gaps_may_close_before_a_body_falls(void **state) {
     (void)state;
     Trial trial;
@@ -172,7 +172,7 @@ static void gaps_may_close_before_a_body_falls(void **state) {
     assert_reading(trial_end(&trial), VERDICT_FALLS, 1, 35, 0.55, 1e-6, "m");
 }
 
-/* So deep for so many steps, with a box of this size. */
+/* A contact of this depth for so many steps, with a box of this size. */
 static VerdictReading run_with_depth(float depth, int steps, Vec2 size) {
     Trial trial;
     trial_begin(&trial);
@@ -202,7 +202,8 @@ static void sinking_is_a_second_deeper_than_a_twentieth(void **state) {
     assert_verdict(run_with_depth(0.0201f, 60, vec2(0.1f, 1)), VERDICT_SINKS);
 }
 
-/* The deepest for its size: 0.07 m of 1 m, not 0.11 m of 2 m. Of a moving and a static body it is the moving one. */
+/* The deepest relative to its size: 0.07 m of 1 m, not 0.11 m of 2 m. Of a dynamic and a static body the dynamic
+   one. */
 static void sinking_names_the_body(void **state) {
     (void)state;
     Trial trial;
@@ -220,7 +221,7 @@ static void sinking_names_the_body(void **state) {
     assert_reading(trial_end(&trial), VERDICT_SINKS, 1, 60, 0.07, 1e-6, "m");
 }
 
-/* Steps of 1/20 s: 20 of them are a second, 200 are ten. */
+/* dt = 1/20 s: 20 steps are a second, 200 are ten. */
 static void seconds_are_steps_of_the_scene(void **state) {
     (void)state;
     Trial trial;
@@ -236,8 +237,8 @@ static void seconds_are_steps_of_the_scene(void **state) {
     assert_reading(trial_end(&trial), VERDICT_SINKS, 1, 1020, 0.06, 1e-6, "m");
 }
 
-/* The last body leaves at the end of a step that knows a contact of it; another takes its place, far away. */
-static void bodies_may_leave_and_join(void **state) {
+/* The last body is removed at the end of a step that has a contact of it; another one replaces it, far away. */
+static void bodies_may_be_removed_and_added(void **state) {
     (void)state;
     Trial trial;
     trial_begin(&trial);
@@ -259,7 +260,8 @@ static void bodies_may_leave_and_join(void **state) {
     assert_verdict(trial_end(&trial), VERDICT_SETTLES);
 }
 
-/* Up by 0.5 m in the first ten seconds, then by 0.03 m aside and 0.04 m up: 0.05 m of 1 kg, and 10 m/s^2 over 0.04 m. */
+/* 0.5 m up in the first ten seconds, then 0.03 m sideways and 0.04 m up: a drift of 0.05 m, and 1 kg 10 m/s^2 0.04
+   m. */
 static void drift_is_counted_after_ten_seconds(void **state) {
     (void)state;
     Trial trial;
@@ -278,11 +280,11 @@ static void drift_is_counted_after_ten_seconds(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_resting_box_settles),
-                                       cmocka_unit_test(settled_is_kinetic_energy_a_body),
-                                       cmocka_unit_test(settled_takes_sixty_frames),
+                                       cmocka_unit_test(settling_is_judged_by_mean_kinetic_energy),
+                                       cmocka_unit_test(settling_takes_sixty_frames),
                                        cmocka_unit_test(creeping_is_five_centimetres_in_ten_seconds),
-                                       cmocka_unit_test(creeping_goes_on_evenly),
-                                       cmocka_unit_test(creeping_of_what_was_not_built_counts_at_the_end),
+                                       cmocka_unit_test(creeping_may_be_even),
+                                       cmocka_unit_test(creeping_counts_only_at_the_end_if_nothing_must_stand),
                                        cmocka_unit_test(the_last_ten_seconds_end_with_the_run),
                                        cmocka_unit_test(falling_is_half_a_side_or_thirty_degrees),
                                        cmocka_unit_test(falling_goes_along_gravity),
@@ -290,7 +292,7 @@ int main(void) {
                                        cmocka_unit_test(sinking_is_a_second_deeper_than_a_twentieth),
                                        cmocka_unit_test(sinking_names_the_body),
                                        cmocka_unit_test(seconds_are_steps_of_the_scene),
-                                       cmocka_unit_test(bodies_may_leave_and_join),
+                                       cmocka_unit_test(bodies_may_be_removed_and_added),
                                        cmocka_unit_test(drift_is_counted_after_ten_seconds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Both sides of the limits of what tunnels, explodes or leaves the finite numbers; the order of severity. */
+/* Both sides of the limits of tunnelling, exploding and non-finite runs; the order of severity. */
 #include "stability/trial.h"
 
-/* A point goes from `from` to `to` past a slab of 4 x 2 at (10, 5), turned by the angle. */
+/* A point moves from `from` to `to` near a slab of 4 x 2 at (10, 5), rotated by the angle. */
 static bool goes_through(float angle, Vec2 from, Vec2 to) {
     Trial trial;
     trial_begin(&trial);
@@ -31,20 +31,20 @@ static void tunnelling_goes_through_a_static_box(void **state) {
     assert_false(goes_through(0, vec2(10, 9), vec2(10, 5.99f)));   /* into it, not through */
     assert_false(goes_through(0, vec2(10, 5), vec2(10, 5)));       /* inside, at rest */
     assert_false(goes_through(0, vec2(7.99f, 5), vec2(7.99f, 5))); /* beside, at rest */
-    assert_false(goes_through(0, vec2(9, 6), vec2(11, 6)));        /* along the rim */
-    assert_false(goes_through(0, vec2(13, 9), vec2(13, 5)));       /* towards where there is nothing */
+    assert_false(goes_through(0, vec2(9, 6), vec2(11, 6)));        /* along the edge */
+    assert_false(goes_through(0, vec2(13, 9), vec2(13, 5)));       /* beside */
     /* A quarter turn: 9..11 x 3..7. */
     assert_true(goes_through(quarter, vec2(10.99f, 9), vec2(10.99f, -5)));
     assert_false(goes_through(quarter, vec2(11.01f, 9), vec2(11.01f, -5)));
-    /* An eighth: along x - y = 5 it reaches 2 from the centre, along x + y = 15 it reaches 1: a way of slope 1 passes at
-       1 from the centre, which is sqrt(2) along x. */
+    /* An eighth of a turn: it extends 2 along x - y = 5 and 1 along x + y = 15. Lines of slope 1 touch it at a distance
+       of 1 from the centre, which is sqrt(2) along x. */
     assert_false(goes_through(eighth, vec2(5 + 1.42f, 0), vec2(15 + 1.42f, 10)));
     assert_true(goes_through(eighth, vec2(5 + 1.41f, 0), vec2(15 + 1.41f, 10)));
     assert_false(goes_through(eighth, vec2(5, 10 - 2.84f), vec2(15, -2.84f)));
     assert_true(goes_through(eighth, vec2(5, 10 - 2.82f), vec2(15, -2.82f)));
 }
 
-/* Into the slab 8..12 x 4..6 from above, and for some steps inside; then out to where the test says. */
+/* Into the slab 8..12 x 4..6 from above, some steps inside, then out to a given point. */
 static bool comes_out(Vec2 at) {
     Trial trial;
     trial_begin(&trial);
@@ -59,7 +59,7 @@ static bool comes_out(Vec2 at) {
     return trial_end(&trial).verdict == VERDICT_TUNNELS;
 }
 
-static void what_is_pushed_out_again_did_not_tunnel(void **state) {
+static void a_body_that_is_pushed_out_again_did_not_tunnel(void **state) {
     (void)state;
     assert_false(comes_out(vec2(10, 6.01f)));
     assert_true(comes_out(vec2(10, 3.99f)));
@@ -67,7 +67,7 @@ static void what_is_pushed_out_again_did_not_tunnel(void **state) {
 }
 
 /* 2 m in 1/60 s. */
-static void tunnelling_says_how_fast(void **state) {
+static void tunnelling_reports_the_speed(void **state) {
     (void)state;
     Trial trial;
     trial_begin(&trial);
@@ -79,12 +79,12 @@ static void tunnelling_says_how_fast(void **state) {
     assert_reading(trial_end(&trial), VERDICT_TUNNELS, 1, 6, 120, 1e-4, "m/s");
 }
 
-/* In a frame, both runs' energies are so many J above 5 (the box at rest: 1 kg, 10 m/s^2, 0.5 m); before and after, 0. The
-   first second is over by then. */
-static VerdictReading run_with_energy(double own, double converged, double to_lose) {
+/* For one frame after the first second, the runs' energies are so many J above 5 (the box at rest: 1 kg, 10 m/s^2,
+   0.5 m). */
+static VerdictReading run_with_energy(double own, double converged, double available) {
     Trial trial;
     trial_begin(&trial);
-    trial.converged.to_lose = to_lose;
+    trial.converged.available = available;
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 5;
     trial.energy[101] += converged;
     trial_go(&trial, 100);
@@ -95,19 +95,19 @@ static VerdictReading run_with_energy(double own, double converged, double to_lo
     return trial_end(&trial);
 }
 
-static void exploding_is_above_what_the_run_kept_to_and_the_converged_one(void **state) {
+static void exploding_exceeds_the_runs_own_bound_and_the_converged_run(void **state) {
     (void)state;
     assert_verdict(run_with_energy(0.99, 0, 100), VERDICT_SETTLES);
     assert_reading(run_with_energy(1.01, 0, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
     assert_reading(run_with_energy(1.01, -3, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
     assert_verdict(run_with_energy(3.99, 3, 100), VERDICT_SETTLES);
     assert_reading(run_with_energy(4.01, 3, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
-    /* Next to nothing to lose: 1% of 1 J. */
+    /* Hardly any energy available: the limit is 1% of 1 J. */
     assert_verdict(run_with_energy(0.0099, 0, 1e-6), VERDICT_SETTLES);
     assert_verdict(run_with_energy(0.0101, 0, 1e-6), VERDICT_EXPLODES);
 }
 
-/* 3 J for a frame, by speed, so many frames after or before the converged run has them. */
+/* 3 J of kinetic energy for a frame, so many frames after or before the converged run has them. */
 static VerdictReading run_with_hop(int later) {
     Trial trial;
     trial_begin(&trial);
@@ -121,7 +121,7 @@ static VerdictReading run_with_hop(int later) {
     return trial_end(&trial);
 }
 
-static void a_hop_may_come_a_second_later_or_before(void **state) {
+static void a_hop_may_be_a_second_late_or_early(void **state) {
     (void)state;
     assert_verdict(run_with_hop(60), VERDICT_SETTLES);
     assert_verdict(run_with_hop(-60), VERDICT_SETTLES);
@@ -129,8 +129,8 @@ static void a_hop_may_come_a_second_later_or_before(void **state) {
     assert_reading(run_with_hop(-61), VERDICT_EXPLODES, 1, 439, 3, 1e-5, "J");
 }
 
-/* The converged run falls down and has nothing left; this one still stands. */
-static void what_still_stands_has_made_no_energy(void **state) {
+/* The converged run falls and has no energy left; this one still stands. */
+static void a_box_that_still_stands_has_gained_no_energy(void **state) {
     (void)state;
     Trial trial;
     trial_begin(&trial);
@@ -139,7 +139,7 @@ static void what_still_stands_has_made_no_energy(void **state) {
     assert_verdict(trial_end(&trial), VERDICT_SETTLES);
 }
 
-/* 50 J at first, 5 J for so many frames, then 30 J again, by speed along x. The converged run stays at 5 J. */
+/* 50 J at first, 5 J for so many frames, then 30 J (speed along x). The converged run stays at 5 J. */
 static VerdictReading run_with_dip(int frames) {
     Trial trial;
     trial_begin(&trial);
@@ -153,16 +153,16 @@ static VerdictReading run_with_dip(int frames) {
     return trial_end(&trial);
 }
 
-/* Seconds end at frames 60, 120, ...: a dip of 30 + 60 frames fills one whole. */
-static void what_comes_back_within_a_second_was_not_lost(void **state) {
+/* Seconds end at frames 60, 120, ...: a dip of 30 + 60 frames covers a whole one. */
+static void energy_that_returns_within_a_second_was_not_lost(void **state) {
     (void)state;
     assert_true(run_with_dip(60).verdict < VERDICT_EXPLODES);
     assert_true(run_with_dip(89).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_dip(90), VERDICT_EXPLODES, 1, 121, 25, 1e-4, "J");
 }
 
-/* The box has 5 J, and so many more until frame 90; after frame 100 a bomb joins with 10. Then the bomb has 5 left and
-   the box is given so many. */
+/* The box has 5 J, and `more` J until frame 90; after frame 100 a bomb is added with 10 J. Then the bomb has 5 J left
+   and the box is given some J. */
 static VerdictReading run_with_bomb(double before, double given) {
     Trial trial;
     trial_begin(&trial);
@@ -182,8 +182,8 @@ static VerdictReading run_with_bomb(double before, double given) {
     return trial_end(&trial);
 }
 
-/* It brings the 5 J of its speed and the 5 J of its height, to what there was before: 5 or 25 J. */
-static void what_a_bomb_brings_counts(void **state) {
+/* The bomb adds 5 J of kinetic and 5 J of potential energy to the 5 or 25 J before. */
+static void the_energy_of_a_bomb_counts(void **state) {
     (void)state;
     assert_true(run_with_bomb(0, 5.99).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_bomb(0, 6.01), VERDICT_EXPLODES, 1, 151, 1.01, 1e-4, "J");
@@ -191,8 +191,8 @@ static void what_a_bomb_brings_counts(void **state) {
     assert_reading(run_with_bomb(20, 26.01), VERDICT_EXPLODES, 1, 151, 1.01, 1e-4, "J");
 }
 
-/* The upper one of two boxes leaves, with 15 J: the lower one may not have them. */
-static void what_leaves_takes_its_energy_along(void **state) {
+/* The upper one of two boxes is removed, with 15 J: the lower one must not gain them. */
+static void a_removed_body_takes_its_energy_along(void **state) {
     (void)state;
     for (int side = 0; side < 2; side++) {
         Trial trial;
@@ -209,7 +209,7 @@ static void what_leaves_takes_its_energy_along(void **state) {
     }
 }
 
-static void a_number_that_is_none_is_non_finite(void **state) {
+static void nan_and_infinity_are_non_finite(void **state) {
     (void)state;
     for (int i = 0; i < 12; i++) {
         Trial trial;
@@ -226,7 +226,7 @@ static void a_number_that_is_none_is_non_finite(void **state) {
     }
 }
 
-static void a_step_that_failed_is_non_finite(void **state) {
+static void a_failed_step_is_non_finite(void **state) {
     (void)state;
     Trial trial;
     trial_begin(&trial);
@@ -238,8 +238,8 @@ static void a_step_that_failed_is_non_finite(void **state) {
     assert_reading(trial_end(&trial), VERDICT_NON_FINITE, -1, 8, 5, 1e-6, "m/s");
 }
 
-/* One after the other comes true, from creeping on; each is worse than those before. */
-static void the_worst_counts_and_the_first_frame_of_it(void **state) {
+/* All verdicts from creeping on apply, one after the other; each is worse than those before. */
+static void the_worst_verdict_counts_with_its_first_frame(void **state) {
     (void)state;
     Trial trial;
     trial_begin(&trial);
@@ -284,23 +284,23 @@ static void a_converged_run_that_is_shorter_is_refused(void **state) {
     trial_begin(&trial);
     trial.converged.frames--;
     assert_false(verdict_watch_begin(&trial.watch, &trial.run, trial.bodies, trial.count, &error));
-    assert_error(error, ERROR_INPUT, "the converged run has 3599 frames of 3600");
+    assert_error(error, ERROR_INPUT, "the converged run has only 3599 of 3600 frames");
     verdict_watch_free(&trial.watch);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tunnelling_goes_through_a_static_box),
-                                       cmocka_unit_test(what_is_pushed_out_again_did_not_tunnel),
-                                       cmocka_unit_test(tunnelling_says_how_fast),
-                                       cmocka_unit_test(exploding_is_above_what_the_run_kept_to_and_the_converged_one),
-                                       cmocka_unit_test(a_hop_may_come_a_second_later_or_before),
-                                       cmocka_unit_test(what_still_stands_has_made_no_energy),
-                                       cmocka_unit_test(what_comes_back_within_a_second_was_not_lost),
-                                       cmocka_unit_test(what_a_bomb_brings_counts),
-                                       cmocka_unit_test(what_leaves_takes_its_energy_along),
-                                       cmocka_unit_test(a_number_that_is_none_is_non_finite),
-                                       cmocka_unit_test(a_step_that_failed_is_non_finite),
-                                       cmocka_unit_test(the_worst_counts_and_the_first_frame_of_it),
+                                       cmocka_unit_test(a_body_that_is_pushed_out_again_did_not_tunnel),
+                                       cmocka_unit_test(tunnelling_reports_the_speed),
+                                       cmocka_unit_test(exploding_exceeds_the_runs_own_bound_and_the_converged_run),
+                                       cmocka_unit_test(a_hop_may_be_a_second_late_or_early),
+                                       cmocka_unit_test(a_box_that_still_stands_has_gained_no_energy),
+                                       cmocka_unit_test(energy_that_returns_within_a_second_was_not_lost),
+                                       cmocka_unit_test(the_energy_of_a_bomb_counts),
+                                       cmocka_unit_test(a_removed_body_takes_its_energy_along),
+                                       cmocka_unit_test(nan_and_infinity_are_non_finite),
+                                       cmocka_unit_test(a_failed_step_is_non_finite),
+                                       cmocka_unit_test(the_worst_verdict_counts_with_its_first_frame),
                                        cmocka_unit_test(verdicts_have_names),
                                        cmocka_unit_test(a_converged_run_that_is_shorter_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);

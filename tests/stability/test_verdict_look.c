@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Looks of verdicts: told apart in grey, too. */
+/* Looks of verdicts: distinguishable in grey too. */
 #include "testing.h"
 
 #include "stability/verdict_look.h"
 
 #include <math.h>
 
-/* CIE 1931, from sRGB's primaries: what a grey print keeps of a colour. */
+/* CIE 1931 luminance from sRGB, as in a grey print. */
 static double luminance(const char *colour) {
     unsigned rgb = (unsigned)strtoul(colour + 1, NULL, 16);
     double sum = 0;
@@ -31,7 +31,7 @@ static void the_worse_the_darker(void **state) {
     assert_true(lightness(verdict_looks[VERDICT_FALLS].fill) < 72);
 }
 
-/* WCAG 2.1 asks 3:1 of graphics. The dot of what settles is to be overlooked. */
+/* WCAG 2.1 requires a contrast of 3:1 for graphics. The dot of "settles" is meant to be faint. */
 static void symbols_stand_out_and_differ(void **state) {
     (void)state;
     for (int look = VERDICT_SWAYS; look < VERDICTS; look++) {

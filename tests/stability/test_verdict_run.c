@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a converged run had to lose, and the verdict on scenes that are run. */
+/* The energy available in converged runs, and verdicts on scenes. */
 #include "stability/trial.h"
 
-/* Boxes of 1 kg at 10 m/s^2: 10 J a metre. From 3 m to 1 m 20 J are lost, of 30. One joins with 40 J; when both lie at 0 it
-   is 70 of 70. It leaves with 5 J it had got back: 65 of 65 are lost then, and at -1 m 75. Lifted to 80 J, more than there
-   ever was, there is 120 J to lose down to -4 m. */
-static void an_energy_log_knows_what_there_was_to_lose(void **state) {
+/* Boxes of 1 kg at 10 m/s^2: 10 J per metre. From 3 m to 1 m, 20 of 30 J are lost. A box is added with 40 J; with both
+   at 0, 70 of 70 J are lost. It is removed with 5 J that it had regained: 65 of 65 J are lost then, and 75 at -1 m.
+   Lifted to 80 J, the highest level so far, 120 J are lost down to -4 m. */
+static void lost_energy_is_available(void **state) {
     (void)state;
     Error error = {0};
     EnergyLog log = {0};
@@ -13,7 +13,7 @@ static void an_energy_log_knows_what_there_was_to_lose(void **state) {
     const struct {
         int count;
         float y[2];
-        double energy, to_lose;
+        double energy, available;
     } rows[] = {{1, {3, 0}, 30, 0},    {1, {1, 0}, 10, 20}, {2, {1, 4}, 50, 20},   {2, {0, 0}, 0, 70},
                 {2, {0, 0.5f}, 5, 70}, {1, {0, 0}, 0, 70},  {1, {5, 0}, 50, 70},   {1, {6, 0}, 60, 70},
                 {1, {-1, 0}, -10, 75}, {1, {8, 0}, 80, 75}, {1, {-4, 0}, -40, 120}};
@@ -25,14 +25,14 @@ static void an_energy_log_knows_what_there_was_to_lose(void **state) {
         else
             energy_log_step(&log, i, bodies, rows[i].count);
         assert_near(log.energy[i], rows[i].energy, 1e-6);
-        assert_near(log.to_lose, rows[i].to_lose, 1e-6);
+        assert_near(log.available, rows[i].available, 1e-6);
     }
     energy_log_free(&log);
 }
 
-/* Ten boxes one on the other, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. The bomb that joins is 9 m above the
-   lowest with 2 kg: 180 J; one further down has nothing to lose. */
-static void what_stands_has_its_height_to_lose(void **state) {
+/* A stack of ten boxes, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. A bomb of 2 kg is added 9 m above the lowest:
+   180 J; one below the lowest adds nothing. */
+static void the_height_of_a_stack_is_available(void **state) {
     (void)state;
     Error error = {0};
     EnergyLog log = {0};
@@ -44,21 +44,21 @@ static void what_stands_has_its_height_to_lose(void **state) {
     bodies[11].position.y = 9.5f;
     bodies[12].position.y = -3;
     assert_ok(energy_log_begin(&log, vec2(0, -10), 3, bodies, 11, &error), error);
-    assert_near(log.to_lose, 450, 1e-6);
+    assert_near(log.available, 450, 1e-6);
     energy_log_step(&log, 1, bodies, 12);
-    assert_near(log.to_lose, 630, 1e-6);
+    assert_near(log.available, 630, 1e-6);
     energy_log_step(&log, 2, bodies, 13);
-    assert_near(log.to_lose, 630, 1e-6);
+    assert_near(log.available, 630, 1e-6);
     energy_log_step(&log, 3, bodies, 12);
-    assert_near(log.to_lose, 630, 1e-6);
-    /* Up is against gravity: along -x here, and by 2 m/s^2. The boxes are all as high but one. */
+    assert_near(log.available, 630, 1e-6);
+    /* Up is opposite to gravity: along -x here, 2 m/s^2. All boxes but one have the same height. */
     for (int i = 1; i < 11; i++) bodies[i].position = vec2(i == 4 ? -7.0f : 3.0f, (float)i);
     assert_ok(energy_log_begin(&log, vec2(2, 0), 3, bodies, 11, &error), error);
-    assert_near(log.to_lose, 20, 1e-6);
-    /* Where nothing moves at the start, the first that joins is the lowest. */
+    assert_near(log.available, 20, 1e-6);
+    /* Without dynamic bodies at the start, the first one added is the lowest. */
     assert_ok(energy_log_begin(&log, vec2(0, -10), 3, bodies, 1, &error), error);
     energy_log_step(&log, 1, bodies, 2);
-    assert_near(log.to_lose, 0, 0);
+    assert_near(log.available, 0, 0);
     energy_log_free(&log);
 }
 
@@ -96,8 +96,8 @@ static Scene scene_of(BodyDef *bodies, int count, int frames) {
                    .bodies = bodies};
 }
 
-/* Two boxes of 1 kg: the upper one stands 1 m above the lower. They go down to the slop, and that is less: 0.01 and 0.02 m,
-   0.3 J at the most. */
+/* Two boxes of 1 kg, the upper one 1 m above the lower. They sink to the slop, 0.01 and 0.02 m, which loses less: at
+   most 0.3 J. */
 static void a_stack_of_two_settles(void **state) {
     (void)state;
     BodyDef bodies[] = {{.size = {100, 20}, .fixed = true, .friction = 0.2f, .position = {0, -10}},
@@ -106,7 +106,7 @@ static void a_stack_of_two_settles(void **state) {
     const Scene scene = scene_of(bodies, 3, 1500);
     EnergyLog converged = {0};
     converge(&converged, &scene);
-    assert_near(converged.to_lose, 10, 1e-5);
+    assert_near(converged.available, 10, 1e-5);
     assert_true(converged.level - converged.energy[1500] < 0.3);
     VerdictReading reading = judge(&scene, true, &converged);
     assert_verdict(reading, VERDICT_SETTLES);
@@ -114,7 +114,7 @@ static void a_stack_of_two_settles(void **state) {
     energy_log_free(&converged);
 }
 
-/* Onto a slab of 0.25 m, from 1.5 m above its middle; in after frame 5. */
+/* Dropped on a slab of 0.25 m from 1.5 m above its centre; added after frame 5. */
 static Scene shot_at_slab(BodyDef *slab, float speed) {
     *slab = (BodyDef){.size = {20, 0.25f}, .fixed = true, .friction = 0.2f};
     Scene scene = scene_of(slab, 1, 100);
@@ -125,7 +125,7 @@ static Scene shot_at_slab(BodyDef *slab, float speed) {
     return scene;
 }
 
-/* 200 m/s are 3.3 m a step: the next place is 1.8 m below, and nothing is met on the way. */
+/* 200 m/s are 3.3 m per step: the next position is 1.8 m below, without a contact. */
 static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
     (void)state;
     BodyDef slab;
@@ -136,14 +136,14 @@ static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
     scene = shot_at_slab(&slab, 2);
     converge(&converged, &scene);
     assert_verdict(judge(&scene, false, &converged), VERDICT_SETTLES);
-    /* What it brings, 1.5 m and 2 m/s, less the 0.625 m above the middle where it ends: 8.75 + 2 J. It is found
-       overlapping, by less than a step's way at its 4.6 m/s: at most 0.8 J more. */
-    assert_near(converged.to_lose, 10.75 + 0.4, 0.4);
+    /* It starts at 1.5 m with 2 m/s and ends 0.625 m above the centre: 8.75 + 2 J. It penetrates by less than a step at
+       its 4.6 m/s: at most 0.8 J more. */
+    assert_near(converged.available, 10.75 + 0.4, 0.4);
     energy_log_free(&converged);
 }
 
-/* At 3e38 m/s a float's range, 3.4e38 m, is used up in the 69th step. */
-static void a_run_that_breaks_off_is_judged(void **state) {
+/* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step. */
+static void a_run_that_overflows_is_judged(void **state) {
     (void)state;
     Error error = {0};
     Method method;
@@ -161,8 +161,8 @@ static void a_run_that_breaks_off_is_judged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_energy_log_knows_what_there_was_to_lose),
-        cmocka_unit_test(what_stands_has_its_height_to_lose), cmocka_unit_test(a_stack_of_two_settles),
-        cmocka_unit_test(a_fast_box_tunnels_through_a_thin_slab), cmocka_unit_test(a_run_that_breaks_off_is_judged)};
+        cmocka_unit_test(lost_energy_is_available), cmocka_unit_test(the_height_of_a_stack_is_available),
+        cmocka_unit_test(a_stack_of_two_settles), cmocka_unit_test(a_fast_box_tunnels_through_a_thin_slab),
+        cmocka_unit_test(a_run_that_overflows_is_judged)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

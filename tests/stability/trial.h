@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs made by hand: a ground, a box on it, and what a test does to them. */
+/* Synthetic runs: a ground, a box on it, and the changes that a test makes. */
 #pragma once
 #include "testing.h"
 
@@ -20,7 +20,7 @@ typedef struct Trial {
 static const Body trial_ground = {.position = {0, -10}, .size = {100, 20}};
 static const Body trial_box = {.position = {0, 0.5f}, .size = {1, 1}, .inv_mass = 1, .inv_inertia = 6};
 
-/* 60 s of a box of 1 kg that is meant to stand, with 100 J to lose; the converged run has so much energy that nothing
+/* 60 s of a box of 1 kg that is meant to stand, with 100 J available; the converged run has so much energy that nothing
    explodes. */
 static inline void trial_begin(Trial *trial) {
     memset(trial, 0, sizeof *trial);
@@ -31,11 +31,11 @@ static inline void trial_begin(Trial *trial) {
     trial->contact_count = 1;
     trial->contacts[0] = (ContactPoint){.a = 0, .b = 1, .separation = -0.01f};
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial->energy[i] = 1e12;
-    trial->converged = (EnergyLog){.frames = TRIAL_FRAMES, .energy = trial->energy, .to_lose = 100};
+    trial->converged = (EnergyLog){.frames = TRIAL_FRAMES, .energy = trial->energy, .available = 100};
     trial->run = (VerdictRun){{0, -10}, 1.0f / 60.0f, TRIAL_FRAMES, true, &trial->converged};
 }
 
-/* Steps on to a frame, all that moves by its own hand. The watch begins with the first one. */
+/* Steps up to a frame without moving the bodies; the first call begins the watch. */
 static inline void trial_go(Trial *trial, int frame) {
     Error error = {0};
     if (trial->watch.capacity == 0)

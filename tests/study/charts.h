@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables made up by a test. */
 #pragma once
 #include "testing.h"
 

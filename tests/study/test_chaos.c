@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A run beside itself, shifted: in free flight the shift stays what it is. */
+/* A run compared with a shifted one. */
 #include "testing.h"
 
 #include "simulate/simulate.h"
@@ -32,9 +32,9 @@ static const char falling[] = "  - {size: [1, 1], position: [3, 50], mass: 1, fr
 static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], mass: 50, friction: 0.2, velocity: "
                            "{times_position: 15}}\n";
 
-/* Place alone is shifted, and nothing is touched: the distance is the shift, from when the body is there. That of an
-   aiming bomb would grow, by 15e-6 m/s, if its velocity were shifted as well. */
-static void a_shift_in_free_flight_stays(void **state) {
+/* Only the position is shifted and nothing is touched: the distance is the shift, from the body's first frame. If the
+   velocity of an aimed bomb were shifted too, its distance would grow by 15e-6 m/s. */
+static void a_shift_in_free_flight_is_constant(void **state) {
     (void)state;
     char text[1024];
     Error error = {0};
@@ -46,7 +46,7 @@ static void a_shift_in_free_flight_stays(void **state) {
         assert_int_equal(body, with_bomb ? 2 : 0);
         Chaos chaos;
         assert_ok(chaos_run(&chaos, path, run, body, 50, NULL, &error), error);
-        assert_true(chaos.body == body && chaos.other == -1 && chaos.frames == 50);
+        assert_true(chaos.body == body && chaos.rerun_differs == -1 && chaos.frames == 50);
         assert_near(chaos.shift, 1e-6, 0.2e-6);
         for (int frame = 0; frame < 50; frame++)
             assert_near(chaos.distance[frame], with_bomb && frame < 20 ? 0 : chaos.shift, 1e-7);
@@ -55,7 +55,7 @@ static void a_shift_in_free_flight_stays(void **state) {
     }
 }
 
-/* So far out that floats are 0.0625 m from each other. */
+/* At a position where one ulp is 0.0625 m. */
 static void a_shift_is_at_least_one_float(void **state) {
     (void)state;
     Error error = {0};
@@ -68,7 +68,7 @@ static void a_shift_is_at_least_one_float(void **state) {
     trajectory_destroy(run);
 }
 
-/* The stack of the scenes: struck from step 41 on, body 1 lies on the ground from step 4 on. */
+/* scenes/stack.yaml: the bomb hits in step 41; body 1 touches the ground from step 4. */
 static void a_bomb_that_has_not_hit_is_not_shifted(void **state) {
     (void)state;
     Trajectory *run = run_scene(SOURCE_DIR "/scenes/stack.yaml", "engine");
@@ -88,7 +88,7 @@ static void a_bomb_that_has_not_hit_is_not_shifted(void **state) {
     trajectory_destroy(run);
 }
 
-/* The distance is the one that the two trajectories have. */
+/* The distances are those between the two trajectories. */
 static void distances_are_those_of_the_trajectories(void **state) {
     (void)state;
     Error error = {0};
@@ -117,13 +117,13 @@ static void expect_refused(const Trajectory *run, const char *path, int frames, 
     assert_error(error, ERROR_INPUT, reason);
 }
 
-static void what_is_not_the_run_is_refused_or_told(void **state) {
+static void other_scenes_and_runs_are_detected(void **state) {
     (void)state;
     Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
     expect_refused(run, SOURCE_DIR "/scenes/single.yaml", 20, "single.yaml: error: is not the scene of the run");
-    expect_refused(run, path, SCENE_MAX_FRAMES + 2, "are too many to run");
+    expect_refused(run, path, SCENE_MAX_FRAMES + 2, "can run at most");
     strcpy(run->method, "engine:network=none");
     expect_refused(run, path, 20, "network");
     strcpy(run->method, "pair-net:network=nowhere.npz");
@@ -131,7 +131,7 @@ static void what_is_not_the_run_is_refused_or_told(void **state) {
     strcpy(run->method, "engine:k=1");
     Chaos chaos;
     assert_ok(chaos_run(&chaos, path, run, 1, 20, NULL, &error), error);
-    assert_true(chaos.other > 0);
+    assert_true(chaos.rerun_differs > 0);
     chaos_free(&chaos);
     run->bodies = 3; /* a forged run with the hash of the scene */
     run->bomb = 2;
@@ -144,7 +144,7 @@ static bool stop_late(void *context, double done, double total) {
     return done < 0.75 * total;
 }
 
-/* A stop is no state that left the finite numbers. */
+/* A stop must not be taken for a NaN or infinite state. */
 static void a_stop_is_an_error(void **state) {
     (void)state;
     Error error = {0};
@@ -158,11 +158,11 @@ static void a_stop_is_an_error(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_shift_in_free_flight_stays),
+        cmocka_unit_test(a_shift_in_free_flight_is_constant),
         cmocka_unit_test(a_shift_is_at_least_one_float),
         cmocka_unit_test(a_bomb_that_has_not_hit_is_not_shifted),
         cmocka_unit_test(distances_are_those_of_the_trajectories),
-        cmocka_unit_test(what_is_not_the_run_is_refused_or_told),
+        cmocka_unit_test(other_scenes_and_runs_are_detected),
         cmocka_unit_test(a_stop_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

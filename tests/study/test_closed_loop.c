@@ -22,8 +22,8 @@ static ClosedLoop run(const char *text, const Scene *scene) {
     return result;
 }
 
-/* It has no momentum from nothing, and friction and inelastic impacts only take energy: the bomb's fall adds none. */
-static void the_engine_stays_with_itself(void **state) {
+/* The engine conserves momentum; friction and inelastic impacts only dissipate energy. */
+static void the_engine_equals_itself(void **state) {
     (void)state;
     Scene *scene = read_scene("single");
     ClosedLoop result = run("engine", scene);
@@ -34,8 +34,8 @@ static void the_engine_stays_with_itself(void **state) {
     scene_destroy(scene);
 }
 
-/* With one sweep from nothing a stack of ten sinks: soon apart, deeper. */
-static void a_poor_method_parts_from_the_engine(void **state) {
+/* With one sweep and no warm start a stack of ten sinks. */
+static void a_poor_method_diverges_from_the_engine(void **state) {
     (void)state;
     Scene *scene = read_scene("stack");
     ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
@@ -44,7 +44,7 @@ static void a_poor_method_parts_from_the_engine(void **state) {
     scene_destroy(scene);
 }
 
-/* A bomb that comes late brings energy with it, which is none that the method made. */
+/* The energy that a late bomb brings is not counted as created by the method. */
 static void energy_counts_from_the_bomb_on(void **state) {
     (void)state;
     Scene *scene = read_scene("single");
@@ -54,7 +54,7 @@ static void energy_counts_from_the_bomb_on(void **state) {
     scene_destroy(scene);
 }
 
-static void time_is_taken_of_both(void **state) {
+static void both_methods_are_timed(void **state) {
     (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
@@ -73,7 +73,7 @@ static void time_is_taken_of_both(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_engine_stays_with_itself), cmocka_unit_test(a_poor_method_parts_from_the_engine),
-        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(time_is_taken_of_both)};
+        cmocka_unit_test(the_engine_equals_itself), cmocka_unit_test(a_poor_method_diverges_from_the_engine),
+        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(both_methods_are_timed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

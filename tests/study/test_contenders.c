@@ -7,7 +7,7 @@
 static ContenderList parse(const char *text) {
     Error error = {0};
     ContenderList list;
-    assert_ok(contenders_parse(&list, text, false, &error), error);
+    assert_ok(contenders_parse(&list, text, STUDY_CHART, &error), error);
     return list;
 }
 
@@ -48,7 +48,7 @@ static void the_engine_as_shipped_is_always_there(void **state) {
     for (int quick = 0; quick < 2; quick++) {
         Error error = {0};
         ContenderList list;
-        assert_ok(contenders_parse(&list, NULL, quick, &error), error);
+        assert_ok(contenders_parse(&list, NULL, quick ? STUDY_CHART_QUICK : STUDY_CHART, &error), error);
         int found = 0;
         for (int i = 0; i < list.count; i++)
             found += strcmp(list.items[i].name, "engine") == 0 && strcmp(list.items[i].setting, "k=10") == 0;
@@ -60,7 +60,7 @@ static void the_engine_as_shipped_is_always_there(void **state) {
 static void refuse(const char *text, const char *reason) {
     Error error = {0};
     ContenderList list;
-    assert_false(contenders_parse(&list, text, false, &error));
+    assert_false(contenders_parse(&list, text, STUDY_CHART, &error));
     assert_error(error, ERROR_INPUT, reason);
 }
 

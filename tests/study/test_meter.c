@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What can be said of clocks without waiting for them. */
+/* Properties of the clocks that need no waiting. */
 #define _GNU_SOURCE
 #include "testing.h"
 
@@ -30,7 +30,7 @@ static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
     assert_true(CPU_EQUAL(&before, &after));
 }
 
-/* Where the system lets a program count them: a longer loop takes more. */
+/* Where instructions can be counted: a longer loop takes more. */
 static void instructions_grow_with_the_work(void **state) {
     (void)state;
     if (!meter_open_instructions()) skip();

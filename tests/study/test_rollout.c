@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scores of runs whose errors are known: the reference has none, more sweeps have less, noise has more. */
+/* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
 #include "testing.h"
 
 #include "scene/launch.h"
@@ -50,7 +50,7 @@ static void the_reference_has_no_error(void **state) {
     scene_destroy(scene);
 }
 
-/* Impact 6 frames, after 60, and every frame is in one phase. */
+/* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
 static void every_frame_is_in_one_phase(void **state) {
     (void)state;
     Error error = {0};
@@ -88,8 +88,8 @@ static double frozen_error(const SnapshotList *list, const Scene *scene, const c
     return mean;
 }
 
-/* All take the same steps. What sweeps more is nearer; what sweeps from nothing, or guesses, is farther. */
-static void methods_rank_as_they_must_on_frozen_steps(void **state) {
+/* More sweeps give a smaller error; no warm start, or noise, a larger one. */
+static void methods_rank_as_expected_on_frozen_steps(void **state) {
     (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
@@ -107,7 +107,7 @@ static void methods_rank_as_they_must_on_frozen_steps(void **state) {
     scene_destroy(scene);
 }
 
-/* The engine's own steps, frozen, are the steps of its run in closed loop: the same errors. */
+/* The engine's frozen steps are those of its closed loop, so the errors are the same. */
 static void frozen_steps_of_the_engine_are_its_own(void **state) {
     (void)state;
     Error error = {0};
@@ -135,7 +135,7 @@ static void frozen_steps_of_the_engine_are_its_own(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_has_no_error),
                                        cmocka_unit_test(every_frame_is_in_one_phase),
-                                       cmocka_unit_test(methods_rank_as_they_must_on_frozen_steps),
+                                       cmocka_unit_test(methods_rank_as_expected_on_frozen_steps),
                                        cmocka_unit_test(frozen_steps_of_the_engine_are_its_own)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

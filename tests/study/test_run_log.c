@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of runs written by hand. */
+/* Measures of synthetic logs. */
 #include "testing.h"
 
 #include "study/run_log.h"
@@ -9,7 +9,7 @@
 
 enum { FRAMES = 10, BODIES = 3 };
 
-/* A ground and two boxes; the bomb comes after step 2 and touches in step 5; impact 2 frames, then after. */
+/* A ground and two boxes; the bomb is added after step 2 and touches in step 5; 2 impact frames. */
 static const BodyDef defs[BODIES] = {
     {.size = {100, 20}, .fixed = true}, {.size = {1, 1}, .mass = 1}, {.size = {1, 1}, .mass = 1}};
 static Scene scene_by_hand(void) {
@@ -43,21 +43,21 @@ static RunLog log_by_hand(Handmade *made) {
                     .phase = made->phase};
 }
 
-static void equal_runs_have_nothing_to_tell(void **state) {
+static void equal_runs_have_no_differences(void **state) {
     (void)state;
     Handmade a, b;
     const Scene scene = scene_by_hand();
     const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
-    RunFigures figures = run_figures(&log, &converged, &scene);
+    RunMeasures measures = run_measures(&log, &converged, &scene);
     for (int phase = 0; phase < PHASES; phase++) {
-        assert_near(figures.energy[phase], 0, 0);
-        assert_near(figures.penetration[phase], 0.01, 0);
+        assert_near(measures.energy[phase], 0, 0);
+        assert_near(measures.penetration[phase], 0.01, 0);
     }
-    assert_near(figures.drift, 0, 0);
-    assert_near(figures.moved, 0, 0);
+    assert_near(measures.drift, 0, 0);
+    assert_near(measures.moved, 0, 0);
 }
 
-static void differences_are_measured_where_they_are(void **state) {
+static void differences_are_assigned_to_their_phase(void **state) {
     (void)state;
     Handmade a, b;
     const Scene scene = scene_by_hand();
@@ -69,39 +69,38 @@ static void differences_are_measured_where_they_are(void **state) {
     a.position[10 * BODIES + 1] = vec2(1.6f, 0);     /* 0.6 m in the end */
     a.position[10 * BODIES + 2] = vec2(2.4f, 0);     /* 0.4 m: has not moved */
     a.position[10 * BODIES + 0] = vec2(9, 0);        /* the ground does not count */
-    RunFigures figures = run_figures(&log, &converged, &scene);
-    assert_near(figures.energy[PHASE_IMPACT], 2, 1e-12);
-    assert_near(figures.energy[PHASE_AFTER], 2, 1e-12);
-    assert_near(figures.energy[PHASE_REST], 0, 0);
-    assert_near(figures.penetration[PHASE_IMPACT], 0.3, 0);
-    assert_near(figures.penetration[PHASE_AFTER], 0.01, 0);
-    assert_near(figures.drift, 0.025, 1e-6);
-    assert_near(figures.moved, 1, 0);
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    assert_near(measures.energy[PHASE_IMPACT], 2, 1e-12);
+    assert_near(measures.energy[PHASE_AFTER], 2, 1e-12);
+    assert_near(measures.energy[PHASE_REST], 0, 0);
+    assert_near(measures.penetration[PHASE_IMPACT], 0.3, 0);
+    assert_near(measures.penetration[PHASE_AFTER], 0.01, 0);
+    assert_near(measures.drift, 0.025, 1e-6);
+    assert_near(measures.moved, 1, 0);
 }
 
-/* Moved is counted from where the boxes were when the bomb came. */
-static void what_moved_before_the_launch_has_not_moved(void **state) {
+static void motion_before_the_launch_is_not_counted(void **state) {
     (void)state;
     Handmade a, b;
     const Scene scene = scene_by_hand();
     const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
     for (int frame = 2; frame <= FRAMES; frame++) a.position[frame * BODIES + 1] = vec2(7, 0);
-    assert_near(run_figures(&log, &converged, &scene).moved, 0, 0);
+    assert_near(run_measures(&log, &converged, &scene).moved, 0, 0);
 }
 
-static void a_run_that_broke_off_has_moved_everything(void **state) {
+static void in_a_run_that_ended_early_all_boxes_moved(void **state) {
     (void)state;
     Handmade a, b;
     const Scene scene = scene_by_hand();
     RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
     log.frames = 3;
     log.touch = 0;
-    RunFigures figures = run_figures(&log, &converged, &scene);
-    assert_near(figures.moved, 2, 0);
-    assert_true(isnan(figures.energy[PHASE_IMPACT]));
-    assert_true(isnan(figures.penetration[PHASE_AFTER]));
-    assert_near(figures.energy[PHASE_REST], 0, 0);
-    assert_true(isnan(figures.drift));
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    assert_near(measures.moved, 2, 0);
+    assert_true(isnan(measures.energy[PHASE_IMPACT]));
+    assert_true(isnan(measures.penetration[PHASE_AFTER]));
+    assert_near(measures.energy[PHASE_REST], 0, 0);
+    assert_true(isnan(measures.drift));
 }
 
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
@@ -119,7 +118,7 @@ static void energy_is_kinetic_and_potential(void **state) {
     world_destroy(world);
 }
 
-static void quantiles_lie_between_the_values(void **state) {
+static void quantiles_are_interpolated(void **state) {
     (void)state;
     double values[] = {5, 1, 4, 2, 3};
     assert_near(statistics_mean(values, 5), 3, 0);
@@ -131,11 +130,11 @@ static void quantiles_lie_between_the_values(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_runs_have_nothing_to_tell),
-                                       cmocka_unit_test(differences_are_measured_where_they_are),
-                                       cmocka_unit_test(what_moved_before_the_launch_has_not_moved),
-                                       cmocka_unit_test(a_run_that_broke_off_has_moved_everything),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_runs_have_no_differences),
+                                       cmocka_unit_test(differences_are_assigned_to_their_phase),
+                                       cmocka_unit_test(motion_before_the_launch_is_not_counted),
+                                       cmocka_unit_test(in_a_run_that_ended_early_all_boxes_moved),
                                        cmocka_unit_test(energy_is_kinetic_and_potential),
-                                       cmocka_unit_test(quantiles_lie_between_the_values)};
+                                       cmocka_unit_test(quantiles_are_interpolated)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@
 #include "common/file.h"
 #include "study/study_parts.h"
 
-/* A part that counts how often it is done. */
+/* A part that counts its runs. */
 typedef struct Counted {
     const char *lines;
     int done;
@@ -25,7 +25,7 @@ static void open_parts(StudyParts *parts, const char *folder) {
     assert_ok(study_parts_open(parts, folder, 0x1234, &error), error);
 }
 
-static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
+static void tables_have_the_order_of_the_parts(void **state) {
     (void)state;
     Error error = {0};
     char folder[300];
@@ -33,10 +33,12 @@ static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
     StudyParts parts;
     open_parts(&parts, folder);
     Counted first = {"a:1,2\nab:3\n", 0, false, false}, second = {"ab:4\na:5,6\n", 0, false, false};
+    static const CsvColumn columns[] = {{"x", CSV_INTEGER, .offset = 0}, {"y", CSV_INTEGER, .offset = sizeof(int)}};
+    static const CsvLayout layout = CSV_LAYOUT("a", columns, int[2], .max_rows = 9);
     assert_ok(study_parts_do(&parts, &(StudyPart){"first", 1, write_counted, &first}, &error), error);
     assert_ok(study_parts_do(&parts, &(StudyPart){"second", 3, write_counted, &second}, &error), error);
     assert_near(parts.done, 4, 0);
-    assert_ok(study_parts_table(&parts, folder, "a", "x,y", &error), error);
+    assert_ok(study_parts_table(&parts, folder, &layout, &error), error);
     char path[400];
     size_t size;
     snprintf(path, sizeof path, "%s/a.csv", folder);
@@ -49,7 +51,23 @@ static void tables_are_put_together_in_the_order_of_the_parts(void **state) {
     study_parts_close(&parts);
 }
 
-static void what_is_done_is_not_done_again(void **state) {
+static void a_row_is_a_line_with_the_tables_name(void **state) {
+    (void)state;
+    static const CsvColumn columns[] = {{"x", CSV_TEXT, .offset = 0}};
+    static const CsvLayout layout = CSV_LAYOUT("names", columns, const char *, .max_rows = 9);
+    Error error = {0};
+    char *text = NULL;
+    size_t size;
+    FILE *lines = open_memstream(&text, &size);
+    assert_ok(study_parts_print(lines, &layout, &(const char *){"a,b"}, &error), error);
+    assert_false(study_parts_print(lines, &layout, &(const char *){"a\nb"}, &error));
+    assert_error(error, ERROR_INPUT, "names: error: x: a control character in 'a?b'");
+    fclose(lines);
+    assert_string_equal(text, "names:\"a,b\"\nnames:");
+    free(text);
+}
+
+static void finished_parts_are_not_run_again(void **state) {
     (void)state;
     Error error = {0};
     const char *folder = temporary_path("again");
@@ -73,8 +91,8 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-/* The first part is worth a quarter; half of it was done. */
-static void a_part_cut_off_is_not_kept(void **state) {
+/* The first part has a weight of a quarter; half of it was run. */
+static void an_interrupted_part_is_not_saved(void **state) {
     (void)state;
     Error error = {0};
     const char *folder = temporary_path("cut");
@@ -104,8 +122,8 @@ static void a_part_cut_off_is_not_kept(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_put_together_in_the_order_of_the_parts),
-                                       cmocka_unit_test(what_is_done_is_not_done_again),
-                                       cmocka_unit_test(a_part_cut_off_is_not_kept)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_have_the_order_of_the_parts), cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
+        cmocka_unit_test(finished_parts_are_not_run_again), cmocka_unit_test(an_interrupted_part_is_not_saved)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Datasets for tests, made by hand. */
+/* Synthetic datasets. */
 #pragma once
 #include "testing.h"
 
@@ -33,8 +33,8 @@ static inline Dataset *make_dataset(int rows) {
     return dataset;
 }
 
-/* Changes are the outputs of a 10-4-2 network of sigmoids, as changes of b's velocity: a network of that
-   shape can learn them, to the last digit but for the min-max normalisation. */
+/* Changes of b's velocity are the outputs of a 10-4-2 network of sigmoids: a network of that shape can learn them
+   exactly, except for the min-max normalisation. */
 static inline Dataset *make_taught_dataset(int rows) {
     Error error = {0};
     Dataset *dataset = make_dataset(rows);
@@ -51,7 +51,7 @@ static inline Dataset *make_taught_dataset(int rows) {
     return dataset;
 }
 
-/* A pair's context, drawn: masses of 2 to 10 kg, every third pair with a static a, every seventh with a static b. */
+/* A random pair context: masses of 2 to 10 kg, every third pair with a static a, every seventh with a static b. */
 static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_CONTEXT]) {
     for (int i = 0; i < PAIR_CONTEXT; i++) context[i] = next_number(sequence);
     for (int i = CONTEXT_INV_MASS_A; i <= CONTEXT_INV_INERTIA_B; i++) context[i] = 0.3f + 0.2f * context[i];
@@ -63,8 +63,8 @@ static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_
     context[CONTEXT_FRICTION] = 0.4f + 0.3f * context[CONTEXT_FRICTION];
 }
 
-/* Six changes and a context, of which the inputs tell the normal and the velocities. The impulses are equal and
-   opposite and within the cone; what they do to spins is random. */
+/* Six changes and a context; the inputs contain its normal and velocities. The impulses are equal and opposite and within
+   the friction cone; changes of spin are random. */
 static inline Dataset *make_pushed_dataset(int rows) {
     Dataset *dataset = make_dataset(rows);
     dataset->context = calloc((size_t)rows * PAIR_CONTEXT, sizeof(float));
@@ -89,7 +89,7 @@ static inline Dataset *make_pushed_dataset(int rows) {
     return dataset;
 }
 
-/* To train a 10-4-2 network. */
+/* A 10-4-2 network. */
 static inline TrainingOptions small(const char *optimizer, int iterations) {
     return (TrainingOptions){
         .layers = 2, .widths = {PAIR_INPUTS, 4, 2}, .optimizer = optimizer, .iterations = iterations, .seed = 1};

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <omp.h>
 
-/* More blocks than chunks, and a last block that is not full. */
+/* More blocks than chunks, and a partly filled last block. */
 enum { ROWS = 6000 };
 
-/* For what is done row by row. */
+/* For checks that take long per row. */
 enum { FEW_ROWS = 500 };
 
 typedef struct Case {
@@ -85,7 +85,7 @@ static void check_gradient(Case made) {
     free_case(&made);
 }
 
-/* The tolerance leaves room for no row within a step of a rectifier's kink: there is none. */
+/* With these numbers no row is within a step of a rectifier's kink, so the tolerance need not allow for one. */
 static void gradient_of_the_loss_is_the_finite_difference(void **state) {
     (void)state;
     const Activation hidden[] = {ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
@@ -97,7 +97,7 @@ static void gradient_of_the_loss_is_the_finite_difference(void **state) {
     }
 }
 
-/* Thresholds of 0.3 lie within the errors: some of them are on either side. */
+/* Errors are on both sides of the threshold of 0.3. */
 static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
     (void)state;
     const int widths[] = {10, 5, 2};
@@ -114,7 +114,7 @@ static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
     }
 }
 
-/* Each law by itself, and all with the other loss. */
+/* Each law alone with mse, and all laws with smooth-l1. */
 static void gradient_of_the_laws_is_the_finite_difference(void **state) {
     (void)state;
     const int widths[] = {10, 4, 6};
@@ -132,7 +132,7 @@ static void gradient_of_the_laws_is_the_finite_difference(void **state) {
     }
 }
 
-static void residuals_make_up_the_loss(void **state) {
+static void squared_residuals_sum_to_the_loss(void **state) {
     (void)state;
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t count = residual_count(&made);
@@ -166,7 +166,7 @@ static double dot(const double *a, const double *b, size_t count) {
     return sum;
 }
 
-/* An entry is a sum over 10^4 residuals; differences of step 1e-4 are good to 1e-8 each. */
+/* An entry is a sum over 10^4 residuals; differences with step 1e-4 are accurate to 1e-8 each. */
 static void check_gauss_newton(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
     Case made = make_case(layers, widths, hidden, last, scale);
     size_t count = residual_count(&made), size = (size_t)made.count;
@@ -195,7 +195,7 @@ static void gauss_newton_is_that_of_the_jacobian(void **state) {
     check_gauss_newton(2, (const int[]){10, 3, 2}, ACTIVATION_TANH, linear, SCALE_MINMAX);
 }
 
-/* J^T J without J^T J wanted must not change J^T u. */
+/* J^T u must also be the same if J^T J is not requested. */
 static void sums_do_not_depend_on_threads(void **state) {
     (void)state;
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
@@ -228,7 +228,7 @@ int main(void) {
         cmocka_unit_test(gradient_of_the_loss_is_the_finite_difference),
         cmocka_unit_test(gradient_of_the_smooth_loss_is_the_finite_difference),
         cmocka_unit_test(gradient_of_the_laws_is_the_finite_difference),
-        cmocka_unit_test(residuals_make_up_the_loss),
+        cmocka_unit_test(squared_residuals_sum_to_the_loss),
         cmocka_unit_test(gauss_newton_is_that_of_the_jacobian),
         cmocka_unit_test(sums_do_not_depend_on_threads),
     };

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The laws of one pair: collisions whose outcome is known, and slopes. */
+/* Violations of the laws in collisions of known outcome, and their slopes. */
 #include "datasets.h"
 
 #include "training/law_weights.h"
 
 #include <math.h>
 
-/* A bomb of 2 kg flies at 3 m/s to the right, at a box of 4 kg at rest; the points lie 0.5 m above the centres. */
+/* A bomb of 2 kg flies at 3 m/s to the right, at a box of 4 kg at rest; the points are 0.5 m above the centres. */
 static LawPair collision(void) {
     static const float context[PAIR_CONTEXT] = {
         [CONTEXT_INV_MASS_A] = 0.5f, [CONTEXT_INV_INERTIA_A] = 2, [CONTEXT_INV_MASS_B] = 0.25f,
@@ -25,30 +25,30 @@ static void check(const LawPair *pair, const double change[PAIR_CHANGES], const 
     }
 }
 
-static void collisions_break_what_they_break(void **state) {
+static void violations_of_known_collisions(void **state) {
     (void)state;
     const LawPair pair = collision();
-    /* Nothing happens: the bomb still comes at 3 m/s. */
+    /* No change: still approaching at 3 m/s. */
     check(&pair, (const double[]){0, 0, 0, 0, 0, 0}, (const double[]){0, 0, 3, 0});
-    /* Both go on at 1 m/s; elastic, and parting at 3 m/s. Neither breaks a law. */
+    /* Both continue at 1 m/s; elastic, separating at 3 m/s. Neither violates a law. */
     check(&pair, (const double[]){-2, 0, 0, 1, 0, 0}, (const double[]){0, 0, 0, 0});
     check(&pair, (const double[]){-4, 0, 0, 2, 0, 0}, (const double[]){0, 0, 0, 0});
-    /* Three times the push: 9 J of the bomb become 9 J of the bomb and 18 J of the box. */
+    /* Three times the impulse: 9 J of the bomb become 9 J of the bomb and 18 J of the box. */
     check(&pair, (const double[]){-6, 0, 0, 3, 0, 0}, (const double[]){0, 18, 0, 0});
-    /* Only the box learns of it: 4 N s too much; it keeps the bomb's 9 J and gets 2 J; the bomb still comes at 2 m/s. */
+    /* Only the box changes: 4 N s too much; the bomb keeps its 9 J and the box gains 2 J; still approaching at 2 m/s. */
     check(&pair, (const double[]){0, 0, 0, 1, 0, 0}, (const double[]){4, 2, 2, 0});
     /* Pulled by 4 N s: 25 J of the bomb and 2 J of the box; 4 N s of pulling, nothing across. */
     check(&pair, (const double[]){2, 0, 0, -1, 0, 0}, (const double[]){0, 18, 6, 4});
-    /* 4 N s of push with 6 N s across, where friction has 2; energy: the bomb 1 + 9 J, the box 2 + 4.5 J. */
+    /* 4 N s normal and 6 N s tangential, where friction allows 2; energy: the bomb 1 + 9 J, the box 2 + 4.5 J. */
     check(&pair, (const double[]){-2, -3, 0, 1, 1.5, 0}, (const double[]){0, 7.5, 0, 4});
-    /* The same the other way across, and pulling: 6 N s across an empty cone and 4 N s of pull. */
+    /* Reversed: 4 N s of pull, and 6 N s tangential where friction allows 0. */
     check(&pair, (const double[]){2, 3, 0, -1, -1.5, 0}, (const double[]){0, 31.5, 6, 10});
-    /* Spins of -1 and 1 rad/s: the bomb's point moves on at 0.5 m/s, the box's back at 0.5; 1/4 J and 1/2 J. */
+    /* Spins of -1 and 1 rad/s: each point gains 0.5 m/s towards the other; 1/4 J and 1/2 J. */
     check(&pair, (const double[]){0, 0, -1, 0, 0, 1}, (const double[]){0, 0.75, 4, 0});
 }
 
-/* The box is a wall: it has no momentum or energy to gain, and does not move whatever is said of it. */
-static void static_bodies_take_no_part(void **state) {
+/* The box is a wall: it gains no momentum or energy, and its change is ignored. */
+static void static_bodies_are_ignored(void **state) {
     (void)state;
     const float context[PAIR_CONTEXT] = {[CONTEXT_INV_MASS_A] = 0.5f,
                                          [CONTEXT_INV_INERTIA_A] = 2,
@@ -59,7 +59,7 @@ static void static_bodies_take_no_part(void **state) {
     check(&wall, (const double[]){-3, 0, 0, 7, 8, 9}, (const double[]){0, 0, 0, 0});
     check(&wall, (const double[]){1, 0, 0, 7, 8, 9}, (const double[]){0, 7, 4, 2});
     check(&wall, (const double[]){-1, 2, 0, 7, 8, 9}, (const double[]){0, 0, 2, 3});
-    /* The same with the bodies changed over: now b flies to the left at a wall. */
+    /* The same with the bodies exchanged: b flies to the left at a wall. */
     const float mirrored[PAIR_CONTEXT] = {[CONTEXT_INV_MASS_B] = 0.5f,
                                           [CONTEXT_INV_INERTIA_B] = 2,
                                           [CONTEXT_NORMAL] = 1,
@@ -71,7 +71,7 @@ static void static_bodies_take_no_part(void **state) {
     check(&thrown, (const double[]){7, 8, 9, 1, 2, 0}, (const double[]){0, 0, 2, 3});
 }
 
-/* What a violation is measured by: 4 N s; -6 J; 3 m/s of approach less. */
+/* 4 N s; -6 J; 3 m/s less approach. */
 static void sizes_are_those_of_the_change(void **state) {
     (void)state;
     const LawPair pair = collision();
@@ -79,12 +79,12 @@ static void sizes_are_those_of_the_change(void **state) {
     for (int law = 0; law < LAWS; law++) assert_near(laws_known[law].size(&pair, change), expected[law], 1e-6);
 }
 
-/* Away from kinks, which drawn numbers do not hit, a central difference is good to the curvature times 1e-12. */
+/* Away from kinks, which random numbers do not hit, a central difference is exact to the curvature times 1e-12. */
 static void slopes_are_finite_differences(void **state) {
     (void)state;
     const double step = 1e-6;
     uint32_t sequence = 29;
-    int broken[LAWS] = {0};
+    int violated[LAWS] = {0};
     for (int i = 0; i < 300; i++) {
         float context[PAIR_CONTEXT];
         double change[PAIR_CHANGES], slope[PAIR_CHANGES], ignored[PAIR_CHANGES];
@@ -93,7 +93,7 @@ static void slopes_are_finite_differences(void **state) {
         for (int k = 0; k < PAIR_CHANGES; k++) change[k] = 3 * (double)next_number(&sequence);
         for (int law = 0; law < LAWS; law++) {
             if (laws_known[law].violation(&pair, change, slope) == 0) continue;
-            broken[law]++;
+            violated[law]++;
             for (int k = 0; k < PAIR_CHANGES; k++) {
                 const double kept = change[k];
                 change[k] = kept + step;
@@ -105,7 +105,7 @@ static void slopes_are_finite_differences(void **state) {
             }
         }
     }
-    for (int law = 0; law < LAWS; law++) assert_true(broken[law] > 50);
+    for (int law = 0; law < LAWS; law++) assert_true(violated[law] > 50);
 }
 
 static void assert_no_weights(const char *text, const char *message) {
@@ -115,7 +115,7 @@ static void assert_no_weights(const char *text, const char *message) {
     assert_error(error, ERROR_INPUT, message);
 }
 
-static void weights_are_said_in_words(void **state) {
+static void weights_are_parsed(void **state) {
     (void)state;
     Error error = {0};
     LawNumbers weights;
@@ -141,8 +141,8 @@ static void weights_are_said_in_words(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(collisions_break_what_they_break), cmocka_unit_test(static_bodies_take_no_part),
+        cmocka_unit_test(violations_of_known_collisions), cmocka_unit_test(static_bodies_are_ignored),
         cmocka_unit_test(sizes_are_those_of_the_change), cmocka_unit_test(slopes_are_finite_differences),
-        cmocka_unit_test(weights_are_said_in_words)};
+        cmocka_unit_test(weights_are_parsed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

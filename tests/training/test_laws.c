@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What laws add to the loss, and what they do to a network. */
+/* The laws' terms in the loss and their effect on training. */
 #include "datasets.h"
 
 #include "training/loss.h"
@@ -8,7 +8,7 @@
 
 enum { ROWS = 2000 };
 
-/* A network without hidden layers and with weights 0: it says its biases for every row. */
+/* A network without hidden layers and with weights 0: it predicts its biases for every row. */
 static Network *make_constant(const Dataset *dataset) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES}, &error);
@@ -18,7 +18,7 @@ static Network *make_constant(const Dataset *dataset) {
     return network;
 }
 
-/* What laws of weight w add to each row, and half the slope, for given predictions [rows to train on, 6]. */
+/* The mean of what laws of weight 1 add, and half its slope, for given predictions [rows, 6]. */
 static double added(const Dataset *dataset, const Network *network, const char *laws, const float *predictions,
                     double half_slopes[PAIR_CHANGES * BLOCK_ROWS]) {
     Error error = {0};
@@ -49,10 +49,10 @@ static double added(const Dataset *dataset, const Network *network, const char *
     return sum / rows / PAIR_CHANGES;
 }
 
-static void a_network_that_says_the_labels_breaks_nothing(void **state) {
+static void predicting_the_labels_adds_nothing(void **state) {
     (void)state;
     Dataset *dataset = make_pushed_dataset(ROWS);
-    /* Labels that break every law, as position correction and other pairs make them do. */
+    /* Labels that violate every law, as with position correction and other pairs. */
     for (int r = 0; r < ROWS; r += 2)
         for (int k = 0; k < PAIR_CHANGES; k++) dataset->changes[r * PAIR_CHANGES + k] *= k < 3 ? -3.0f : -5.0f;
     Network *network = make_constant(dataset);
@@ -62,7 +62,7 @@ static void a_network_that_says_the_labels_breaks_nothing(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Told twice the label, a's change as it is and b's thrice, momentum and cone differ by known shares of J. */
+/* Predictions that are multiples of the label: the violations are known multiples of the labels' own size. */
 static void a_weight_of_one_makes_the_labels_own_size_one(void **state) {
     (void)state;
     Dataset *dataset = make_pushed_dataset(ROWS);
@@ -81,15 +81,15 @@ static void a_weight_of_one_makes_the_labels_own_size_one(void **state) {
     float *predictions = calloc(ROWS * PAIR_CHANGES, sizeof *predictions);
     assert_non_null(predictions);
     double half_slopes[PAIR_CHANGES * BLOCK_ROWS];
-    /* Only b is pushed: J of momentum is missing. */
+    /* Only b changes: a momentum of J is missing. */
     for (int i = 0; i < ROWS * PAIR_CHANGES; i++) predictions[i] = i % 6 < 3 ? 0 : dataset->changes[i];
     assert_near(added(dataset, network, "momentum", predictions, half_slopes), 1, 1e-5);
-    /* b is pulled instead: J of pulling. From rest, every push adds energy as the label's does: nothing beyond. */
+    /* The bodies pull with J. From rest a pull adds as much energy as the label's push: no excess. */
     for (int i = 0; i < ROWS * PAIR_CHANGES; i++) predictions[i] = -dataset->changes[i];
     assert_near(added(dataset, network, "cone", predictions, half_slopes), 1, 1e-5);
     assert_near(added(dataset, network, "approach", predictions, half_slopes), 1, 1e-5);
     assert_near(added(dataset, network, "energy", predictions, half_slopes), 0, 1e-5);
-    /* Twice the push, four times the energy: three of it beyond the label's. */
+    /* Twice the impulse, four times the energy: an excess of three times the label's. */
     for (int i = 0; i < ROWS * PAIR_CHANGES; i++) predictions[i] = 2 * dataset->changes[i];
     assert_near(added(dataset, network, "energy", predictions, half_slopes), 9, 1e-4);
     free(predictions);
@@ -97,7 +97,7 @@ static void a_weight_of_one_makes_the_labels_own_size_one(void **state) {
     dataset_destroy(dataset);
 }
 
-/* A prediction of 0 leaves every body as it was: what approaches goes on approaching, and nothing else is broken. */
+/* A prediction of 0 changes no velocity: approaching pairs violate `approach`; no other law is violated. */
 static void violations_are_measured_on_the_test_rows(void **state) {
     (void)state;
     Error error = {0};
@@ -120,15 +120,15 @@ static void violations_are_measured_on_the_test_rows(void **state) {
     assert_true(expected / rows > 0.1 && labels.of[LAW_APPROACH] < expected / rows);
     for (int law = 0; law < LAWS; law++) {
         if (law != LAW_APPROACH) assert_near(nothing.of[law], 0, 1e-5);
-        if (law == LAW_MOMENTUM || law == LAW_CONE) assert_near(labels.of[law], 0, 1e-5); /* as they were made */
+        if (law == LAW_MOMENTUM || law == LAW_CONE) assert_near(labels.of[law], 0, 1e-5); /* by construction */
     }
     strcpy(network->inputs, "x");
     assert_false(laws_measure(dataset, network, &nothing, &error));
-    assert_error(error, ERROR_INPUT, "laws: error: the network takes other inputs (x)");
+    assert_error(error, ERROR_INPUT, "laws: error: the network has other inputs (x)");
     dataset->launch_test[4] = 0;
     error = (Error){0};
     assert_false(laws_measure(dataset, NULL, &nothing, &error));
-    assert_error(error, ERROR_INPUT, "no rows are held out");
+    assert_error(error, ERROR_INPUT, "the dataset has no test rows");
     network_destroy(network);
     dataset_destroy(dataset);
 }
@@ -147,7 +147,7 @@ static Network *train(const Dataset *dataset, const char *laws, int iterations, 
     return network;
 }
 
-static void a_law_in_the_loss_is_broken_less(void **state) {
+static void a_law_in_the_loss_is_violated_less(void **state) {
     (void)state;
     Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
@@ -166,8 +166,8 @@ static void a_law_in_the_loss_is_broken_less(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Scores are those of the outputs alone, so that networks with and without laws can be compared. */
-static void scores_leave_the_laws_out(void **state) {
+/* Scores exclude the laws, so that networks with and without them can be compared. */
+static void scores_exclude_the_laws(void **state) {
     (void)state;
     Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
@@ -189,11 +189,11 @@ static void scores_leave_the_laws_out(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_network_that_says_the_labels_breaks_nothing),
+        cmocka_unit_test(predicting_the_labels_adds_nothing),
         cmocka_unit_test(a_weight_of_one_makes_the_labels_own_size_one),
         cmocka_unit_test(violations_are_measured_on_the_test_rows),
-        cmocka_unit_test(a_law_in_the_loss_is_broken_less),
-        cmocka_unit_test(scores_leave_the_laws_out),
+        cmocka_unit_test(a_law_in_the_loss_is_violated_less),
+        cmocka_unit_test(scores_exclude_the_laws),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,30 +9,30 @@ static void assert_refused(const Dataset *dataset, TrainingOptions options, cons
     assert_error(error, ERROR_INPUT, text);
 }
 
-static void what_cannot_be_trained_is_refused(void **state) {
+static void invalid_options_are_refused(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("magic", 1);
     assert_refused(dataset, options, "'magic' is not an optimizer; known: adam, bfgs, gd, lm");
     options = small("adam", -1);
-    assert_refused(dataset, options, "iterations: error: -1");
+    assert_refused(dataset, options, "iterations: error: must be 0 or more (got -1)");
     options = small("adam", 1);
     options.widths[0] = 9;
-    assert_refused(dataset, options, "the first width is 9");
+    assert_refused(dataset, options, "the first width must be 10, the inputs of a pair (got 9)");
     options = small("adam", 1);
     options.widths[2] = 3;
-    assert_refused(dataset, options, "the last width is 3");
+    assert_refused(dataset, options, "the last width must be 2 (relative velocity) or 6 (both bodies) (got 3)");
     options = small("adam", 1);
     options.widths[1] = 0;
     assert_refused(dataset, options, "width 0");
     options = small("adam", 1);
     options.layers = 0;
-    assert_refused(dataset, options, "0 layers");
+    assert_refused(dataset, options, "weight layers (got 0)");
     options = small("lm", 1);
     options.widths[1] = 20; /* 262 parameters, 80 rows of 2 */
-    assert_refused(dataset, options, "160 numbers to fit with 262 weights");
+    assert_refused(dataset, options, "as many target values as weights (got 160 and 262)");
     options.widths[1] = 200;
-    assert_refused(dataset, options, "2602 weights; at most 2000");
+    assert_refused(dataset, options, "at most 2000 weights (got 2602)");
     Error error = {0};
     Network *start = network_create(2, (const int[]){PAIR_INPUTS, 5, 2}, &error);
     assert_ok(start != NULL, error);
@@ -46,12 +46,12 @@ static void what_cannot_be_trained_is_refused(void **state) {
     assert_refused(dataset, options, "other widths");
     network_destroy(start);
     dataset->launch_test[4] = 0;
-    assert_refused(dataset, small("adam", 1), "100 rows to train on and 0 to test on");
+    assert_refused(dataset, small("adam", 1), "one training row and one test row (got 100 and 0)");
     dataset_destroy(dataset);
 }
 
 /* The change of b relative to a overflows float32. */
-static void leaving_the_finite_numbers_is_an_error(void **state) {
+static void infinite_loss_is_an_error(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
@@ -62,7 +62,7 @@ static void leaving_the_finite_numbers_is_an_error(void **state) {
     dataset_destroy(dataset);
 }
 
-static void words_that_do_not_fit_are_refused(void **state) {
+static void invalid_network_config_is_refused(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("adam", 1);
@@ -82,7 +82,7 @@ static void words_that_do_not_fit_are_refused(void **state) {
     dataset_destroy(dataset);
 }
 
-static void losses_that_do_not_fit_are_refused(void **state) {
+static void invalid_losses_are_refused(void **state) {
     (void)state;
     Dataset *dataset = make_pushed_dataset(100);
     TrainingOptions options = small("adam", 1);
@@ -90,23 +90,23 @@ static void losses_that_do_not_fit_are_refused(void **state) {
     assert_refused(dataset, options, "loss: error: 'l1' is not a valid value; known: mse, smooth-l1");
     options = small("lm", 1);
     options.loss = "smooth-l1";
-    assert_refused(dataset, options, "lm: error: is for least squares");
+    assert_refused(dataset, options, "lm: error: needs loss mse and no laws");
     options = small("adam", 1);
     options.laws.of[LAW_CONE] = 1;
-    assert_refused(dataset, options, "laws: error: 2 outputs; all 6 are needed");
+    assert_refused(dataset, options, "laws: error: need a network with 6 outputs, such as 10-8-8-6 (got 2)");
     options.widths[2] = PAIR_CHANGES;
     options.optimizer = "lm";
-    assert_refused(dataset, options, "lm: error: is for least squares");
+    assert_refused(dataset, options, "lm: error: needs loss mse and no laws");
     options.optimizer = "adam";
     options.laws.of[LAW_CONE] = -1;
-    assert_refused(dataset, options, "laws: error: a weight of -1 for cone");
+    assert_refused(dataset, options, "laws: error: the weight of cone must be 0 or more (got -1)");
     options.laws.of[LAW_CONE] = NAN;
-    assert_refused(dataset, options, "a weight of nan for cone");
+    assert_refused(dataset, options, "the weight of cone must be 0 or more (got nan)");
     options.laws.of[LAW_CONE] = INFINITY;
-    assert_refused(dataset, options, "a weight of inf for cone");
+    assert_refused(dataset, options, "the weight of cone must be 0 or more (got inf)");
     options.laws.of[LAW_CONE] = 1;
     dataset->target = TARGET_NET;
-    assert_refused(dataset, options, "laws: error: they are for the target pair in world axes, not for net");
+    assert_refused(dataset, options, "laws: error: need a dataset with target pair in world axes (got target net");
     dataset->target = TARGET_PAIR;
     free(dataset->context);
     dataset->context = NULL;
@@ -119,8 +119,8 @@ static void losses_that_do_not_fit_are_refused(void **state) {
     dataset_destroy(dataset);
 }
 
-/* The network to go on from keeps its form. */
-static void another_form_than_that_of_the_start_is_refused(void **state) {
+/* A start network keeps its activations and output scaling. */
+static void options_that_contradict_the_start_network_are_refused(void **state) {
     (void)state;
     Error error = {0};
     Dataset *dataset = make_taught_dataset(100);
@@ -135,20 +135,19 @@ static void another_form_than_that_of_the_start_is_refused(void **state) {
     assert_int_equal(same->activations[0], ACTIVATION_TANH);
     network_destroy(same);
     options.hidden = "sigmoid";
-    assert_refused(dataset, options, "other activations than sigmoid");
+    assert_refused(dataset, options, "hidden: error: the start network has a hidden activation other than sigmoid");
     options.hidden = NULL;
     options.output_activation = "linear";
-    assert_refused(dataset, options, "another than linear");
+    assert_refused(dataset, options, "output activation: error: the start network's is not linear");
     options.output_activation = NULL;
     options.scale = "minmax";
-    assert_refused(dataset, options, "scale: error: the network to go on from keeps its own");
+    assert_refused(dataset, options, "scale: error: the start network keeps its own");
     network_destroy(start);
     dataset_destroy(dataset);
 }
 
-/* Ten inputs that are all the same: the loss of a linear layer has curvature 10 along their sum, and a step of gradient
-   descent at rate 1/2 turns the distance from the minimum into -4 times itself. From 1 it passes the largest float,
-   2^128, in about 64 steps. */
+/* Ten equal inputs: the loss of a linear layer has curvature 10 along their sum, so a step of gradient descent at rate
+   1/2 multiplies the distance from the minimum by -4. From 1 it exceeds the largest float, 2^128, in about 64 steps. */
 static void divergence_names_its_iteration(void **state) {
     (void)state;
     Error error = {0};
@@ -161,11 +160,11 @@ static void divergence_names_its_iteration(void **state) {
                                .seed = 1,
                                .output_activation = "linear"};
     assert_null(training_run(dataset, &options, NULL, &error));
-    assert_error(error, ERROR_INPUT, "training: error: diverged: left the finite numbers in iteration ");
+    assert_error(error, ERROR_INPUT, "training: error: diverged: NaN or infinite in iteration ");
     int iteration = 0;
     assert_int_equal(sscanf(strstr(error.message, "iteration "), "iteration %d", &iteration), 1);
     assert_in_range(iteration, 60, 70);
-    options.iterations = iteration - 1; /* up to there its numbers are finite */
+    options.iterations = iteration - 1; /* still finite */
     error = (Error){0};
     Network *network = training_run(dataset, &options, NULL, &error);
     assert_ok(network != NULL, error);
@@ -175,12 +174,12 @@ static void divergence_names_its_iteration(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_cannot_be_trained_is_refused),
-        cmocka_unit_test(words_that_do_not_fit_are_refused),
-        cmocka_unit_test(losses_that_do_not_fit_are_refused),
-        cmocka_unit_test(another_form_than_that_of_the_start_is_refused),
+        cmocka_unit_test(invalid_options_are_refused),
+        cmocka_unit_test(invalid_network_config_is_refused),
+        cmocka_unit_test(invalid_losses_are_refused),
+        cmocka_unit_test(options_that_contradict_the_start_network_are_refused),
         cmocka_unit_test(divergence_names_its_iteration),
-        cmocka_unit_test(leaving_the_finite_numbers_is_an_error),
+        cmocka_unit_test(infinite_loss_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

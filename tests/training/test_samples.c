@@ -14,8 +14,7 @@ static Network *make_network(int outputs, Activation last) {
     return network;
 }
 
-/* Five rows: 0 to 3 are trained on, row 4 is the test. Changes of a's x velocity -0, -1, -2, -3, -6; b's
-   0. */
+/* Five rows: 0 to 3 are training rows, row 4 is the test row. Changes of a's x velocity -0, -1, -2, -3, -6; of b's 0. */
 static Dataset *small_dataset(void) {
     Dataset *dataset = make_dataset(5);
     for (int r = 0; r < 5; r++) {
@@ -26,7 +25,7 @@ static Dataset *small_dataset(void) {
     return dataset;
 }
 
-/* Relative change x: 0, 1, 2, 3 -> 0, 1/3, 2/3, 1; the test's 6 -> 2. y never changes. */
+/* Relative change x: 0, 1, 2, 3 -> 0, 1/3, 2/3, 1; the test row's 6 -> 2. y is constant. */
 static void two_outputs_are_relative_and_min_max(void **state) {
     (void)state;
     Error error = {0};
@@ -47,7 +46,7 @@ static void two_outputs_are_relative_and_min_max(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Input 0, 2, 4, 6 has mean 3 and deviation sqrt 5; the test's row must not count. */
+/* Input 0, 2, 4, 6 has mean 3 and deviation sqrt 5; the test row must not count. */
 static void inputs_are_standardised_by_the_rows_trained_on(void **state) {
     (void)state;
     Error error = {0};
@@ -59,7 +58,7 @@ static void inputs_are_standardised_by_the_rows_trained_on(void **state) {
     assert_ok(train != NULL && test != NULL, error);
     for (int r = 0; r < 4; r++) assert_near(train->x[r], (2 * r - 3) / sqrt(5), 1e-6);
     assert_near(test->x[0], (8 - 3) / sqrt(5), 1e-6);
-    /* A column that never changes. */
+    /* A constant column. */
     assert_true(network->input.offset[1] == 0.1f && network->input.scale[1] == 1);
     assert_true(train->x[BLOCK_ROWS] == 0 && train->x[BLOCK_ROWS + 3] == 0);
     samples_destroy(test);
@@ -96,8 +95,7 @@ static void six_outputs_are_all_changes_standardised(void **state) {
     dataset_destroy(dataset);
 }
 
-/* What goes in as a target comes out of network_predict(): the bias of a linear layer is its normalised
- * output. */
+/* A normalised target, set as the bias of a linear layer, is returned by network_predict() as the original change. */
 static void normalisation_is_undone_by_prediction(void **state) {
     (void)state;
     Error error = {0};
@@ -121,8 +119,8 @@ static void normalisation_is_undone_by_prediction(void **state) {
     dataset_destroy(dataset);
 }
 
-/* The constant 1/2 misses 0, 1/3, 2/3, 1 by a variance of 5/36 and the test's 2 by 9/4; the other output is
- * exact. */
+/* The mean squared error of the constant 1/2 is 5/36 on 0, 1/3, 2/3, 1 and 9/4 on the test row's 2; the other output is
+   exact. */
 static void the_constant_predictor_has_the_variance(void **state) {
     (void)state;
     Error error = {0};
@@ -146,9 +144,9 @@ static void the_constant_predictor_has_the_variance(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the constant misses them by 0.1, 0.9, 1.9, 2.9 m/s. Within 0.3 m/s the loss
-   is the square, beyond it 0.6 |e| - 0.09; and in the network's units a ninth of that. */
-static void the_smooth_loss_is_straight_beyond_its_threshold(void **state) {
+/* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the errors of the constant are 0.1, 0.9, 1.9, 2.9 m/s. Up to 0.3 m/s the loss
+   is the square, beyond it 0.6 |e| - 0.09; in the network's units a ninth of that. */
+static void the_smooth_loss_is_linear_beyond_its_threshold(void **state) {
     (void)state;
     Error error = {0};
     Dataset *dataset = small_dataset();
@@ -160,10 +158,10 @@ static void the_smooth_loss_is_straight_beyond_its_threshold(void **state) {
     const double constant[2] = {0.1 / 3, 0};
     const double expected = 0.1 * 0.1 + 0.6 * (0.9 + 1.9 + 2.9) - 3 * 0.09;
     assert_near(loss_of_constant(smooth, train, constant), expected / 9 / 8, 1e-7);
-    /* The network that says so. */
+    /* A network that predicts the constant. */
     double parameters[22] = {[20] = -log(1 / constant[0] - 1), [21] = -1000};
     assert_near(loss_value(smooth, train, NULL, parameters), expected / 9 / 8, 1e-7);
-    /* All within the threshold: the two meet. */
+    /* All errors within the threshold: equal to mse. */
     network->output.scale[0] = network->output.scale[1] = 100;
     Loss *wide = loss_create(network, LOSS_SMOOTH_L1, &error);
     assert_ok(wide != NULL, error);
@@ -176,8 +174,8 @@ static void the_smooth_loss_is_straight_beyond_its_threshold(void **state) {
     dataset_destroy(dataset);
 }
 
-/* A network of zeros says 0, or 1/2 through a sigmoid: its loss is that of the constant, also over many
-   chunks and a block that is not full. */
+/* A network of zeros predicts 1/2 through its sigmoid: its loss is that of the constant, also over many chunks and a
+   partly filled block. */
 static void loss_of_a_constant_network_is_that_of_the_constant(void **state) {
     (void)state;
     Error error = {0};
@@ -205,7 +203,7 @@ int main(void) {
         cmocka_unit_test(six_outputs_are_all_changes_standardised),
         cmocka_unit_test(normalisation_is_undone_by_prediction),
         cmocka_unit_test(the_constant_predictor_has_the_variance),
-        cmocka_unit_test(the_smooth_loss_is_straight_beyond_its_threshold),
+        cmocka_unit_test(the_smooth_loss_is_linear_beyond_its_threshold),
         cmocka_unit_test(loss_of_a_constant_network_is_that_of_the_constant),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

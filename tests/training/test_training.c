@@ -31,7 +31,7 @@ static Network *train(const Dataset *dataset, TrainingOptions options, Scores *s
     return network;
 }
 
-/* Mean squared error of the normalised outputs, from the network as a file would hold it. */
+/* Mean squared error of the normalised outputs, by network_predict(). */
 static double error_of(const Network *network, const Dataset *dataset, bool test) {
     double sum = 0;
     int count = 0;
@@ -64,7 +64,7 @@ static void check_learns(const char *optimizer, int iterations, double factor) {
     dataset_destroy(dataset);
 }
 
-static void every_optimizer_learns_what_a_network_taught(void **state) {
+static void every_optimizer_learns_a_networks_outputs(void **state) {
     (void)state;
     check_learns("adam", 1000, 100);
     check_learns("bfgs", 200, 100);
@@ -72,9 +72,8 @@ static void every_optimizer_learns_what_a_network_taught(void **state) {
     check_learns("gd", 2000, 2);
 }
 
-/* Without a hidden layer and with linear outputs the loss is a parabola. Its minimum is 0 here, but for the
-   rounding of targets to float32; Levenberg-Marquardt gets there in a few steps and then stops without an
-   error. */
+/* Without a hidden layer and with linear outputs the loss is quadratic. Its minimum is 0 here, up to the rounding of
+   targets to float32; Levenberg-Marquardt reaches it in a few steps and then stops without an error. */
 static void linear_problems_are_solved(void **state) {
     (void)state;
     Dataset *dataset = make_dataset(1000);
@@ -102,7 +101,7 @@ static void linear_problems_are_solved(void **state) {
     dataset_destroy(dataset);
 }
 
-static void networks_say_what_they_take_and_give(void **state) {
+static void networks_name_their_inputs_and_outputs(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
@@ -124,8 +123,8 @@ static bool same_numbers(const Network *a, const Network *b) {
     return memcmp(a->weights[0], b->weights[0], (size_t)network_parameter_count(a) * sizeof(float)) == 0;
 }
 
-/* Without a hidden layer and with weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias of each of the six
-   outputs, so that a step at rate 1/2 leaves 5/6 of it. */
+/* No hidden layer, weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias for each of the six outputs, so a
+   step at rate 1/2 leaves 5/6 of it. */
 static void gradient_descent_steps_at_its_rate(void **state) {
     (void)state;
     Dataset *dataset = make_dataset(1000);
@@ -145,7 +144,7 @@ static void gradient_descent_steps_at_its_rate(void **state) {
     dataset_destroy(dataset);
 }
 
-static void words_decide_the_form(void **state) {
+static void options_set_activations_and_scaling(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     const char *const hidden[] = {"sigmoid", "tanh", "relu"};
@@ -161,21 +160,21 @@ static void words_decide_the_form(void **state) {
             Network *network = train(dataset, options, &scores);
             assert_int_equal(network->activations[0], expected[h]);
             assert_int_equal(network->activations[1], form == 0 ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR);
-            /* Both scale to the units of the data; the mean predictor's error is 1 only where standardised. */
+            /* The constant predictor's error is 1 only if the outputs are standardised. */
             assert_true((fabs(last_score(&scores)->constant_train - 1) < 1e-4) == (form == 2));
             assert_memory_equal(network->output_mean, plain->output_mean, 2 * sizeof(float));
             assert_true(same_numbers(network, plain) == (h == 0 && form == 0));
             network_destroy(network);
         }
     TrainingOptions options = small("adam", 5);
-    options.output_activation = "linear"; /* and so standard */
+    options.output_activation = "linear"; /* implies standard */
     network_destroy(train(dataset, options, &scores));
     assert_near(last_score(&scores)->constant_train, 1, 1e-4);
     network_destroy(plain);
     dataset_destroy(dataset);
 }
 
-/* Glorot: weights within sqrt(6 / (10 + 4)) of 0, of variance 1/3 of its square; biases 0. */
+/* Glorot: |weight| <= limit, variance limit^2 / 3; biases 0. */
 static void first_weights_are_glorots(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
@@ -190,8 +189,7 @@ static void first_weights_are_glorots(void **state) {
         sum += weight;
         squares += weight * weight;
     }
-    /* Four standard errors: of the mean limit / sqrt(3 * 2000), of the mean square limit^2 * sqrt(4 / 45 /
-     * 2000). */
+    /* Four standard errors: limit / sqrt(3 * 2000) for the mean, limit^2 * sqrt(4 / 45 / 2000) for the mean square. */
     assert_near(sum / 2000, 0, 4 * limit / sqrt(6000));
     assert_near(squares / 2000, limit * limit / 3, 4 * limit * limit * sqrt(4.0 / 45 / 2000));
     for (int j = 0; j < 200; j++) assert_true(network->biases[0][j] == 0);
@@ -199,8 +197,8 @@ static void first_weights_are_glorots(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Rows enough that the work is shared out to threads. */
-static void seeds_decide_every_bit(void **state) {
+/* Enough rows for several threads. */
+static void same_seed_same_bits(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(6000);
     Scores scores;
@@ -231,7 +229,7 @@ static void seeds_decide_every_bit(void **state) {
     dataset_destroy(dataset);
 }
 
-static void scores_come_as_in_the_papers_table(void **state) {
+static void scores_are_reported_as_in_the_papers_table(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
@@ -246,13 +244,13 @@ static void scores_come_as_in_the_papers_table(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Asks to stop when iteration `context` is done. */
+/* Stops the training when iteration `context` is done. */
 static bool stop_at(void *context, double done, double total) {
     (void)total;
     return done < *(const int *)context;
 }
 
-static void asked_to_stop_the_best_so_far_comes_back(void **state) {
+static void stopped_training_returns_the_best_so_far(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(500);
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
@@ -274,8 +272,8 @@ static void asked_to_stop_the_best_so_far_comes_back(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Adam overshoots in a wide network; what comes back never gets worse with more iterations. */
-static void the_best_comes_back_and_not_the_last(void **state) {
+/* Adam overshoots with a wide network; the returned network never gets worse with more iterations. */
+static void training_returns_the_best_and_not_the_last(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(500);
     double best = INFINITY;
@@ -300,7 +298,7 @@ static void the_best_comes_back_and_not_the_last(void **state) {
     dataset_destroy(dataset);
 }
 
-static void training_goes_on_from_a_network(void **state) {
+static void training_continues_from_a_start_network(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
     for (int i = 0; i < 500 * PAIR_INPUTS; i++) wider->inputs[i] *= 2;
@@ -324,17 +322,17 @@ static void training_goes_on_from_a_network(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_optimizer_learns_what_a_network_taught),
+        cmocka_unit_test(every_optimizer_learns_a_networks_outputs),
         cmocka_unit_test(linear_problems_are_solved),
-        cmocka_unit_test(networks_say_what_they_take_and_give),
+        cmocka_unit_test(networks_name_their_inputs_and_outputs),
         cmocka_unit_test(gradient_descent_steps_at_its_rate),
-        cmocka_unit_test(words_decide_the_form),
+        cmocka_unit_test(options_set_activations_and_scaling),
         cmocka_unit_test(first_weights_are_glorots),
-        cmocka_unit_test(seeds_decide_every_bit),
-        cmocka_unit_test(scores_come_as_in_the_papers_table),
-        cmocka_unit_test(asked_to_stop_the_best_so_far_comes_back),
-        cmocka_unit_test(the_best_comes_back_and_not_the_last),
-        cmocka_unit_test(training_goes_on_from_a_network),
+        cmocka_unit_test(same_seed_same_bits),
+        cmocka_unit_test(scores_are_reported_as_in_the_papers_table),
+        cmocka_unit_test(stopped_training_returns_the_best_so_far),
+        cmocka_unit_test(training_returns_the_best_and_not_the_last),
+        cmocka_unit_test(training_continues_from_a_start_network),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

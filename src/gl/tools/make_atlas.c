@@ -9,7 +9,7 @@
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
-/* Steps of about an eighth: the next size below the one asked for is near enough. */
+/* Steps of about an eighth: the next smaller size is close enough to the requested one. */
 static const int sizes[FONT_SIZES] = {9,  10, 11, 12, 13, 14, 15, 16, 18, 20, 22, 24,
                                       26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 64, 72};
 
@@ -33,10 +33,10 @@ static FT_Pos load(FT_Face face, unsigned code) {
     FT_UInt index = FT_Get_Char_Index(face, code);
     if (index == 0) quit("a character is missing in the font");
     if (FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) quit("cannot load a glyph");
-    return (face->glyph->linearHoriAdvance + (1 << 9)) >> 10; /* 16.16 -> 26.6 */
+    return (face->glyph->linearHoriAdvance + (1 << 9)) >> 10; /* Tabular figures: changing numbers must not shift. */
 }
 
-/* Tabular figures: numbers that change must not shake. */
+/* Coverage in the levels of shaders/shape.frag. */
 static FT_Pos figure_advance(FT_Face face) {
     FT_Pos widest = 0;
     for (unsigned code = '0'; code <= '9'; code++) {

@@ -7,11 +7,11 @@
 #include "scene/launch.h"
 
 static const FloatRange sweep = {-5, 0.05, SWEEP_LAUNCHES};
-enum { WAY_POINTS = 200, BOMB_SHOWN_EVERY = 50 };
+enum { PATH_POINTS = 200, BOMB_SHOWN_EVERY = 50 };
 
 float sweep_x(int i) { return range_value(&sweep, i); }
 
-/* The numbers that twinbox dataset records. */
+/* The numbers that `twinbox dataset` records. */
 static void fill_row(SweepRow *row, const ContactProblem *problem, const ContactSolution *solution, int first) {
     pair_inputs(problem, NULL, first, PAIR_RELATIVE, row->inputs);
     pair_changes(problem, solution, first, pair_contact_count(problem, first), row->changes);
@@ -32,17 +32,17 @@ static void take_row(SweepRow *row, const EngineRun *run) {
     }
 }
 
-/* The bomb's way to its first touch, as collision saw it; the run goes on to count. */
-typedef struct Way {
+/* The bomb's path up to its first touch. */
+typedef struct Path {
     int count;
-    Point points[WAY_POINTS];
+    Point points[PATH_POINTS];
     bool touches;
-} Way;
+} Path;
 
-static void follow(Way *way, const EngineRun *run, const View *view) {
+static void follow(Path *path, const EngineRun *run, const View *view) {
     int bomb = run->scene->body_count;
-    if (run->tracker.touch != 0 || world_body_count(run->world) <= bomb || way->count == WAY_POINTS) return;
-    way->points[way->count++] = view_place(view, world_bodies(run->world)[bomb].position);
+    if (run->tracker.touch != 0 || world_body_count(run->world) <= bomb || path->count == PATH_POINTS) return;
+    path->points[path->count++] = view_place(view, world_bodies(run->world)[bomb].position);
 }
 
 static int count_pairs(const ContactProblem *problem) {
@@ -51,24 +51,24 @@ static int count_pairs(const ContactProblem *problem) {
     return count;
 }
 
-/* Adds the launch's touching pairs to *rows; row: NULL, or the row to be taken. */
-static bool run_launch(Way *way, int *rows, SweepRow *row, const Scene *launched, const View *view, Error *error) {
+/* Adds the launch's touching pairs to *rows. row: NULL, or where the row is stored. */
+static bool run_launch(Path *path, int *rows, SweepRow *row, const Scene *launched, const View *view, Error *error) {
     EngineRun run;
     if (!engine_run_begin(&run, launched, error)) return false;
     bool ok = true;
-    *way = (Way){0};
+    *path = (Path){0};
     while (ok && run.frame < launched->frames) {
-        follow(way, &run, view);
+        follow(path, &run, view);
         ok = engine_run_step(&run, error);
         if (ok) *rows += count_pairs(world_problem(run.world));
         if (ok && row != NULL && run.tracker.touch == run.frame) take_row(row, &run);
     }
-    way->touches = run.tracker.touch != 0;
+    path->touches = run.tracker.touch != 0;
     engine_run_end(&run);
     return ok;
 }
 
-static void put_stack(Sketch *sketch, const View *view, const Scene *scene) {
+static void draw_stack(Sketch *sketch, const View *view, const Scene *scene) {
     for (int i = 0; i < scene->body_count; i++) {
         const BodyDef *body = &scene->bodies[i];
         const Box box = box_make(body->position, body->size, body->angle);
@@ -77,7 +77,7 @@ static void put_stack(Sketch *sketch, const View *view, const Scene *scene) {
     }
 }
 
-static void put_bomb(Sketch *sketch, const View *view, const Scene *launched, bool named) {
+static void draw_bomb(Sketch *sketch, const View *view, const Scene *launched, bool named) {
     const BodyDef bomb = scene_bomb_body(launched);
     const Box box = box_make(bomb.position, bomb.size, bomb.angle);
     const Pen pen = pen_fill(BOMB.fill, 0.75, BOMB.line);
@@ -89,33 +89,32 @@ static void put_bomb(Sketch *sketch, const View *view, const Scene *launched, bo
                 show_decimals((double)bomb.position.x, 1).text);
 }
 
-static void put_way(Sketch *sketch, const Way *way, bool of_row) {
+static void draw_path(Sketch *sketch, const Path *path, bool of_row) {
     uint32_t colour = of_row ? ACCENT : BOMB.fill;
     const Pen line = pen_line(colour, of_row ? 2.8 : 1.2, NULL), dot = pen_fill(colour, 1, NO_COLOUR);
-    sketch_path(sketch, way->points, way->count, &line);
-    if (way->touches) sketch_dot(sketch, way->points[way->count - 1], of_row ? 1 : 0.6, &dot);
+    sketch_path(sketch, path->points, path->count, &line);
+    if (path->touches) sketch_dot(sketch, path->points[path->count - 1], of_row ? 1 : 0.6, &dot);
 }
 
-/* Shows one launch. */
-static bool put_launch(Sketch *sketch, const View *view, const Scene *scene, int i, SweepRow *row, int *rows,
-                       Error *error) {
-    Way way;
+static bool draw_launch(Sketch *sketch, const View *view, const Scene *scene, int i, SweepRow *row, int *rows,
+                        Error *error) {
+    Path path;
     Launch launch = launch_of(scene);
     launch.x = sweep_x(i);
     Scene launched = launch_scene(scene, &launch);
     bool of_row = i == SWEEP_ROW_LAUNCH;
-    if (!run_launch(&way, rows, of_row ? row : NULL, &launched, view, error)) return false;
-    if (i % BOMB_SHOWN_EVERY == 0 || of_row) put_bomb(sketch, view, &launched, !of_row);
-    put_way(sketch, &way, of_row);
+    if (!run_launch(&path, rows, of_row ? row : NULL, &launched, view, error)) return false;
+    if (i % BOMB_SHOWN_EVERY == 0 || of_row) draw_bomb(sketch, view, &launched, !of_row);
+    draw_path(sketch, &path, of_row);
     return true;
 }
 
-bool put_sweep(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error) {
+bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error) {
     *rows = 0;
     *row = (SweepRow){0};
-    put_stack(sketch, view, scene);
+    draw_stack(sketch, view, scene);
     for (int i = 0; i < SWEEP_LAUNCHES; i += SWEEP_SHOWN_EVERY)
-        if (!put_launch(sketch, view, scene, i, row, rows, error)) return false;
+        if (!draw_launch(sketch, view, scene, i, row, rows, error)) return false;
     return row->step > 0 || error_input(error, scene->name, "the bomb launched from x = %g m touches no box",
                                         (double)sweep_x(SWEEP_ROW_LAUNCH));
 }

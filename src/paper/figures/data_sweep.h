@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The launches that figure 3 shows, and the row that it takes from one of them. */
+/* The launches in figure 3, and the training row that it shows from one of them. */
 #pragma once
 #include "sketch/sketch.h"
 
 #include "pair/pair.h"
 #include "scene/scene.h"
 
-/* Of the paper's sweep (3.3) every so many launches are shown. The row is of the one where the bomb hits the edge of the
-   highest box, which it pushes down and turns. */
+/* Every 10th launch of the paper's sweep (3.3) is shown. The row is from the launch where the bomb hits the edge of the
+   highest box, pushes it down and turns it. */
 enum { SWEEP_LAUNCHES = 201, SWEEP_SHOWN_EVERY = 10, SWEEP_ROW_LAUNCH = 120 };
 
-/* m, of launch i */
+/* x of launch i, m */
 float sweep_x(int i);
 
-/* A pair of the bomb and a box that can move, at the bomb's first touch. */
+/* The pair of the bomb and a movable box, at the bomb's first touch. */
 typedef struct SweepRow {
     int step, bodies[2], bomb;
     Box boxes[2];
-    float inputs[PAIR_INPUTS], changes[PAIR_CHANGES]; /* pair_inputs(), relative, and pair_changes() */
+    float inputs[PAIR_INPUTS], changes[PAIR_CHANGES]; /* pair_inputs() with PAIR_RELATIVE; pair_changes() */
 } SweepRow;
 
-/* Runs the launches shown, to the end, and draws the bomb's ways to its first touch over the scene at its start. rows:
-   touching pairs in all their steps. ERROR_INPUT where the row's launch touches no box. */
-bool put_sweep(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error);
+/* Runs the launches shown to their end, and draws the bomb's path up to its first touch over the scene's initial state.
+   *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
+bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error);

@@ -11,11 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const rate_definition_names[RATE_DEFINITIONS] = {"range", "absolute", "bodies"};
+const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range", "absolute", "bodies"};
 
 static const double near_share = 0.05, near_velocity = 0.1; /* of the range; m/s */
 
-/* How far each column was from what the engine did to one pair. */
+/* Errors of all columns for one pair, compared with the engine. */
 typedef struct PairError {
     Vec2 error[RATE_COLUMNS]; /* m/s */
     Phase phase;
@@ -28,7 +28,7 @@ typedef struct Rating {
     World *world;
     bool warm; /* no network: the warm start */
     double weights[PHASES];
-    ContactSolver solvers[RATE_COLUMNS]; /* kind NULL: none */
+    ContactSolver solvers[RATE_COLUMNS]; /* kind NULL: no solver */
     PairMoment results[RATE_COLUMNS];
     PairMoment now; /* in the middle of a step */
     float least[2], most[2];
@@ -52,7 +52,7 @@ static bool add_network(Rating *rating, RateColumn column, const char *name, con
 static bool add_networks(Rating *rating, const char *path, Error *error) {
     if (!pair_network_read(&rating->network, path, error)) return false;
     const PairTarget target = rating->network.target;
-    /* Such a network would need the impulses of points, and says none. */
+    /* Such a network would need the impulses at points and does not predict them. */
     if (target == TARGET_IMPULSE && pair_views[rating->network.view].by_contact) return true;
     return add_network(rating, RATE_NETWORK, target == TARGET_POINTS ? "contact-net" : "pair-net", path, error) &&
            add_network(rating, RATE_CONSTANT, "constant", path, error);
@@ -86,15 +86,15 @@ static void end(Rating *rating) {
     free(rating->pairs);
 }
 
-static const SequentialOptions plain = {.accumulate = true, .warm = true, .relaxation = 1};
+static const SequentialOptions engine_options = {.accumulate = true, .warm = true, .relaxation = 1};
 
-/* Solves the problem by every column that can. */
+/* Solves the problem with every column that can. */
 static bool solve_all(Rating *rating, const ContactProblem *problem, Error *error) {
     for (int c = 0; c < RATE_COLUMNS; c++) {
         const ContactSolver *solver = &rating->solvers[c];
         if (!pair_moment_reserve(&rating->results[c], problem)) return error_memory(error, "rates");
         ContactSolution solution = pair_moment_solution(&rating->results[c]);
-        if (rating->warm && c == RATE_NETWORK) sequential_impulses_begin(problem, &plain, &solution);
+        if (rating->warm && c == RATE_NETWORK) sequential_impulses_begin(problem, &engine_options, &solution);
         if (solver->kind != NULL && !solver->kind->solve(solver->state, problem, &solution, error)) return false;
     }
     return true;
@@ -104,7 +104,7 @@ static Vec2 relative(const float changes[PAIR_CHANGES]) {
     return vec2(changes[3] - changes[0], changes[4] - changes[1]);
 }
 
-/* The same of what a network says. */
+/* The same for a network's outputs. */
 static Vec2 relative_output(const PairNetwork *network, const float *outputs, int step) {
     if (network->network->widths[network->network->layers] == 2) return vec2(outputs[0], outputs[step]);
     return vec2(outputs[3 * step] - outputs[0], outputs[4 * step] - outputs[step]);
@@ -119,7 +119,7 @@ static bool add_pair(Rating *rating, const PairError *pair, Vec2 truth, Error *e
     return true;
 }
 
-/* What a column's solution did to a pair. */
+/* The change of a pair's relative velocity by a column's solution. */
 static Vec2 solved_change(const Rating *rating, const ContactProblem *problem, RateColumn column, int first) {
     const ContactSolution solution = pair_moment_solution(&rating->results[column]);
     const PairTarget target = rating->network.target == TARGET_NET ? TARGET_NET : TARGET_PAIR;
@@ -154,7 +154,7 @@ static bool rate_visits(Rating *rating, const ContactProblem *problem, Phase pha
     PairNetwork *network = &rating->network;
     if (!pair_moment_reserve(&rating->now, problem)) return error_memory(error, "rates");
     ContactSolution now = pair_moment_solution(&rating->now);
-    sequential_impulses_begin(problem, &plain, &now);
+    sequential_impulses_begin(problem, &engine_options, &now);
     for (int sweep = 0; sweep < rating->scene->iterations; sweep++)
         for (int first = 0, count; first < problem->contact_count; first += count) {
             const ContactPoint *contact = &problem->contacts[first];
@@ -162,7 +162,7 @@ static bool rate_visits(Rating *rating, const ContactProblem *problem, Phase pha
             float outputs[PAIR_CHANGES], changes[PAIR_CHANGES] = {0};
             pair_network_predict_one(network, problem, &rating->now, first, outputs);
             const Vec2 before = vec2_sub(now.velocities[contact->b].linear, now.velocities[contact->a].linear);
-            sequential_impulses_visit(problem, &plain, first, count, &now);
+            sequential_impulses_visit(problem, &engine_options, first, count, &now);
             const Vec2 after = vec2_sub(now.velocities[contact->b].linear, now.velocities[contact->a].linear);
             changes[3] = after.x - before.x;
             changes[4] = after.y - before.y;
@@ -208,8 +208,8 @@ static bool is_right(const Rating *rating, RateDefinition definition, Vec2 error
            fabs((double)error.y) <= near_share * (double)(rating->most[1] - rating->least[1]);
 }
 
-/* right[PHASES], count[PHASES] to shares of each phase and of all. */
-static void put_shares(const Rating *rating, const double *right, const double *count, RateDefinition definition,
+/* From right[PHASES], count[PHASES]: the shares of each phase and of all. */
+static void set_shares(const Rating *rating, const double *right, const double *count, RateDefinition definition,
                        RateColumn column, PairRates *rates) {
     double all_right = 0, all_count = 0;
     for (int phase = 0; phase < PHASES; phase++) {
@@ -227,7 +227,7 @@ static void count_pairs(const Rating *rating, RateDefinition definition, RateCol
         right[pair->phase] += is_right(rating, definition, pair->error[column]);
         count[pair->phase]++;
     }
-    put_shares(rating, right, count, definition, column, rates);
+    set_shares(rating, right, count, definition, column, rates);
 }
 
 static void summarise(const Rating *rating, PairRates *rates) {
@@ -237,7 +237,7 @@ static void summarise(const Rating *rating, PairRates *rates) {
             right[phase] = rating->right[phase][c];
             bodies[phase] = rating->bodies[phase][c];
         }
-        put_shares(rating, right, bodies, RATE_BODIES, c, rates);
+        set_shares(rating, right, bodies, RATE_BODIES, c, rates);
         count_pairs(rating, RATE_RANGE, c, rates);
         count_pairs(rating, RATE_ABSOLUTE, c, rates);
     }

@@ -5,11 +5,11 @@
 #include "paper/study/paper_outlook.h"
 #include "paper/study/paper_scores.h"
 #include "paper/study/paper_size.h"
+#include "paper/study/paper_tables.h"
 #include "paper/study/paper_training.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ enum { LAW_SETS = sizeof law_names / sizeof law_names[0], PART_NAME_SIZE = 128 }
 typedef struct Run {
     const PaperOptions *options;
     const PaperSize *size;
-    bool counting; /* only add up how long the parts take */
+    bool counting; /* only add up the weights of the parts */
     StudyParts parts;
     PaperDatasets datasets;
     PaperOutlook outlook;
@@ -45,7 +45,7 @@ static void choose_networks(Run *run) {
     }
 }
 
-/* Seconds on two cores, roughly, where all 2000 iterations are done. */
+/* About the seconds on two cores for 2000 iterations. */
 static double training_weight(const PaperNetwork *network) {
     static const double of_data[PAPER_DATA] = {
         [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
@@ -70,7 +70,8 @@ static bool train_networks(Run *run, Error *error) {
 static bool score_networks(Run *run, Error *error) {
     for (int i = 0; i < PAPER_SCENES; i++) {
         char rates[PART_NAME_SIZE], closed[PART_NAME_SIZE];
-        PaperScoring scoring = {.scene = run->datasets.scenes[i],
+        PaperScoring scoring = {.scene = i,
+                                .path = run->datasets.scenes[i],
                                 .folder = run->networks_folder,
                                 .networks = run->networks,
                                 .count = run->network_count,
@@ -130,34 +131,39 @@ static bool all_parts(Run *run, Error *error) {
            study_transfer(run, error);
 }
 
-/* What the report cites. */
+/* The study's parameters, for the report. */
 static bool write_facts(const Run *run, Error *error) {
     const PaperSize *size = run->size;
-    char path[PAPER_PATH_SIZE], text[1024];
-    if (!file_path(path, sizeof path, error, "%s/study.csv", run->options->folder)) return false;
-    int length = snprintf(text, sizeof text,
-                          "key,value\nquick,%s\nseed,%" PRIu64 "\nnetworks,%d\niterations,%d\nlaunches_swept,%s\n"
-                          "launches_swept_finely,%s\nlaunches_swept_most_finely,%s\n"
-                          "launches_swept_as_in_the_paper,%s\nlaunches_random,%d\n"
-                          "launches_rated,%d\nlaunches_in_closed_loop,%d\n",
-                          run->options->quick ? "on" : "off", run->options->seed, run->network_count, size->iterations,
-                          size->data.swept, size->data.fine, size->data.finest, size->data.paper, size->data.random,
-                          size->rate_launches, size->closed_launches);
-    return file_write(path, text, (size_t)length, error);
+    const double values[] = {(double)run->options->seed, run->network_count,  size->iterations,
+                             size->data.random,          size->rate_launches, size->closed_launches};
+    char numbers[sizeof values / sizeof *values][24], path[CSV_PATH_SIZE];
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        snprintf(numbers[i], sizeof numbers[i], "%.0f", values[i]);
+    const FactRow facts[] = {{"quick", run->options->quick ? "on" : "off"},
+                             {"seed", numbers[0]},
+                             {"networks", numbers[1]},
+                             {"iterations", numbers[2]},
+                             {"launches_swept", size->data.swept},
+                             {"launches_swept_finely", size->data.fine},
+                             {"launches_swept_most_finely", size->data.finest},
+                             {"launches_swept_as_in_the_paper", size->data.paper},
+                             {"launches_random", numbers[3]},
+                             {"launches_rated", numbers[4]},
+                             {"launches_in_closed_loop", numbers[5]}};
+    return csv_table_path(path, run->options->folder, &paper_fact_layout, error) &&
+           csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);
 }
 
 static bool write_tables(const Run *run, Error *error) {
-    static const struct {
-        const char *name, *header;
-    } tables[] = {{"table1", TABLE1_HEADER},           {"networks", NETWORKS_HEADER}, {"rates", RATES_HEADER},
-                  {"closed_loop", CLOSED_LOOP_HEADER}, {"laws", LAWS_HEADER},         {"transfer", TRANSFER_HEADER}};
-    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
-        if (!study_parts_table(&run->parts, run->options->folder, tables[i].name, tables[i].header, error))
-            return false;
+    static const CsvLayout *const layouts[] = {&paper_score_layout, &paper_trained_layout,
+                                               &paper_rate_layout,  &paper_closed_loop_layout,
+                                               &paper_law_layout,   &paper_transfer_layout};
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+        if (!study_parts_table(&run->parts, run->options->folder, layouts[i], error)) return false;
     return write_facts(run, error);
 }
 
-/* Of everything that decides the result: the program, the options, the scenes. */
+/* A hash of all that decides the result: the program, the options, the scenes. */
 static bool find_key(const Run *run, uint64_t *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &run->options->quick, sizeof run->options->quick);

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-const char *const paper_scene_names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid_settled"};
+const char *const paper_scene_names[PAPER_SCENES + 1] = {"single", "stack", "pyramid", "pyramid_settled"};
 
 bool paper_datasets_begin(PaperDatasets *datasets, const char *scenes, const PaperDataSize *size, uint64_t seed,
                           Error *error) {
@@ -22,7 +22,7 @@ void paper_datasets_free(PaperDatasets *datasets) {
     datasets->count = 0;
 }
 
-/* Ranges are this program's own, and can be read. */
+/* Ranges are constants of this program and always valid. */
 static FloatRange range_of(const char *text) {
     FloatRange range = {0};
     parse_range(text, DATASET_MAX_LAUNCHES, &range);

@@ -9,8 +9,9 @@ const char *const paper_data_names[PAPER_DATA] = {
 #define SEARCHED(form) \
     { .name = "layers-" form, .factor = "layers", .value = form, .layers = form }
 
-/* Around 6, the mean of ten inputs and two outputs. The wider networks at the end are the best that were found for each
-   target within 500 parameters: by Adam 20 to 40 forms a target, with inputs of all views. */
+/* Searched widths are around 6, the mean of ten inputs and two outputs. The networks of the factor "best" are the best
+   that a search with Adam found for each target within 500 parameters, among 20 to 40 layouts with inputs of all views.
+   */
 const PaperNetwork paper_networks[] = {
     {.name = "baseline", .factor = "baseline", .value = "10-10-2", .quick = true},
     {.name = "inputs-raw", .factor = "inputs", .value = "raw", .view = PAIR_RAW, .layers = "12-10-2", .quick = true},

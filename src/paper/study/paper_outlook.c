@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/study/paper_outlook.h"
 
-#include <inttypes.h>
+#include "paper/study/paper_tables.h"
+#include "study/study_parts.h"
+
+#include <math.h>
+#include <string.h>
 
 void paper_outlook_free(PaperOutlook *outlook) {
     dataset_destroy(outlook->laws);
@@ -15,17 +19,17 @@ bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Erro
     if (outlook->laws == NULL) return false;
     LawResult result;
     const LawStudy *study = &part->study;
-    if (study->laws == NULL) {
-        if (!law_study_labels(outlook->laws, &result, error)) return false;
-        fprintf(lines, "laws:engine,,,,");
-    } else {
-        if (!law_study_train(outlook->laws, study, &result, progress, error)) return false;
-        fprintf(lines, "laws:%s,%.6g,%" PRIu64 ",%.6g,%.6g", study->laws, study->weight, study->seed, result.test,
-                result.constant);
-    }
-    for (int law = 0; law < LAWS; law++) fprintf(lines, ",%.6g", result.violations.of[law]);
-    fputc('\n', lines);
-    return true;
+    const bool labels = study->laws == NULL;
+    if (!(labels ? law_study_labels(outlook->laws, &result, error)
+                 : law_study_train(outlook->laws, study, &result, progress, error)))
+        return false;
+    LawRow row = {.laws = labels ? LAW_SET_ENGINE : csv_word(paper_law_words, study->laws),
+                  .weight = labels ? NAN : study->weight,
+                  .seed = labels ? NAN : (double)study->seed,
+                  .test = result.test,
+                  .constant = result.constant};
+    memcpy(row.violation, result.violations.of, sizeof row.violation);
+    return study_parts_print(lines, &paper_law_layout, &row, error);
 }
 
 bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, Error *error) {
@@ -40,7 +44,6 @@ bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, 
     const TransferStudy *study = &part->study;
     TransferResult result;
     if (!transfer_study_run(&data, study, &result, progress, error)) return false;
-    fprintf(lines, "transfer:%s,%" PRIu64 ",%d,%.6g,%.6g\n", study->transfer ? "transfer" : "scratch", study->seed,
-            study->launches, result.error, result.constant);
-    return true;
+    const TransferRow row = {study->transfer, (double)study->seed, study->launches, result.error, result.constant};
+    return study_parts_print(lines, &paper_transfer_layout, &row, error);
 }

@@ -7,10 +7,7 @@
 
 #include <stdio.h>
 
-#define LAWS_HEADER "laws,weight,seed,test,constant,momentum,energy,approach,cone"
-#define TRANSFER_HEADER "start,seed,launches,error,constant"
-
-/* Datasets that the parts share, recorded when the first of them asks. Zero-initialise all but `datasets`. */
+/* Datasets shared by the parts, recorded at their first use. Zero-initialise all but `datasets` and `bomb_x`. */
 typedef struct PaperOutlook {
     const PaperDatasets *datasets;
     const char *bomb_x[3]; /* launches of single, stack and pyramid for transfer, m: "-5:5:0.5" */
@@ -20,7 +17,7 @@ typedef struct PaperOutlook {
 
 void paper_outlook_free(PaperOutlook *outlook);
 
-/* laws.csv: a training, or with laws NULL what the labels do. context: a PaperLaws. */
+/* A row of laws.csv: a training, or with laws NULL the labels. context: a PaperLaws. */
 typedef struct PaperLaws {
     PaperOutlook *outlook;
     LawStudy study;
@@ -28,7 +25,7 @@ typedef struct PaperLaws {
 
 bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error);
 
-/* transfer.csv: a training. context: a PaperTransfer. */
+/* A row of transfer.csv: a training. context: a PaperTransfer. */
 typedef struct PaperTransfer {
     PaperOutlook *outlook;
     TransferStudy study;

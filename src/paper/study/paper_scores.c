@@ -4,20 +4,20 @@
 #include "common/file.h"
 #include "common/parallel.h"
 #include "paper/study/pair_rates.h"
+#include "paper/study/paper_tables.h"
 #include "study/closed_loop.h"
 #include "study/meter.h"
+#include "study/study_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-static const char *const phase_names[RATE_PHASES] = {"impact", "after", "rest", "all"};
+#include <string.h>
 
 /* A scene with some of its launches. */
 typedef struct Launched {
     Scene *scene;
     int count;
     Scene *launches;      /* [count] */
-    SnapshotList *states; /* [count] sampled from the engine's runs, where they are asked for */
+    SnapshotList *states; /* [count] sampled from the engine's runs; empty until sampled */
 } Launched;
 
 static void launched_free(Launched *launched) {
@@ -47,11 +47,11 @@ static bool launched_begin(Launched *launched, const char *path, int count, Erro
 typedef struct Scores {
     const PaperScoring *scoring;
     Launched launched;
-    PairRates *rates;   /* [count + 1] the last: of the warm start */
+    PairRates *rates;   /* [count + 1]; the last is the warm start's */
     ClosedLoop *closed; /* [count] */
 } Scores;
 
-/* Networks of single impulses that would need those of points take no step. */
+/* A network of single impulses with inputs by contact would need impulses at points: it cannot take a step. */
 static bool takes_steps(const PaperNetwork *network) {
     return network->target != TARGET_IMPULSE || !pair_views[network->view].by_contact;
 }
@@ -75,34 +75,27 @@ static bool rate_network(void *context, int i, Error *error) {
                               scores->launched.count, &scoring->sampling, &scores->rates[i], error);
 }
 
-static void put_number(FILE *lines, double number) {
-    if (isnan(number))
-        fputc(',', lines);
-    else
-        fprintf(lines, ",%.6g", number);
-}
-
-static void write_rates(FILE *lines, const char *network, const char *scene, const PairRates *rates) {
-    for (int definition = 0; definition < RATE_DEFINITIONS; definition++)
-        for (int phase = 0; phase < RATE_PHASES; phase++) {
-            fprintf(lines, "rates:%s,%s,%s,%s", network, scene, rate_definition_names[definition], phase_names[phase]);
-            for (int c = 0; c < RATE_COLUMNS; c++) put_number(lines, rates->share[definition][phase][c]);
-            fputc('\n', lines);
+static bool write_rates(const PaperScoring *scoring, int network, const PairRates *rates, FILE *lines, Error *error) {
+    RateRow row = {.network = network < scoring->count ? scoring->networks[network].name : "warm-start",
+                   .scene = scoring->scene};
+    for (row.definition = 0; row.definition < RATE_DEFINITIONS; row.definition++)
+        for (row.phase = 0; row.phase < RATE_PHASES; row.phase++) {
+            memcpy(row.share, rates->share[row.definition][row.phase], sizeof row.share);
+            if (!study_parts_print(lines, &paper_rate_layout, &row, error)) return false;
         }
+    return true;
 }
 
 bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Error *error) {
     const PaperScoring *scoring = context;
     Scores scores = {.scoring = scoring};
-    if (!launched_begin(&scores.launched, scoring->scene, scoring->rate_launches, error)) return false;
+    if (!launched_begin(&scores.launched, scoring->path, scoring->rate_launches, error)) return false;
     scores.rates = calloc((size_t)scoring->count + 1, sizeof *scores.rates);
     const ParallelWork sampling = {sample_launch, &scores}, rating = {rate_network, &scores};
     bool ok = (scores.rates != NULL || error_memory(error, "rates")) &&
               parallel_for(&sampling, scores.launched.count, "sampled launches", NULL, error) &&
               parallel_for(&rating, scoring->count + 1, "rated networks", progress, error);
-    for (int i = 0; ok && i <= scoring->count; i++)
-        write_rates(lines, i < scoring->count ? scoring->networks[i].name : "warm-start", scores.launched.scene->name,
-                    &scores.rates[i]);
+    for (int i = 0; ok && i <= scoring->count; i++) ok = write_rates(scoring, i, &scores.rates[i], lines, error);
     free(scores.rates);
     launched_free(&scores.launched);
     return ok;
@@ -122,24 +115,28 @@ static bool close_network(void *context, int i, Error *error) {
            closed_loop_run(&method, scores->launched.launches, scores->launched.count, &scores->closed[i], error);
 }
 
-/* One after the other on one core. */
-static bool time_networks(Scores *scores, FILE *lines, Error *error) {
+static bool time_network(const Scores *scores, int i, FILE *lines, Error *error) {
     const PaperScoring *scoring = scores->scoring;
+    const ClosedLoop *closed = &scores->closed[i];
+    ClosedLoopRow row = {.network = scoring->networks[i].name,
+                         .scene = scoring->scene,
+                         .frames_until_apart = closed->frames_until_apart,
+                         .penetration_max = closed->penetration_max,
+                         .momentum_error = closed->momentum_error,
+                         .energy_ratio = closed->energy_ratio};
+    Method method;
+    return method_of(scoring, i, &method, error) &&
+           closed_loop_time(&method, &scores->launched.states[0], scoring->repetitions, &row.us_step,
+                            &row.us_step_engine, error) &&
+           study_parts_print(lines, &paper_closed_loop_layout, &row, error);
+}
+
+/* Sequentially, on one core. */
+static bool time_networks(const Scores *scores, FILE *lines, Error *error) {
     bool ok = true;
     meter_pin();
-    for (int i = 0; ok && i < scoring->count; i++) {
-        Method method;
-        double us_step, us_step_engine;
-        const ClosedLoop *closed = &scores->closed[i];
-        if (!takes_steps(&scoring->networks[i])) continue;
-        ok = method_of(scoring, i, &method, error) &&
-             closed_loop_time(&method, &scores->launched.states[0], scoring->repetitions, &us_step, &us_step_engine,
-                              error);
-        if (ok)
-            fprintf(lines, "closed_loop:%s,%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", scoring->networks[i].name,
-                    scores->launched.scene->name, closed->frames_until_apart, closed->penetration_max,
-                    closed->momentum_error, closed->energy_ratio, us_step, us_step_engine);
-    }
+    for (int i = 0; ok && i < scores->scoring->count; i++)
+        if (takes_steps(&scores->scoring->networks[i])) ok = time_network(scores, i, lines, error);
     meter_unpin();
     return ok;
 }
@@ -147,7 +144,7 @@ static bool time_networks(Scores *scores, FILE *lines, Error *error) {
 bool paper_closed_loop_write(void *context, FILE *lines, const Progress *progress, Error *error) {
     const PaperScoring *scoring = context;
     Scores scores = {.scoring = scoring};
-    if (!launched_begin(&scores.launched, scoring->scene, scoring->closed_launches, error)) return false;
+    if (!launched_begin(&scores.launched, scoring->path, scoring->closed_launches, error)) return false;
     scores.closed = calloc((size_t)scoring->count, sizeof *scores.closed);
     const ParallelWork closing = {close_network, &scores};
     bool ok = (scores.closed != NULL || error_memory(error, "closed loop")) &&

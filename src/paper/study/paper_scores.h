@@ -1,21 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the networks of the paper's study do in one scene: parts of the study (study_parts.h). */
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study (study_parts.h). */
 #pragma once
 #include "paper/study/paper_data.h"
 #include "study/rollout.h"
 
 #include <stdio.h>
 
-#define RATES_HEADER "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
-#define CLOSED_LOOP_HEADER \
-    "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,us_step,us_step_engine"
-
 typedef struct PaperScoring {
-    const char *scene;            /* path of its file */
+    int scene;                    /* of paper_scene_names */
+    const char *path;             /* of the scene's file */
     const char *folder;           /* of the trained networks */
     const PaperNetwork *networks; /* [count] */
     int count;
-    int rate_launches, closed_launches; /* scored on, none of them trained on */
+    int rate_launches, closed_launches; /* launches to score on; none is a training launch */
     Sampling sampling;
     int repetitions; /* of the time measurements */
 } PaperScoring;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much of the paper's study is done: the whole of it, or a look at every part. */
+/* Sizes of the whole study, and of the quick one, which runs every part briefly. */
 #pragma once
 #include "paper/study/pair_rates.h"
 #include "paper/study/paper_data.h"
@@ -9,7 +9,7 @@ enum { PAPER_WEIGHTS = 5, PAPER_LAUNCHES = 8 };
 
 typedef struct PaperSize {
     PaperDataSize data;
-    int iterations; /* at most, of every training */
+    int iterations; /* of every training, at most */
     int rate_launches, closed_launches, repetitions;
     Sampling sampling;
     int seeds, law_iterations, transfer_iterations; /* of the outlook */

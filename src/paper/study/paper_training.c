@@ -2,6 +2,8 @@
 #include "paper/study/paper_training.h"
 
 #include "common/file.h"
+#include "paper/study/paper_tables.h"
+#include "study/study_parts.h"
 #include "training/training.h"
 
 #include <math.h>
@@ -10,7 +12,7 @@
 
 static const double near_share = 0.05; /* of the outputs' range */
 
-/* "10-10-2" of the table above. */
+/* text: "10-10-2". */
 static void read_layers(const char *text, TrainingOptions *options) {
     int count = 0;
     for (char *rest = (char *)text; *rest != '\0';) {
@@ -20,22 +22,30 @@ static void read_layers(const char *text, TrainingOptions *options) {
     options->layers = count - 1;
 }
 
-/* What the scores of a training are written to. */
+/* Writes the scores of a training. */
 typedef struct ScoreWriter {
     FILE *lines;
     const PaperNetwork *network;
     TrainingScore last;
+    bool ok;
+    Error *error;
 } ScoreWriter;
 
 static void write_score(void *context, const TrainingScore *score) {
     ScoreWriter *writer = context;
     const PaperNetwork *network = writer->network;
+    const ScoreRow row = {.network = network->name,
+                          .target = (int)network->target,
+                          .optimizer = csv_word(paper_optimizer_words, network->optimizer),
+                          .iteration = score->iteration,
+                          .test = score->test,
+                          .train = score->train,
+                          .constant = score->constant_test};
     writer->last = *score;
-    fprintf(writer->lines, "table1:%s,%s,%s,%d,%.6g,%.6g,%.6g\n", network->name, pair_target_names[network->target],
-            network->optimizer, score->iteration, score->test, score->train, score->constant_test);
+    writer->ok = writer->ok && study_parts_print(writer->lines, &paper_score_layout, &row, writer->error);
 }
 
-/* Output k of a row as a network has it: all changes, or those of b's velocity relative to a's. */
+/* Label of output k: one of all changes, or the change of b's velocity relative to a's. */
 static double change_of(const Dataset *dataset, int64_t row, int outputs, int k) {
     const int count = pair_change_count(dataset->target);
     const float *changes = dataset->changes + row * count;
@@ -76,13 +86,29 @@ double paper_accuracy(const Network *network, const Dataset *dataset) {
     return rows > 0 ? (double)right / (double)rows : NAN;
 }
 
-static void write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
-                          double accuracy) {
-    fprintf(lines, "networks:%s,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%d,%d,%.6g,%.6g,%.6g,%.6g,%.6g\n", of->name,
-            of->factor, of->value, pair_views[of->view].name, paper_data_names[of->data],
-            dataset_label_names[of->labels], pair_target_names[of->target], of->layers, of->hidden, of->output,
-            of->scale, of->optimizer, of->loss, score->iteration, network_parameter_count(network), score->test,
-            score->train, score->constant_test, score->test / score->constant_test, accuracy);
+static bool write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
+                          double accuracy, Error *error) {
+    const TrainedRow row = {.network = of->name,
+                            .factor = of->factor,
+                            .value = of->value,
+                            .inputs = pair_views[of->view].name,
+                            .data = paper_data_names[of->data],
+                            .labels = dataset_label_names[of->labels],
+                            .target = (int)of->target,
+                            .layers = of->layers,
+                            .hidden = of->hidden,
+                            .output = of->output,
+                            .scale = of->scale,
+                            .optimizer = of->optimizer,
+                            .loss = of->loss,
+                            .iterations = score->iteration,
+                            .parameters = network_parameter_count(network),
+                            .test = score->test,
+                            .train = score->train,
+                            .constant = score->constant_test,
+                            .ratio = score->test / score->constant_test,
+                            .accuracy = accuracy};
+    return study_parts_print(lines, &paper_trained_layout, &row, error);
 }
 
 static bool store(const PaperTraining *training, Network *network, Error *error) {
@@ -97,7 +123,7 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     const PaperNetwork *of = &training->network;
     const Dataset *dataset = paper_dataset(training->datasets, of, error);
     if (dataset == NULL) return false;
-    ScoreWriter writer = {lines, of, {0}};
+    ScoreWriter writer = {lines, of, {0}, true, error};
     TrainingOptions options = {.optimizer = of->optimizer,
                                .iterations = of->iterations,
                                .seed = training->seed,
@@ -110,13 +136,13 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     read_layers(of->layers, &options);
     Network *network = training_run(dataset, &options, progress, error);
     if (network == NULL) return false;
-    /* Not of the last weights, but of those that are kept. */
+    /* The score of the weights that are kept, which are not the last ones. */
     TrainingScore score = {.iteration = writer.last.iteration};
     const int iterations = score.iteration;
-    bool ok = training_score(dataset, network, of->loss, &score, error);
+    bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
     score.iteration = iterations;
-    if (ok) write_network(lines, of, network, &score, paper_accuracy(network, dataset));
-    ok = ok && store(training, network, error);
+    ok = ok && write_network(lines, of, network, &score, paper_accuracy(network, dataset), error) &&
+         store(training, network, error);
     network_destroy(network);
     return ok;
 }

@@ -6,11 +6,6 @@
 
 #include <stdio.h>
 
-#define TABLE1_HEADER "network,target,optimizer,iteration,test,train,constant"
-#define NETWORKS_HEADER                                                                                               \
-    "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,iterations,parameters," \
-    "test,train,constant,ratio,accuracy"
-
 typedef struct PaperTraining {
     PaperDatasets *datasets;
     PaperNetwork network;
@@ -22,6 +17,6 @@ typedef struct PaperTraining {
    write(); context is the PaperTraining. */
 bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error);
 
-/* The share of held-out rows of which all outputs are within 5% of their range over the rows trained on: the paper's
-   accuracy, as far as it can be guessed (section 3's gate is 90%). */
+/* The share of test rows for which all outputs are within 5% of their range over the training rows. The paper does not
+   define the accuracy of its gate (section 3: 90%); this is a guess. */
 double paper_accuracy(const Network *network, const Dataset *dataset);

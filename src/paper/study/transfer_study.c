@@ -9,7 +9,7 @@
 
 enum { COMPONENTS = 2 };
 
-/* Change of the velocity of b relative to a: what two outputs learn. */
+/* Change of the velocity of b relative to a: the label of the two outputs. */
 static double label(const Dataset *dataset, int64_t row, int k) {
     const float *changes = dataset->changes + row * PAIR_CHANGES;
     return (double)(changes[k + 3] - changes[k]);
@@ -47,7 +47,7 @@ static bool score(const Dataset *dataset, const Network *network, TransferResult
     return true;
 }
 
-/* Trains on the last of `count` datasets, having trained on those before it. */
+/* Trains on `count` datasets one after the other, each network starting from the one before. */
 static Network *train_stages(const Dataset *const *datasets, int count, const TransferStudy *study,
                              const Progress *progress, Error *error) {
     Network *network = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Build-time tool: prints the outlines and widths of a font's characters as C (sketch/type.h), in the font's own whole
-   units, so that no version of FreeType makes others. Usage: make_outlines FONT.otf OUTPUT.c */
+/* Build-time tool: prints a font's outlines and widths as C (sketch/type.h) in unscaled font units, so that they do
+   not depend on the version of FreeType. Usage: make_outlines FONT.otf OUTPUT.c */
 #include "sketch/type.h"
 
 #include <ft2build.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Microseconds a step of 20 sweeps with momentum in the order of colours, beside the same in the order in which contacts
-   are given, and the velocity error of both, as sooner done must not mean worse. On the steps of impacts, from the
-   engine's runs. Problems come in the order of the steps, so that schedules are made anew as often as in a run. A sample
-   is the mean over all steps, some times over; the orders take turns. */
+/* Microseconds per step of 20 sweeps with momentum, in the order of colours and in the given order of contacts, and the
+   velocity error of both: faster must not mean less accurate. Measured on the impact steps of the engine's runs, in the
+   order of the steps, so that schedules are rebuilt as often as in a run. A sample is the mean over several passes over
+   all steps; the orders take turns. */
 #include "report.h"
 
 #include "solvers/momentum.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 
 enum { SCENES = 2, ORDERS = 2, SAMPLES = 31, SWEEPS = 20 };
-enum { PASSES = 20 }; /* in a sample: one alone takes less than a millisecond */
+enum { PASSES = 20 }; /* per sample: one pass takes less than a millisecond */
 
 static const char *const scenes[SCENES] = {"stack", "pyramid_settled"};
 static const char *const orders[ORDERS] = {"order of colours", "order given"};
@@ -23,7 +23,7 @@ typedef struct Ratios {
     double time, error; /* order of colours / order given */
 } Ratios;
 
-/* One order, and room for what it finds. */
+/* One order and its buffers. */
 typedef struct Solver {
     int order;
     float factors[SWEEPS];
@@ -36,8 +36,8 @@ static void give_up(const char *reason) {
     exit(3);
 }
 
-/* The problems of impacts go to the front, in the order of the steps; returns how many there are. The few whose reference
-   does not converge are not among them. */
+/* Moves the impact problems to the front, in the order of the steps, and returns their number. The few whose reference
+   does not converge are left out. */
 static size_t record(ImpactProblems *problems, const char *name) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
@@ -63,7 +63,7 @@ static void solver_begin(Solver *solver, int order, const ImpactProblem *items, 
         if ((size_t)problem->contact_count > contacts) contacts = (size_t)problem->contact_count;
     }
     *solver = (Solver){.order = order};
-    for (int s = 0; s < SWEEPS; s++) solver->factors[s] = momentum_factor_by_hand(s, SWEEPS);
+    for (int s = 0; s < SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, SWEEPS);
     solver->solution.velocities = malloc(bodies * sizeof *solver->solution.velocities);
     solver->solution.impulses = malloc(contacts * sizeof *solver->solution.impulses);
     if (solver->solution.velocities == NULL || solver->solution.impulses == NULL) give_up("out of memory");

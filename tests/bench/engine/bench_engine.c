@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Microseconds a step beside Chipmunk2D and Box2D 2.4: the same boxes, friction 0.2, 10 iterations, no sleeping,
-   1/60 s, one thread. A sample is one run of a scene, its mean over the steps that count; the engines take turns. */
+/* Microseconds per step of twinbox, Chipmunk2D and Box2D 2.4: the same boxes, friction 0.2, 10 iterations, no sleeping,
+   1/60 s, one thread. A sample is the mean over the timed steps of one run; the engines take turns. */
 #include "report.h"
 #include "rival.h"
 
@@ -31,11 +31,11 @@ static Scene *read_scene(const char *name) {
     return scene;
 }
 
-/* What is run, and which of its steps are timed. */
+/* A run and its timed steps. */
 typedef struct Course {
     const char *name;
     const Scene *scene;
-    int bomb_after; /* the step after which the bomb comes; -1: never */
+    int bomb_after; /* the step after which the bomb is added; -1: never */
     int first, end; /* steps */
     int runs;
 } Course;
@@ -68,7 +68,7 @@ static void measure(const Course *course, Samples samples[RIVALS]) {
     for (int i = 0; i < RIVALS; i++) report_line("engine", rivals[i]->name, course->name, "us/step", &samples[i]);
 }
 
-/* The middle of the ratios run by run: what slows the machine down for a while slows both. */
+/* The median of the ratios run by run: a slow phase of the machine slows both. */
 static double ratio(const Samples *ours, const Samples *theirs) {
     Samples ratios = {0};
     for (int i = 0; i < ours->count; i++) samples_add(&ratios, ours->values[i] / theirs->values[i]);
@@ -92,7 +92,7 @@ static void scenes_against_chipmunk(double ratios[4], const char *names[4]) {
     scene_destroy(pyramid);
 }
 
-/* The pyramid with `base` boxes below, touching from the start: it has settled after a second. */
+/* The pyramid with `base` boxes in the lowest row, touching from the start: it is at rest after a second. */
 static void make_pyramid(Scene *scene, int base) {
     BodyDef ground = scene->bodies[0], box = scene->bodies[1];
     ground.size.x = 4.0f * (float)base;
@@ -110,7 +110,7 @@ static void make_pyramid(Scene *scene, int base) {
     }
 }
 
-/* The exponent of time over bodies (least squares in logarithms), and the worst ratio to Box2D. */
+/* The exponent of time over bodies (least squares of logarithms), and the worst ratio to Box2D. */
 static void scaling(double *exponent, double *worst) {
     const int bases[SIZES] = {10, 20, 40, 80}, runs[SIZES] = {21, 11, 7, 5};
     double x[SIZES], y[SIZES], mean_x = 0, mean_y = 0, xx = 0, xy = 0;

@@ -39,7 +39,7 @@ static double read_clock(clockid_t clock) {
 double clock_seconds(void) { return read_clock(CLOCK_MONOTONIC); }
 double processor_seconds(void) { return read_clock(CLOCK_PROCESS_CPUTIME_ID); }
 
-/* Chipmunk greets on standard output: the lines go to a copy of it, and what libraries print to standard error. */
+/* Chipmunk prints to standard output. Results go to a copy of it, and the output of libraries to standard error. */
 static FILE *lines;
 
 void report_header(void) {

@@ -10,12 +10,12 @@ typedef struct Samples {
 } Samples;
 
 void samples_add(Samples *samples, double value);
-/* The value below which this share of the samples lies, between two of them where it falls there. */
+/* The quantile of the samples, interpolated between two of them. */
 double samples_quantile(const Samples *samples, double share);
 double samples_median(const Samples *samples);
 
-/* Seconds, from any start: of the clock, and of processor time, which on a busy machine does not count the pauses that
-   a long run meets more often than a short one. */
+/* Seconds since an arbitrary start: of the clock, and of processor time, which does not count pauses on a busy machine
+   (a long run has more of them than a short one). */
 double clock_seconds(void);
 double processor_seconds(void);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The engines under measurement behind one interface, so that each runs the same scene. */
+/* One interface to all engines that are measured, so that each runs the same scene. */
 #pragma once
 #ifdef __cplusplus
 extern "C" {

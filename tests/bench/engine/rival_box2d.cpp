@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Box2D 2.4 (Debian's libbox2d), one thread: 10 velocity iterations and 3 position iterations, the number that its
-   manual recommends; no continuous collision, which no other engine here has. */
+/* Box2D 2.4 (Debian's libbox2d), one thread: 10 velocity iterations and 3 position iterations, as its manual recommends.
+   No continuous collision, because no other engine here has it. */
 #include "rival.h"
 
 #include <box2d/box2d.h>

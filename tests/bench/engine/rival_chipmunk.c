@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chipmunk2D 7 (Debian's libchipmunk, which is built with its own assertions on), one thread. */
+/* Chipmunk2D 7 (Debian's libchipmunk, built with its assertions enabled), one thread. */
 #include "rival.h"
 
 #include <chipmunk/chipmunk.h>
@@ -23,7 +23,7 @@ static void add(void *world, const RivalBox *box) {
     cpBodySetPosition(body, cpv((cpFloat)box->x, (cpFloat)box->y));
     if (!box->fixed) cpBodySetVelocity(body, cpv((cpFloat)box->vx, (cpFloat)box->vy));
     cpShape *shape = cpSpaceAddShape(space, cpBoxShapeNew(body, width, height, 0));
-    /* Chipmunk multiplies the two coefficients, the others take the root of their product. */
+    /* Chipmunk multiplies the two coefficients; the others take the square root of their product. */
     cpShapeSetFriction(shape, sqrt((cpFloat)box->friction));
 }
 
@@ -49,7 +49,7 @@ static void after_step(cpSpace *space, void *body, void *data) {
 static void later(cpBody *body, void *space) { cpSpaceAddPostStepCallback(space, after_step, body, NULL); }
 
 static void destroy(void *world) {
-    /* Bodies may leave only after a step: the space is locked while it counts them up. */
+    /* Bodies can only be removed after a step: the space is locked while it iterates over them. */
     cpSpaceEachBody(world, later, world);
     cpSpaceFree(world);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox's engine, as a scene file without settings runs it. */
+/* twinbox's engine with the defaults of a scene file. */
 #include "rival.h"
 
 #include "dynamics/world.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Times one piece of learning and prints seconds, one figure a line, for the script "run" beside this file:
+/* Times one part of learning and prints seconds, one figure per line, for the script "run" in this folder:
 
-       time_learn predict NET.npz PAIRS         a pair: by each of the kernels, "name seconds", and one by one
-       time_learn train DATA.npz ITERATIONS     an iteration
-       time_learn record THREADS SCENE.yaml...  201 launches of every scene, in memory */
+       time_learn predict NET.npz PAIRS         per pair: "name seconds" for each of the kernels, and one by one
+       time_learn train DATA.npz ITERATIONS     per iteration
+       time_learn record THREADS SCENE.yaml...  for 201 launches of every scene, in memory */
 #include "network/kernels.h"
 #include "training/training.h"
 
@@ -19,7 +19,7 @@ static double now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* One set of buffers of a prediction. */
+/* The buffers of a prediction. */
 typedef struct Batch {
     int pairs, inputs, outputs;
     float *in, *out, *scratch;
@@ -38,7 +38,7 @@ static void predict_singly(const Network *network, const Batch *batch) {
         network_predict(network, batch->in + r * batch->inputs, batch->scratch, batch->out + r * batch->outputs);
 }
 
-/* Seconds a pair; kernels NULL: one by one. Repeated for about 2 ms, far above the clock's step. */
+/* Seconds per pair; kernels NULL: one by one. Repeated for about 2 ms, far above the resolution of the clock. */
 static double time_prediction(const Kernels *kernels, const Network *network, const Batch *batch) {
     int repeats = 2000000 / (batch->pairs * 10) + 1;
     double start = now();
@@ -74,7 +74,7 @@ static bool predict(const char *path, int pairs, Error *error) {
     return ok;
 }
 
-/* When iterations 0 and the last were done. */
+/* The times at which the first and the last iteration ended. */
 typedef struct Span {
     double start, end;
 } Span;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The same picture by cairo, whose PNGs libpng writes with its defaults: the rectangles of the drawing, the bodies as
-   rounded boxes with outline and band, the texts. Prints the seconds that the frames took. */
+/* The same picture by cairo, written by libpng with its defaults: the rectangles of the drawing, the bodies as rounded
+   boxes with outline and band, the text. Prints the seconds that the frames took. */
 #include "runs.h"
 
 #include "picture/picture.h"
@@ -55,7 +55,7 @@ static void draw_body(cairo_t *cairo, double width, double height, bool plain, c
 static void draw_panel(cairo_t *cairo, const Picture *picture, int panel, int frame) {
     static const uint32_t ground[] = {0xD3D8DF, 0x5A6472, 0}, bomb[] = {0xB5371B, 0x5E1606, 0xFFE9DF};
     static const uint32_t boxes[][3] = {{0x0072B2, 0x00395C, 0x4FA6D8}, {0xE69F00, 0x7A4F00, 0xFFD47A}};
-    const Trajectory *run = picture->panels[panel];
+    const Trajectory *run = picture->runs[panel];
     const Camera *camera = &picture->camera;
     Rect rect = picture->layout.panels[panel];
     cairo_save(cairo);
@@ -89,13 +89,13 @@ static void draw_text(cairo_t *cairo, double size, double x, double y, const cha
 static void draw_texts(cairo_t *cairo, const Picture *picture, int frame) {
     const Layout *layout = &picture->layout;
     char text[160];
-    draw_text(cairo, layout->scene.pixels, layout->left, layout->header_baseline, picture->panels[0]->scene);
-    snprintf(text, sizeof text, "apart %.2f m   frame %d   t = %.3f s", picture_apart(picture, moment_stored(frame)),
-             frame, frame * (double)picture->panels[0]->dt);
+    draw_text(cairo, layout->scene.pixels, layout->left, layout->header_baseline, picture->runs[0]->scene);
+    snprintf(text, sizeof text, "apart %.2f m   frame %d   t = %.3f s", picture_distance(picture, moment_stored(frame)),
+             frame, frame * (double)picture->runs[0]->dt);
     draw_text(cairo, layout->status.pixels, layout->right - 24 * layout->status.pixels, layout->header_baseline, text);
     for (int i = 0; i < picture->count; i++) {
         Rect rect = layout->panels[i];
-        draw_text(cairo, layout->title.pixels, rect.left, rect.top - layout->title_rise, picture->panels[i]->method);
+        draw_text(cairo, layout->title.pixels, rect.left, rect.top - layout->title_rise, picture->runs[i]->method);
         for (int tick = 0; tick < 16; tick++) {
             snprintf(text, sizeof text, "%d", tick - 8);
             draw_text(cairo, layout->axis.pixels, rect.left + tick * (rect.right - rect.left) / 16.0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The same picture by matplotlib (Agg): two axes with grid, one patch a body that is moved from frame to frame, texts.
+# The same picture by matplotlib (Agg): two axes with a grid, one patch per body that moves from frame to frame, text.
 # Arguments: DIR WIDTH HEIGHT FRAMES RUN RUN. Prints the seconds that the frames took.
 import sys
 import time

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the seconds that a sequence takes with a number of jobs (the last argument), from the call to files that are on
-   the disk, and the memory (MB) that the largest of its processes took. */
+/* Prints the seconds that a sequence takes with a number of jobs (the last argument), from the call until the files are
+   on disk, and the memory (MB) of its largest process. */
 #include "runs.h"
 
 #include "render/render.h"

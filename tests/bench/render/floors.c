@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What no renderer of this kind can be faster than, in ms a frame: copying its pixels, clearing and reading them back, and
-   writing a file of its size. Arguments: DIR WIDTH HEIGHT BYTES. */
+/* Lower bounds for a renderer of this kind, in ms per frame: copying the pixels, clearing and reading them back, and
+   writing a file of the same size. Arguments: DIR WIDTH HEIGHT BYTES. */
 #include "common/file.h"
 #include "image/image.h"
 #include "gl/context.h"
@@ -21,7 +21,7 @@ static double clock_seconds(void) {
 static double copy(Image *to, const Image *from) {
     double start = clock_seconds();
     for (int i = 0; i < REPEATED; i++) {
-        from->pixels[i]++; /* or the copies would be one */
+        from->pixels[i]++; /* otherwise the compiler would merge the copies */
         memcpy(to->pixels, from->pixels, (size_t)from->width * (size_t)from->height * 4);
     }
     return clock_seconds() - start;

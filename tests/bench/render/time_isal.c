@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the seconds that a sequence takes in two processes, from their start to files that are on the disk, with the
-   last argument "own" by this project's encoder, with "isal" by ISA-L (igzip) at level 1 without filters. All else is the
-   same. ISA-L gets what helps it: kept rows too, of which only changed ones are packed anew, its own checksums, and no
-   copy of what it compressed. */
+/* Prints the seconds that a sequence takes in two processes, from their start until the files are on disk. Last
+   argument: "own" for twinbox's encoder, "isal" for ISA-L (igzip) at level 1 without filters. The rest is the same. ISA-L
+   gets the same advantages: rows are kept and only changed ones are packed again, it computes the checksums, and its
+   output is not copied. */
 #include "runs.h"
 
 #include "common/file.h"
@@ -19,8 +19,8 @@
 
 enum {
     WORKERS = 2,
-    IHDR_AT = 8,                /* behind the signature */
-    IDAT_AT = IHDR_AT + 13 + 12 /* a chunk has 12 bytes beside its data */
+    IHDR_AT = 8,                /* after the signature */
+    IDAT_AT = IHDR_AT + 13 + 12 /* a chunk has 12 bytes besides its data */
 };
 
 typedef struct IsalSink {
@@ -38,7 +38,7 @@ static void put_number(uint8_t *to, size_t value) {
     for (int i = 0; i < 4; i++) to[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/* The frame around data that are in place at chunk + 8; returns the bytes of the whole chunk. */
+/* Completes a chunk whose data are at chunk + 8; returns the bytes of the whole chunk. */
 static size_t close_chunk(uint8_t *chunk, const char *type, size_t size) {
     put_number(chunk, size);
     memcpy(chunk + 4, type, 4);
@@ -117,7 +117,7 @@ static bool open_isal(FrameSink *frames, IsalSink *sink, const Job *job, Error *
     uint8_t *header = sink->file + IHDR_AT;
     put_number(header + 8, (size_t)job->width);
     put_number(header + 12, (size_t)job->height);
-    memcpy(header + 16, "\x08\x02\0\0\0", 5); /* 8 bits, RGB, the only methods that there are, not interlaced */
+    memcpy(header + 16, "\x08\x02\0\0\0", 5); /* 8 bits, RGB, the only methods, not interlaced */
     close_chunk(header, "IHDR", 13);
     *frames = (FrameSink){write_isal, close_isal, sink};
     return true;

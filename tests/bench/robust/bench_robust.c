@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Microseconds a step of robust beside the engine with 10 iterations, in the four scenes for which robust is there. A
-   sample is the mean over the steps of one run; the methods take turns. Twice: over the whole minute, in which the engine's
-   boxes fall or fly apart, and over the first half second, while they stand. The target is for the worse of the two. */
+/* Microseconds per step of robust and of the engine with 10 iterations, in the four scenes that robust is made for. A
+   sample is the mean over the steps of one run; the methods take turns. Measured twice: over the whole minute, in which
+   the engine's boxes fall or explode, and over the first half second, while they stand. The worse of the two counts. */
 #include "report.h"
 
 #include "simulate/simulate.h"
@@ -58,7 +58,7 @@ static double microseconds_a_step(const Scene *scene, const char *text, int step
     return 1e6 * seconds / steps;
 }
 
-/* robust's time over the engine's. */
+/* The ratio of the time of robust to that of the engine. */
 static double measure(int i, int part) {
     Scene *scene = read_scene(i);
     int steps = (int)(parts[part].seconds / (double)scene->dt + 0.5);

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of stored runs and networks for papers: scenes as pixels, everything else as vector graphics and text. */
+#pragma once
+#include "common/progress.h"
+#include "render/render.h"
+#include "sketch/page_width.h"
+#include "sketch/sketch_files.h"
+#include "trajectory/trajectory.h"
+
+enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60 };
+
+#define FIGURE_WIDTH_MIN 40.0
+#define FIGURE_WIDTH_MAX 400.0
+#define FIGURE_HEIGHT_MAX 240.0 /* mm; higher figures are scaled down or refused */
+#define FIGURE_POINTS 8.0       /* font size */
+#define FIGURE_POINTS_MIN 5.0
+#define FIGURE_POINTS_MAX 14.0
+
+/* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
+typedef struct FigureSpec {
+    double width, points, dpi; /* mm; font size; resolution of pictures */
+    int run_count;
+    const Trajectory *runs[FIGURE_RUNS_MAX];
+    const char *paths[FIGURE_RUNS_MAX]; /* file names of the runs, for messages */
+    int time_count;                     /* 0: the kind chooses */
+    double times[FIGURE_MOMENTS_MAX];   /* s, ascending */
+    int moments;                        /* number of equidistant moments; 0: the kind chooses */
+    const char *scene;                  /* divergence: scene of the first run, for the band of chaotic divergence;
+                                           NULL: no band */
+    const char *network;                /* network: the file */
+    int bodies[2];                      /* narrow-phase: the pair; if equal, the kind chooses */
+    const Progress *progress;           /* of simulations run for the figure, or NULL */
+} FigureSpec;
+
+typedef struct FigureKind {
+    const char *name, *summary;
+    const char *example;    /* arguments after `twinbox figure` */
+    int min_runs, max_runs; /* 0, 0: takes a network's file instead */
+    bool takes_times, takes_moments, takes_scene, takes_bodies;
+    /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
+       failure. */
+    bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
+} FigureKind;
+
+/* All kinds; ends with NULL. */
+const FigureKind *const *figure_kinds(void);
+
+/* NULL with error set, which lists the kinds, if there is no such kind. */
+const FigureKind *figure_kind(const char *name, Error *error);

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width
+   stays 0 if the table has no rows to show. False with error set if the table is missing or damaged. */
+#pragma once
+#include "chart/gnuplot_page.h"
+
+bool plot_loss(const char *folder, GnuplotPage *page, Error *error);
+bool plot_factors(const char *folder, GnuplotPage *page, Error *error);
+bool plot_rates(const char *folder, GnuplotPage *page, Error *error);
+bool plot_closed_loop(const char *folder, GnuplotPage *page, Error *error);
+bool plot_laws(const char *folder, GnuplotPage *page, Error *error);
+bool plot_transfer(const char *folder, GnuplotPage *page, Error *error);

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A solver that only this test has is one definition and one line of the registry. Lists, charts, captions and the
+   stability study then know it. */
+#include "testing.h"
+
+#include "cli/commands.h"
+#include "cli/draw_panels.h"
+#include "common/file.h"
+#include "picture/caption.h"
+#include "render/runs.h"
+#include "solvers/solvers.h"
+#include "study/contenders.h"
+
+static void *create(const Settings *chosen, Error *error) { return solver_engine.create(chosen, error); }
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    return solver_engine.solve(state, problem, solution, error);
+}
+
+static void destroy(void *state) { solver_engine.destroy(state); }
+
+static const ContactSolverKind solver_of_test = {
+    .description = {.name = "of-test", .summary = "a solver that only a test has", .title = "Solver of a test"},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};
+
+/* In place of simulate/methods.c, which is not linked. */
+const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING) METHOD_KIND_SOLVER(of_test){0}};
+
+static char *read_text(const char *path) {
+    Error error = {0};
+    size_t size;
+    char *text = file_read(path, 1 << 20, &size, &error);
+    assert_ok(text != NULL, error);
+    return text;
+}
+
+/* What a command prints; the caller frees it. */
+static char *run_command(int (*command)(int, char **, Error *), char **argv) {
+    Error error = {0};
+    const char *path = temporary_path("printed");
+    int argc = 0;
+    while (argv[argc] != NULL) argc++;
+    fflush(stdout);
+    const int before = dup(STDOUT_FILENO);
+    assert_non_null(freopen(path, "w", stdout));
+    const int status = command(argc, argv, &error);
+    fflush(stdout);
+    dup2(before, STDOUT_FILENO);
+    close(before);
+    assert_ok(status == STATUS_SAME, error);
+    return read_text(path);
+}
+
+/* The command writes a table to the path, and the table has the text. */
+static void assert_table_has(int (*command)(int, char **, Error *), char **argv, const char *path, const char *text) {
+    free(run_command(command, argv));
+    char *table = read_text(path);
+    if (strstr(table, text) == NULL) fail_msg("%s lacks %s", path, text);
+    free(table);
+}
+
+static void methods_lists_it(void **state) {
+    (void)state;
+    char *printed = run_command(command_methods, (char *[]){"twinbox methods", NULL});
+    assert_non_null(strstr(printed, "\nof-test           a solver that only a test has\n"));
+    assert_non_null(strstr(printed, "engine"));
+    free(printed);
+}
+
+static void every_study_has_it(void **state) {
+    (void)state;
+    for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
+        Error error = {0};
+        ContenderList list;
+        assert_ok(contenders_parse(&list, NULL, study, &error), error);
+        const Contender *last = &list.items[list.count - 1];
+        assert_string_equal(last->name, "of-test");
+        assert_string_equal(last->setting, "");
+        assert_ptr_equal(last->method.kind->solver, &solver_of_test);
+        contenders_free(&list);
+    }
+}
+
+static void a_chart_scores_it(void **state) {
+    (void)state;
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s", temporary_path("chart"));
+    char *arguments[] = {"twinbox chart",
+                         SOURCE_DIR "/scenes/single.yaml",
+                         "-o",
+                         folder,
+                         "--quick",
+                         "--methods",
+                         "of-test,engine:k=10",
+                         NULL};
+    assert_table_has(command_chart, arguments, temporary_path("chart/chart.csv"), "\nsingle,of-test,,frozen,impact,5,");
+}
+
+static void a_border_is_found_for_it(void **state) {
+    (void)state;
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s", temporary_path("stability"));
+    char *arguments[] = {"twinbox stability", "--scenes",   SOURCE_DIR "/scenes", "-o",      folder,
+                         "--study",           "bomb_speed", "--methods",          "of-test", NULL};
+    assert_table_has(command_stability, arguments, temporary_path("stability/stability.csv"),
+                     "\nbomb_speed,of-test,,speed,m/s,");
+}
+
+static void a_picture_has_its_title(void **state) {
+    (void)state;
+    Error error = {0};
+    Picture picture;
+    Trajectory *run = run_make("of-test", 2);
+    const RenderOptions options = draw_panels_defaults(".");
+    char title[CAPTION_SIZE], note[CAPTION_SIZE];
+    assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    caption_method(&picture, 0, title, note);
+    assert_string_equal(title, "Solver of a test");
+    assert_string_equal(note, "of-test");
+    picture_free(&picture);
+    trajectory_destroy(run);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(methods_lists_it), cmocka_unit_test(every_study_has_it),
+                                       cmocka_unit_test(a_chart_scores_it), cmocka_unit_test(a_border_is_found_for_it),
+                                       cmocka_unit_test(a_picture_has_its_title)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

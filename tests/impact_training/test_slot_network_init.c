@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The initial network: slots, caps and scales against independent counts; the distribution of its inputs and
+   outputs. */
+#include "impacts.h"
+
+#include <math.h>
+#include <omp.h>
+
+enum { LAUNCHES = 20 };
+
+static SlotSamples samples;
+static SlotNetwork *network;
+
+static int begin(void **state) {
+    (void)state;
+    samples = labelled_impacts(LAUNCHES);
+    network = network_for(&samples);
+    return 0;
+}
+
+static int end(void **state) {
+    (void)state;
+    slot_network_destroy(network);
+    slot_samples_free(&samples);
+    return 0;
+}
+
+static const ContactPoint *contact_in(const SlotSample *sample, int a, int b, uint32_t feature) {
+    for (int k = 0; k < sample->problem.contact_count; k++) {
+        const ContactPoint *contact = &sample->problem.contacts[k];
+        if (contact->a == a && contact->b == b && scene_view_feature(&sample->problem, contact) == feature)
+            return contact;
+    }
+    return NULL;
+}
+
+static int samples_with(int a, int b, uint32_t feature) {
+    int count = 0;
+    for (int i = 0; i < samples.count; i++) count += contact_in(&samples.items[i], a, b, feature) != NULL;
+    return count;
+}
+
+static bool is_below(const Slot *x, const Slot *y) {
+    if (x->a != y->a) return x->a < y->a;
+    return x->b != y->b ? x->b < y->b : x->feature < y->feature;
+}
+
+static void slots_are_contacts_of_at_least_three_samples(void **state) {
+    (void)state;
+    int left_out = 0, known = 0;
+    for (int i = 0; i < samples.count; i++)
+        for (int k = 0; k < samples.items[i].problem.contact_count; k++) {
+            const ContactPoint *contact = &samples.items[i].problem.contacts[k];
+            const uint32_t feature = scene_view_feature(&samples.items[i].problem, contact);
+            const bool slot = slot_network_find(network, contact->a, contact->b, feature) >= 0;
+            assert_int_equal(slot, samples_with(contact->a, contact->b, feature) >= 3);
+            left_out += !slot;
+            known += slot;
+        }
+    assert_true(left_out > 0 && known > 100);
+    for (int i = 0; i < network->slot_count; i++) {
+        const Slot *slot = &network->slots[i];
+        assert_true(i == 0 || is_below(slot - 1, slot));
+        assert_true(samples_with(slot->a, slot->b, slot->feature) >= 3);
+    }
+    assert_int_equal(network->body_count, samples.items[0].problem.body_count);
+    assert_int_equal(network->bomb, samples.items[0].problem.bomb);
+}
+
+static void caps_are_the_largest_warm_impulses_at_the_touch(void **state) {
+    (void)state;
+    int capped = 0, larger_later = 0;
+    for (int i = 0; i < network->slot_count; i++) {
+        const Slot *slot = &network->slots[i];
+        float before = 0, ever = 0;
+        for (int k = 0; k < samples.count; k++) {
+            const ContactPoint *contact = contact_in(&samples.items[k], slot->a, slot->b, slot->feature);
+            if (contact == NULL) continue;
+            ever = fmaxf(ever, contact->warm_normal);
+            if (samples.items[k].since == 0) before = fmaxf(before, contact->warm_normal);
+        }
+        assert_true(network->cap[i] == before);
+        capped += before > 0;
+        larger_later += ever > before;
+    }
+    assert_true(capped > 5 && larger_later > 5);
+}
+
+/* mean(sqrt(|goal - base|))^2 + 0.05 N s. */
+static void scales_are_how_far_the_goal_is(void **state) {
+    (void)state;
+    for (int i = 0; i < network->slot_count; i++) {
+        const Slot *slot = &network->slots[i];
+        double sum = 0;
+        int count = 0;
+        for (int k = 0; k < samples.count; k++) {
+            const SlotSample *sample = &samples.items[k];
+            const ContactPoint *contact = contact_in(sample, slot->a, slot->b, slot->feature);
+            if (contact == NULL) continue;
+            const long at = contact - sample->problem.contacts;
+            sum += sqrt(hypot((double)(sample->goal[at].normal - sample->view.base[at].normal),
+                              (double)(sample->goal[at].tangent - sample->view.base[at].tangent)));
+            count++;
+        }
+        const double expected = sum / count * (sum / count) + 0.05;
+        assert_near(network->scale[i], expected, 1e-6 * expected);
+    }
+}
+
+/* Components of each projection are white up to the rounding of its packed rows; those beyond its rank are 0. */
+static void inputs_have_mean_0_and_variance_1_or_0(void **state) {
+    (void)state;
+    int moving = 0;
+    for (int c = 0; c < slot_network_inputs(network); c++) {
+        double sum = 0, squares = 0;
+        for (int i = 0; i < samples.count; i++) {
+            const double x = (double)samples.items[i].inputs[c];
+            sum += x;
+            squares += x * x;
+        }
+        const double mean = sum / samples.count, variance = squares / samples.count - mean * mean;
+        assert_near(mean, 0, 1e-4);
+        assert_near(variance, variance > 0.5, 0.05);
+        moving += variance > 0.5;
+        if (c >= SLOT_BODY_NUMBERS && c < ROW_LANES) assert_true(squares == 0);
+    }
+    assert_true(moving > slot_network_inputs(network) / 2);
+}
+
+/* Otherwise the network could not know where the bomb struck. */
+static void every_launch_has_different_inputs(void **state) {
+    (void)state;
+    for (int i = 0; i < samples.count; i++)
+        for (int k = 0; k < i; k++)
+            assert_memory_not_equal(samples.items[i].inputs, samples.items[k].inputs,
+                                    (size_t)slot_network_inputs(network) * sizeof(float));
+}
+
+static void initial_outputs_are_near_0(void **state) {
+    (void)state;
+    float first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[200];
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < samples.count; i++) {
+        const SlotView *slots = &samples.items[i].view.slots;
+        assert_in_range(slots->slot_count, 1, 100);
+        slot_network_predict(network, samples.items[i].inputs, slots, first, second, outputs);
+        for (int k = 0; k < 2 * slots->slot_count; k++)
+            sum += fabs((double)(outputs[k] / network->scale[slots->slots[k / 2]]));
+        count += 2 * slots->slot_count;
+    }
+    assert_true(sum / count > 0.001 && sum / count < 0.2);
+}
+
+static SlotNetwork *make_again(uint64_t seed) {
+    Error error = {0};
+    SlotNetwork *made = slot_network_from_samples(&samples, &small_widths, seed, &error);
+    assert_ok(made != NULL, error);
+    return made;
+}
+
+static bool same_rows(const Projection *a, const Projection *b) {
+    return memcmp(a->rows, b->rows, (size_t)a->from * (size_t)a->to * sizeof(float)) == 0 &&
+           memcmp(a->centre, b->centre, (size_t)a->to * sizeof(float)) == 0;
+}
+
+static bool same_parameters(const SlotNetwork *a, const SlotNetwork *b) {
+    return memcmp(a->parameters, b->parameters, a->parameter_count * sizeof(float)) == 0;
+}
+
+static void same_seed_same_bits(void **state) {
+    (void)state;
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(threads == 1 ? 2 : 1);
+    SlotNetwork *same = make_again(1), *other = make_again(2);
+    omp_set_num_threads(threads);
+    assert_true(same_parameters(network, same));
+    assert_false(same_parameters(network, other));
+    assert_true(same_rows(&network->bomb_state, &same->bomb_state) && same_rows(&network->state, &same->state));
+    assert_true(same_rows(&network->present, &same->present) && same_rows(&network->warm, &same->warm));
+    slot_network_destroy(same);
+    slot_network_destroy(other);
+}
+
+static void samples_without_slots_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples few = {0};
+    assert_null(slot_network_from_samples(&few, &small_widths, 1, &error));
+    assert_error(error, ERROR_INPUT, "no launch has an impact whose residual reaches the gate");
+    error = (Error){0};
+    for (int i = 0; i < 2; i++) assert_true(slot_samples_add(&few, &samples.items[0].problem, i, 0));
+    assert_ok(slot_samples_label(&few, 0, IMPACT_VISITS, NULL, &error), error);
+    assert_null(slot_network_from_samples(&few, &small_widths, 1, &error));
+    assert_error(error, ERROR_INPUT, "0 slots");
+    slot_samples_free(&few);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slots_are_contacts_of_at_least_three_samples),
+        cmocka_unit_test(caps_are_the_largest_warm_impulses_at_the_touch),
+        cmocka_unit_test(scales_are_how_far_the_goal_is),
+        cmocka_unit_test(inputs_have_mean_0_and_variance_1_or_0),
+        cmocka_unit_test(every_launch_has_different_inputs),
+        cmocka_unit_test(initial_outputs_are_near_0),
+        cmocka_unit_test(same_seed_same_bits),
+        cmocka_unit_test(samples_without_slots_are_refused),
+    };
+    return cmocka_run_group_tests(tests, begin, end);
+}

@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figures are drawn once, from the scenes that ship. */
+#include "testing.h"
+
+#include "render/mesa.h"
+
+#include "common/file.h"
+#include "dataset/dataset.h"
+#include "paper/figures/illustration_parts.h"
+#include "paper/figures/illustrations.h"
+#include "figure/separating_axes.h"
+#include "sketch/sketch_files.h"
+#include "simulate/simulate.h"
+
+#include <math.h>
+
+#define SCENES SOURCE_DIR "/scenes"
+
+static int draw_all(void **state) {
+    (void)state;
+    Error error = {0};
+    temporary_path(""); /* makes the folder */
+    if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
+    print_error("%s\n", error.message);
+    return 1;
+}
+
+static char *read_file(const char *name, const char *ending, size_t *size) {
+    char file[64];
+    Error error = {0};
+    snprintf(file, sizeof file, "%s.%s", name, ending);
+    char *data = file_read(temporary_path(file), 1 << 24, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+static void every_figure_is_a_picture_a_drawing_and_a_caption(void **state) {
+    (void)state;
+    int count = 0;
+    for (; illustration_names[count] != NULL; count++) {
+        const char *name = illustration_names[count];
+        size_t size;
+        char *png = read_file(name, "png", &size);
+        /* 174 mm at 300 dots an inch: 2055. */
+        assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07", 20);
+        assert_true(size > 20000);
+        free(png);
+        char *caption = read_file(name, "txt", &size);
+        assert_true(size > 100);
+        assert_ptr_equal(strchr(caption, '\n'), caption + size - 1);
+        free(caption);
+        char file[64];
+        snprintf(file, sizeof file, "%s.pdf", name);
+        assert_int_equal(access(temporary_path(file), F_OK), -1);
+    }
+    assert_int_equal(count, 4);
+}
+
+static void expect_texts(const char *name, const char *const *texts) {
+    size_t size;
+    char *svg = read_file(name, "svg", &size);
+    for (; *texts != NULL; texts++)
+        if (strstr(svg, *texts) == NULL) fail_msg("%s.svg lacks \"%s\"", name, *texts);
+    free(svg);
+}
+
+static void drawings_say_what_they_show(void **state) {
+    (void)state;
+    expect_texts("loop", (const char *const[]){"Broad phase", "Narrow phase", "Gravity", "Contact problem",
+                                               "Constraint solving", "Neural network, in place of the solver",
+                                               "Integration", "first touch", NULL});
+    expect_texts("narrow-phase",
+                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "the least", "reference edge",
+                                       "incident edge", "side plane", "normal (", NULL});
+    expect_texts("data",
+                 (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
+    expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",
+                                                 "data:image/png;base64,", NULL});
+}
+
+/* The engine's run of a scene, up to a step. */
+static Trajectory *run_to(const char *path, int step) {
+    Error error = {0};
+    Method engine;
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL && method_parse(&engine, "engine", &error), error);
+    scene->frames = step;
+    Trajectory *run = simulate(scene, &engine, NULL, &error);
+    assert_ok(run != NULL, error);
+    scene_destroy(scene);
+    return run;
+}
+
+static void the_loop_counts_what_the_run_has(void **state) {
+    (void)state;
+    size_t size;
+    int step, pairs, candidates, touching, points, warm;
+    char *caption = read_file("loop", "txt", &size);
+    const char *counts = strstr(caption, "counts of step");
+    assert_non_null(counts);
+    assert_int_equal(sscanf(counts,
+                            "counts of step %d of stack.yaml, the one after the bomb's first touch. Of %d pairs of "
+                            "bodies, %d have overlapping bounding boxes; %d of these touch, in %d points, of which %d",
+                            &step, &pairs, &candidates, &touching, &points, &warm),
+                     6);
+    free(caption);
+    Trajectory *run = run_to(SCENES "/stack.yaml", step);
+    int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
+    int different = 0, kept = 0, bombs_before = 0;
+    for (int64_t i = first; i < end; i++) {
+        const TrajectoryContact *now = &run->contacts[i];
+        different += i == first || now->a != now[-1].a || now->b != now[-1].b;
+        for (int64_t k = run->contact_start[step - 1]; k < first; k++) {
+            const TrajectoryContact *last = &run->contacts[k];
+            kept +=
+                last->a == now->a && last->b == now->b && last->feature == now->feature && last->normal_impulse != 0;
+        }
+    }
+    for (int64_t i = 0; i < first; i++) bombs_before += run->contacts[i].b == run->bomb && run->contacts[i].a > 0;
+    int64_t last_step = run->contact_start[step - 1];
+    int in_last_step = 0;
+    for (int64_t i = last_step; i < first; i++)
+        in_last_step += run->contacts[i].b == run->bomb && run->contacts[i].a > 0;
+    assert_int_equal(bombs_before, in_last_step);
+    assert_true(in_last_step > 0);
+    assert_int_equal(points, end - first);
+    assert_int_equal(touching, different);
+    assert_int_equal(warm, kept);
+    assert_int_equal(pairs, run->bodies * (run->bodies - 1) / 2);
+    assert_in_range(candidates, touching, pairs);
+    trajectory_destroy(run);
+}
+
+static Box box_in(const Trajectory *run, int frame, int body) {
+    int i = frame * run->bodies + body;
+    return box_make(run->position[i], run->size[body], run->angle[i]);
+}
+
+static void the_collision_shown_is_the_engines(void **state) {
+    (void)state;
+    size_t size;
+    int a, b, step, least, deep[2];
+    double x, y;
+    char *caption = read_file("narrow-phase", "txt", &size);
+    assert_int_equal(sscanf(caption, "The narrow phase for bodies %d and %d in step %d", &a, &b, &step), 3);
+    const char *end = strstr(caption, "The smallest overlap, ");
+    assert_non_null(end);
+    assert_int_equal(sscanf(end, "The smallest overlap, %d mm, gives the normal (%lf, %lf)", &least, &x, &y), 3);
+    end = strstr(end, "points, ");
+    assert_non_null(end);
+    assert_int_equal(sscanf(end, "points, %d and %d mm deep.", &deep[0], &deep[1]), 2);
+    free(caption);
+    Trajectory *run = run_to(SCENES "/pyramid.yaml", step);
+    const Box box_a = box_in(run, step - 1, a), box_b = box_in(run, step - 1, b);
+    Manifold manifold;
+    manifold_compute(&manifold, &box_a, &box_b);
+    assert_int_equal(b, run->bomb);
+    assert_int_equal(manifold.count, 2);
+    assert_near(manifold.normal.x, x, 0.0006);
+    assert_near(manifold.normal.y, y, 0.0006);
+    for (int i = 0; i < 2; i++) assert_near(-1000 * (double)manifold.points[i].separation, deep[i], 0.6);
+    /* The deepest point is a corner that clipping has left where it was. */
+    assert_int_equal(least, deep[0] > deep[1] ? deep[0] : deep[1]);
+    trajectory_destroy(run);
+}
+
+static float uniform(uint32_t *seed, float from, float to) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return from + (to - from) * (float)(*seed >> 8) / 16777216.0f;
+}
+
+static Box random_box(uint32_t *seed) {
+    Vec2 position = vec2(uniform(seed, -0.8f, 0.8f), uniform(seed, -0.8f, 0.8f));
+    Vec2 size = vec2(uniform(seed, 0.4f, 1.6f), uniform(seed, 0.4f, 1.6f));
+    return box_make(position, size, uniform(seed, -3, 3));
+}
+
+static int points_of(const Box *a, const Box *b) {
+    Manifold manifold;
+    manifold_compute(&manifold, a, b);
+    return manifold.count;
+}
+
+/* b, gone so far along the axis, away from a. */
+static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
+    Box away = *b;
+    float side = vec2_dot(vec2_sub(b->position, a->position), axis) < 0 ? -1.0f : 1.0f;
+    away.position = vec2_add(b->position, vec2_scale(side * (float)way, axis));
+    return away;
+}
+
+/* So far has a box to go for the two to part. The engine's normal lies along the axis of the least, or of one that is
+   nearly so (clearly_better() in collision/manifold.c), and its points are as deep as that, or less deep where clipping
+   has cut the deepest corner off. */
+static void the_least_overlap_is_the_way_out(void **state) {
+    (void)state;
+    const double slack = 1e-4;
+    uint32_t seed = 1;
+    int touching = 0, as_deep = 0;
+    for (int i = 0; i < 20000; i++) {
+        const Box a = random_box(&seed), b = random_box(&seed);
+        AxisOverlap overlaps[SEPARATING_AXES];
+        separating_axes(overlaps, &a, &b);
+        const AxisOverlap *least = &overlaps[least_overlap(overlaps)];
+        if (fabs(least->depth) < 2 * slack) continue;
+        Manifold manifold;
+        manifold_compute(&manifold, &a, &b);
+        assert_int_equal(manifold.count > 0, least->depth > 0);
+        if (manifold.count == 0) continue;
+        touching++;
+        const Box out = moved(&a, &b, least->axis, least->depth + slack);
+        assert_int_equal(points_of(&a, &out), 0);
+        double chosen = HUGE_VAL;
+        for (int k = 0; k < SEPARATING_AXES; k++)
+            if (fabsf(vec2_dot(overlaps[k].axis, manifold.normal)) > 0.999999f)
+                chosen = fmin(chosen, overlaps[k].depth);
+        assert_true(chosen <= (least->depth + 0.01 * 0.8) / 0.95 + slack);
+        double deepest = 0;
+        for (int k = 0; k < manifold.count; k++) deepest = fmax(deepest, -(double)manifold.points[k].separation);
+        assert_true(deepest <= chosen + slack);
+        as_deep += deepest > chosen - slack;
+    }
+    assert_in_range(touching, 5000, 19000);
+    assert_in_range(as_deep, touching / 2, touching - 1);
+}
+
+static void the_row_shown_is_the_datasets(void **state) {
+    (void)state;
+    static const char *const scenes[] = {SCENES "/stack.yaml"};
+    const DatasetOptions options = {.scenes = scenes, .scene_count = 1, .bomb_x = {-5, 0.5, 21}, .seed = 1};
+    size_t size;
+    int rows, bodies[2], step;
+    double x, changes[4];
+    char *caption = read_file("data", "txt", &size);
+    const char *count = strstr(caption, "per step, "), *row = strstr(caption, "of bodies");
+    const char *box = strstr(caption, "velocity of the box by ");
+    assert_true(count != NULL && row != NULL && box != NULL);
+    assert_int_equal(sscanf(count, "per step, %d rows", &rows), 1);
+    assert_int_equal(
+        sscanf(row, "of bodies %d and %d in step %d of the launch from x = %lf m", &bodies[0], &bodies[1], &step, &x),
+        4);
+    /* A minus as wide as a plus is no minus to scanf. */
+    for (char *minus = caption; (minus = strstr(minus, "\xe2\x88\x92")) != NULL;) memcpy(minus, "  -", 3);
+    assert_int_equal(sscanf(box, "velocity of the box by (%lf, %lf) m/s and that of the bomb by (%lf, %lf)",
+                            &changes[0], &changes[1], &changes[2], &changes[3]),
+                     4);
+    free(caption);
+    Error error = {0};
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    assert_int_equal(rows, dataset->rows);
+    int found = 0;
+    for (int64_t i = 0; i < dataset->rows; i++) {
+        if (fabs((double)dataset->launch_x[dataset->launch[i]] - x) > 1e-6) continue;
+        const int32_t *pair = &dataset->bodies[2 * i];
+        assert_false(pair[0] > 0 && pair[1] == bodies[1] && dataset->frame[i] < step); /* it is the first touch */
+        if (dataset->frame[i] != step || pair[0] != bodies[0] || pair[1] != bodies[1]) continue;
+        const float *change = &dataset->changes[PAIR_CHANGES * i];
+        const int at[4] = {0, 1, 3, 4};
+        for (int k = 0; k < 4; k++) assert_near(change[at[k]], changes[k], 0.006);
+        found++;
+    }
+    assert_int_equal(found, 1);
+    dataset_destroy(dataset);
+}
+
+static void the_same_run_gives_the_same_files(void **state) {
+    (void)state;
+    static const char *const endings[] = {"png", "svg"};
+    Error error = {0};
+    Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
+    assert_ok(scenes[SCENE_STACK] != NULL, error);
+    Sketch sketch;
+    char caption[CAPTION_SIZE];
+    sketch_begin(&sketch, illustration_loop.width, illustration_loop.height);
+    assert_ok(illustration_loop.draw(&sketch, scenes, caption, &error), error);
+    assert_ok(sketch_draw(&sketch, temporary_path("again"), &error), error);
+    sketch_free(&sketch);
+    scene_destroy(scenes[SCENE_STACK]);
+    for (int i = 0; i < 2; i++) {
+        size_t first_size, size;
+        char *first = read_file("loop", endings[i], &first_size), *again = read_file("again", endings[i], &size);
+        assert_int_equal(first_size, size);
+        assert_memory_equal(first, again, size);
+        free(first);
+        free(again);
+    }
+}
+
+/* A folder with the scenes that ship, but for one; what becomes of it. */
+static const char *folder_with(const char *name, const char *text) {
+    static const char *const names[] = {"single.yaml", "stack.yaml", "pyramid.yaml"};
+    Error error = {0};
+    const char *folder = temporary_path("scenes");
+    assert_ok(file_make_directory(folder, &error), error);
+    for (int i = 0; i < 3; i++) {
+        char path[512];
+        size_t size = strlen(text);
+        snprintf(path, sizeof path, SCENES "/%s", names[i]);
+        char *shipped = file_read(path, 1 << 16, &(size_t){0}, &error);
+        assert_ok(shipped != NULL, error);
+        const char *data = strcmp(names[i], name) == 0 ? text : shipped;
+        size = strlen(data);
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        assert_ok(file_write(path, data, size, &error), error);
+        free(shipped);
+    }
+    return folder;
+}
+
+static void expect_refused(const char *scenes, const char *message) {
+    Error error = {0};
+    const char *folder = temporary_path("refused");
+    assert_ok(file_make_directory(folder, &error), error);
+    assert_false(illustrations_draw(scenes, folder, &error));
+    assert_error(error, ERROR_INPUT, message);
+    char path[512];
+    snprintf(path, sizeof path, "%s/loop.png", folder);
+    assert_int_equal(access(path, F_OK), -1);
+}
+
+#define GROUND_AND_BOX                                                                                             \
+    "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 5\n"                                                     \
+    "bodies:\n  - {static: true, size: [100, 20], position: [0, -10]}\n  - {mass: 1, size: [1, 1], position: [0, " \
+    "1]}\n"
+
+static void scenes_that_show_nothing_are_refused(void **state) {
+    (void)state;
+    expect_refused(temporary_path("nowhere"), "/nowhere/single.yaml");
+    expect_refused(folder_with("pyramid.yaml", GROUND_AND_BOX),
+                   "/pyramid.yaml: error: the scene has no bomb to launch");
+    expect_refused(folder_with("stack.yaml", GROUND_AND_BOX "bomb: {x: 5, y: 15, size: [1, 1], mass: 50}\n"),
+                   "stack: error: the bomb touches no box in 5 steps");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_figure_is_a_picture_a_drawing_and_a_caption),
+        cmocka_unit_test(drawings_say_what_they_show),
+        cmocka_unit_test(the_loop_counts_what_the_run_has),
+        cmocka_unit_test(the_collision_shown_is_the_engines),
+        cmocka_unit_test(the_least_overlap_is_the_way_out),
+        cmocka_unit_test(the_row_shown_is_the_datasets),
+        cmocka_unit_test(the_same_run_gives_the_same_files),
+        cmocka_unit_test(scenes_that_show_nothing_are_refused),
+    };
+    return cmocka_run_group_tests(tests, draw_all, NULL);
+}
