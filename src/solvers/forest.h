@@ -11,8 +11,7 @@
    and the balance of angular momentum determines how the two points share the impulse. If no contact pulls or exceeds
    friction, this is the solution that sweeps converge to, at any height and under any load. Source: the two passes of
    Luh, Walker, Paul, "On-Line Computational Scheme for Mechanical Manipulators" (1980). Fails, and reports it, if a
-   body of a tree slides, tips or stands on a corner, and for bodies in a loop, such as the stones of a wall, or on one.
-   */
+   body of a tree slides, tips or stands on a corner, and for bodies in or on a loop, such as the stones of a wall. */
 #pragma once
 #include "dynamics/contact_problem.h"
 

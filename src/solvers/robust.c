@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Solves trees of bodies on the ground, such as stacks, directly by two passes (forest.h). If that solves all contacts,
-   no sweeps follow; otherwise the engine's sweeps follow, from the impulses at which
+   no sweeps follow; otherwise the engine's sweeps do. They start from the impulses at which
 
        E(P) = sum of m v^2 / 2 + I w^2 / 2 - sum of bias P_n,   v and w: after the impulses P
 

@@ -12,8 +12,8 @@
    slots; it refuses them. */
 #include "solvers/scene_net.h"
 
-#include "solvers/residual.h"
 #include "solvers/momentum.h"
+#include "solvers/residual.h"
 #include "solvers/scene_prediction.h"
 #include "solvers/solvers.h"
 
@@ -134,8 +134,9 @@ static bool fits(const SlotNetwork *network, const ContactProblem *problem, Erro
         return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
                            network->scene, bodies, problem->body_count);
     if (problem->bomb < 0 || problem->bomb == network->bomb) return true;
-    return error_input(error, "scene-net", "the network is for the scene %s, with the bomb as body %d; here it is body %d",
-                       network->scene, network->bomb, problem->bomb);
+    return error_input(error, "scene-net",
+                       "the network is for the scene %s, with the bomb as body %d; here it is body %d", network->scene,
+                       network->bomb, problem->bomb);
 }
 
 static int within(float speed) { return fabsf(speed) <= speed_max; }

@@ -91,7 +91,7 @@ printf 'x,colour\n1,red\n' >bad.csv
 run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv
 complains "bad.csv:1:3: error: "
 run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
-complains "single.yaml: error: a scene of that name was given before"
+complains "single.yaml: error: another scene has the same name (single)"
 run 2 chart "$scenes/single.yaml" -o none --methods magic
 complains "'magic' is not a method; known: "
 run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10
