@@ -7,7 +7,7 @@
 
 Bounds bounds_of_box(const Box *box) {
     Vec2 reach = mat22_multiply(mat22_abs(box->rotation), box->half);
-    /* Eight roundings of numbers no larger than position and reach together. */
+    /* Eight roundings of numbers that do not exceed |position| + half extent. */
     float size = fabsf(box->position.x) + fabsf(box->position.y) + reach.x + reach.y;
     float slack = 8.0f * FLT_EPSILON * size;
     Vec2 wide = vec2(reach.x + slack, reach.y + slack);

@@ -11,8 +11,8 @@ typedef struct Bounds {
     Vec2 low, high;
 } Bounds;
 
-/* The bounds of a box, widened by what float32 may have rounded off: two boxes whose bounds are apart would not
-   touch in the narrow phase either. */
+/* The bounds of a box, widened by the float32 rounding error: boxes whose bounds are disjoint do not touch in the
+   narrow phase either. */
 Bounds bounds_of_box(const Box *box);
 
 static inline bool bounds_overlap(const Bounds *a, const Bounds *b) {
@@ -29,24 +29,24 @@ typedef struct PairList {
     size_t count, capacity;
 } PairList;
 
-/* Fills the list with all pairs of overlapping bounds, not both fixed, rising by (a, b): the order in which
-   sequential impulses visits them. Looks at every pair: the text to read, and the fast way for few bodies. False when
+/* Fills the list with all pairs of overlapping bounds, not both fixed, sorted by (a, b): the order in which sequential
+   impulses visits them. Tests every pair: the reference implementation, and the fastest for few bodies. False when
    memory is short. */
 bool broad_phase_find(PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
 typedef struct SweptBounds SweptBounds;
 
-/* The same pairs in the same order by sort and sweep (Baraff 1992): bounds sorted by where they begin along an axis
-   need looking at only until one begins behind the end. The order persists and changes little from step to step. Across
-   the axis the plane is cut into strips, each swept by itself, so that a wide world costs no more a body than a small
-   one. Zero-initialise. */
+/* The same pairs in the same order by sort and sweep (Baraff 1992): bounds are sorted by their lower end along an axis,
+   and each is tested only against those that begin before it ends. The order persists and changes little from step to
+   step. Across the axis the plane is cut into strips that are swept separately, so that the cost per body does not grow
+   with the width of the world. Zero-initialise. */
 typedef struct SortAndSweep {
     bool along_y;
     int count, strip_count;
     float strips_begin, strips_per_metre;
     SweptBounds *sorted;   /* [count] along the axis */
     SweptBounds *in_strip; /* strip by strip, in the same order; a body may be in several */
-    int *starts;           /* scratch: of strips in in_strip, then of bodies in the list of pairs */
+    int *starts;           /* scratch: first index of each strip in in_strip, then of each body in the list of pairs */
     PairList found;        /* strip by strip */
     size_t sorted_capacity, in_strip_capacity, starts_capacity;
 } SortAndSweep;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of every float operation here is fixed: reference trajectories are compared bit by bit. */
+/* The order of all float operations is fixed: reference trajectories are compared bit by bit. */
 #include "collision/manifold.h"
 
 #include <stdbool.h>
@@ -8,14 +8,14 @@ Box box_make(Vec2 position, Vec2 size, float angle) {
     return (Box){position, vec2_scale(0.5f, size), mat22_rotation(angle)};
 }
 
-/* A corner on its way through clipping, with the edges that meet in it. */
+/* A vertex during clipping, with the edges that meet in it. */
 typedef struct ClipVertex {
     Vec2 position;
     uint8_t in_reference, out_reference; /* edges of the reference box that cut here */
     uint8_t in_incident, out_incident;   /* edges of the incident box */
 } ClipVertex;
 
-/* The face that the manifold lies on. */
+/* The reference face. */
 typedef struct ReferenceFace {
     bool of_b;        /* the reference box is b */
     bool along_y;     /* the face's normal is the box's y axis */
@@ -23,7 +23,8 @@ typedef struct ReferenceFace {
     Vec2 normal;      /* unit, from a to b */
 } ReferenceFace;
 
-/* A later axis must be better than the best so far by this much, or the face would flip from step to step. */
+/* A later axis must be better than the best so far by this much, or the reference face would alternate from step to
+   step. */
 static bool clearly_better(float separation, float best, float half) {
     const float relative_tolerance = 0.95f, absolute_tolerance = 0.01f;
     return separation > relative_tolerance * best + absolute_tolerance * half;
@@ -31,7 +32,7 @@ static bool clearly_better(float separation, float best, float half) {
 
 static Vec2 toward(float distance, Vec2 axis) { return distance > 0.0f ? axis : vec2_negate(axis); }
 
-/* False where an axis separates the boxes. */
+/* False if an axis separates the boxes. */
 static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b) {
     Mat22 to_a = mat22_transpose(a->rotation), to_b = mat22_transpose(b->rotation);
     Vec2 between = vec2_sub(b->position, a->position);
@@ -53,7 +54,7 @@ static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b)
     return true;
 }
 
-/* Where edge `edge` ends, going round counter-clockwise. */
+/* The end of an edge, counter-clockwise. */
 static inline ClipVertex edge_end(const Box *box, Edge edge) {
     static const Vec2 corners[] = {
         [EDGE_TOP] = {-1, 1}, [EDGE_LEFT] = {-1, -1}, [EDGE_BOTTOM] = {1, -1}, [EDGE_RIGHT] = {1, 1}};
@@ -63,7 +64,7 @@ static inline ClipVertex edge_end(const Box *box, Edge edge) {
     return (ClipVertex){position, NO_EDGE, NO_EDGE, (uint8_t)edge, (uint8_t)next};
 }
 
-/* The edge of the incident box that faces the reference normal most. */
+/* The edge of the incident box that is most anti-parallel to the reference normal. */
 static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 reference_normal) {
     Vec2 n = vec2_negate(mat22_multiply(mat22_transpose(box->rotation), reference_normal));
     Vec2 size = vec2_abs(n);
@@ -76,8 +77,8 @@ static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 referenc
     edge[1] = edge_end(box, facing);
 }
 
-/* Keeps what lies behind the line normal . x = offset; `clip_edge` is the reference edge on that line. False
-   where fewer than two points are left. */
+/* Clips to the half-plane normal . x <= offset; `clip_edge` is the reference edge on that line. False if fewer than two
+   points remain. */
 static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
     int count = 0;
     float distance0 = vec2_dot(normal, in[0].position) - offset;
@@ -129,7 +130,7 @@ void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
     for (int i = 0; i < 2; i++) {
         float separation = vec2_dot(front_normal, clipped[i].position) - front;
         if (separation > 0.0f) continue;
-        /* Slid onto the reference face, where both boxes agree on the lever arms' plane. */
+        /* Projected onto the reference face, so that both lever arms end in the same point. */
         Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
         manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
     }

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* A box as collision sees it; the rotation is computed once a step, not once a pair. */
+/* A box for collision detection; its rotation is computed once per step, not once per pair. */
 typedef struct Box {
     Vec2 position;  /* m */
     Vec2 half;      /* half width and height, m */
@@ -21,7 +21,7 @@ typedef enum Edge { NO_EDGE, EDGE_TOP, EDGE_LEFT, EDGE_BOTTOM, EDGE_RIGHT } Edge
 typedef struct ManifoldPoint {
     Vec2 position;    /* m, world, on the reference face */
     float separation; /* m, <= 0 */
-    uint32_t feature; /* bytes from the lowest: edge of a in, out, edge of b in, out */
+    uint32_t feature; /* bytes from the lowest: incoming and outgoing edge of a, then of b */
 } ManifoldPoint;
 
 typedef struct Manifold {
@@ -30,5 +30,5 @@ typedef struct Manifold {
     ManifoldPoint points[2];
 } Manifold;
 
-/* Fills the manifold of a and b; count is 0 where they do not touch. */
+/* Fills the manifold of a and b; count is 0 if they do not touch. */
 void manifold_compute(Manifold *manifold, const Box *a, const Box *b);

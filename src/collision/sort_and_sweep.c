@@ -22,7 +22,7 @@ void sort_and_sweep_free(SortAndSweep *sweep) {
     *sweep = (SortAndSweep){0};
 }
 
-/* Is it time to sort along the other axis? Where centres are spread wider, fewer bounds overlap. */
+/* True to sort along the other axis: fewer bounds overlap along the axis with the larger spread of centres. */
 static bool other_axis_is_better(const SortAndSweep *sweep, const Bounds *bounds, int count) {
     float x = 0, y = 0, xx = 0, yy = 0;
     for (int i = 0; i < count; i++) {
@@ -33,7 +33,7 @@ static bool other_axis_is_better(const SortAndSweep *sweep, const Bounds *bounds
         yy += center_y * center_y;
     }
     float spread_x = xx - x * x / (float)count, spread_y = yy - y * y / (float)count;
-    /* Well beyond the other, or the order would be made anew again and again. */
+    /* By a clear margin, or the axis would alternate and the list be sorted from scratch. */
     const float well_beyond = 2.0f;
     return sweep->along_y ? spread_x > well_beyond * spread_y : spread_y > well_beyond * spread_x;
 }
@@ -52,7 +52,7 @@ static void refresh(SortAndSweep *sweep, const Bounds *bounds, const bool *fixed
     }
 }
 
-/* Insertion: linear in a list that is almost in order. */
+/* Insertion sort: linear in a list that is almost sorted. */
 static void sort(SweptBounds *items, int count) {
     for (int i = 1; i < count; i++) {
         SweptBounds item = items[i];
@@ -62,7 +62,7 @@ static void sort(SweptBounds *items, int count) {
     }
 }
 
-/* Strips twice as high as bounds are on average; one only where that would put a body into too many. */
+/* Strips of twice the average height of the bounds; a single strip if a body would be in too many. */
 static void cut_strips(SortAndSweep *sweep) {
     float low = INFINITY, high = -INFINITY, heights = 0;
     for (int i = 0; i < sweep->count; i++) {
@@ -83,7 +83,7 @@ static int strip_at(const SortAndSweep *sweep, float across) {
     return strip < (float)sweep->strip_count ? (int)strip : sweep->strip_count - 1;
 }
 
-/* Copies each body into every strip that it reaches. */
+/* Copies each body into every strip that it overlaps. */
 static bool fill_strips(SortAndSweep *sweep) {
     cut_strips(sweep);
     int *starts = sweep->starts;
@@ -115,7 +115,7 @@ static bool sweep_strip(PairList *found, const SweptBounds *items, int count, in
         for (int k = i + 1; k < count && items[k].low <= item.high; k++) {
             const SweptBounds *other = &items[k];
             int first_common = item.first_strip > other->first_strip ? item.first_strip : other->first_strip;
-            /* Written first and counted where it is one: a branch here would be foretold wrongly too often. */
+            /* Branchless: this branch mispredicts. */
             found->pairs[found->count] =
                 item.body < other->body ? (BodyPair){item.body, other->body} : (BodyPair){other->body, item.body};
             found->count += (size_t)((item.across_low <= other->across_high) & (other->across_low <= item.across_high) &
@@ -135,7 +135,7 @@ static bool find_overlaps(SortAndSweep *sweep) {
     return true;
 }
 
-/* Sorts by one of the two bodies, and keeps the order of pairs that have it in common. */
+/* Sorts by one of the two bodies; stable. */
 static void order_by(int *starts, int count, bool by_a, const PairList *from, BodyPair *to) {
     memset(starts, 0, ((size_t)count + 1) * sizeof *starts);
     for (size_t i = 0; i < from->count; i++) starts[(by_a ? from->pairs[i].a : from->pairs[i].b) + 1]++;
@@ -147,7 +147,7 @@ static void order_by(int *starts, int count, bool by_a, const PairList *from, Bo
 }
 
 bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count) {
-    const int few = 24; /* up to here looking at every pair is faster */
+    const int few = 24; /* up to here testing every pair is faster */
     if (count <= few) return broad_phase_find(list, bounds, fixed, count);
     size_t items = (size_t)count;
     if (!array_reserve((void **)&sweep->sorted, &sweep->sorted_capacity, items, sizeof *sweep->sorted) ||

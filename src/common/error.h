@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why a function failed, in words that main() prints as they are.
+/* Why a function failed, as a message that main() prints unchanged.
 
-   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return
-   false, so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller that
-   cannot add anything passes it on untouched. */
+   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
+   so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
+   unchanged. */
 #pragma once
 #include <stdbool.h>
 
@@ -17,8 +17,8 @@ typedef struct Error {
 
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 
-/* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an
-   option. A text may go on over further lines (an excerpt of the file with a caret). */
+/* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an option.
+   The text may have further lines (an excerpt of the file with a caret). */
 bool error_input(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
 
 /* The system failed: disk, memory, a missing library or program. */

@@ -17,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A path that cannot be opened is the user's mistake unless the machine is short of something. */
+/* An input error, unless the system lacks memory or file descriptors, or the disk fails. */
 static bool open_failed(const char *path, Error *error) {
     int cause = errno;
     bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
@@ -25,7 +25,7 @@ static bool open_failed(const char *path, Error *error) {
                    : error_input(error, path, "cannot open: %s", strerror(cause));
 }
 
-/* Reads to the end rather than by the size that stat tells: the file may be growing. */
+/* Reads to the end, not to the size that stat returns: the file may be growing. */
 static char *read_all(int file, const char *path, size_t limit, size_t expected, size_t *size, Error *error) {
     void *data = NULL;
     size_t capacity = 0, used = 0, wanted = expected + 2;
@@ -57,7 +57,7 @@ static char *read_all(int file, const char *path, size_t limit, size_t expected,
 }
 
 char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
-    /* Without O_NONBLOCK opening a fifo would wait for somebody to write. */
+    /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
     int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file < 0) {
         open_failed(path, error);
@@ -88,8 +88,8 @@ static bool write_all(int file, const char *data, size_t size) {
     return true;
 }
 
-/* A new file in the folder of path, its name in `name`. Not mkstemp, whose files only their owner may read:
-   here the umask decides, as for any other file. */
+/* Creates a file in the folder of path and returns its name in `name`. Not mkstemp: its files are readable by their
+   owner only, whatever the umask. */
 static int create_beside(const char *path, char *name, size_t name_size) {
     for (unsigned attempt = 0;; attempt++) {
         struct timespec now;
@@ -105,7 +105,7 @@ static int create_beside(const char *path, char *name, size_t name_size) {
     }
 }
 
-/* What may not be read or synced cannot do better. */
+/* An entry that cannot be opened or does not support fsync counts as synced. */
 static bool sync_entry(const char *path) {
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return true;
@@ -116,7 +116,7 @@ static bool sync_entry(const char *path) {
     return done;
 }
 
-/* The new name itself must survive a power cut. */
+/* Also the directory entry must survive a power cut. */
 static bool sync_folder(const char *path) {
     char folder[PATH_MAX];
     int length = (int)file_folder_length(path);
@@ -124,7 +124,7 @@ static bool sync_folder(const char *path) {
     return sync_entry(folder);
 }
 
-/* Closes even after a failure, and keeps errno of what failed first. */
+/* Closes also after a failure, and keeps errno of the first failure. */
 static bool close_after(int file, bool done) {
     int cause = errno;
     if (close(file) != 0 && done) return false;
@@ -149,7 +149,7 @@ static bool is_standard_output(const struct stat *status) {
     return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
 }
 
-/* A device, a pipe, or whatever /dev/stdout leads to. */
+/* For devices, pipes and the target of /dev/stdout. */
 static bool write_into(int file, const void *data, size_t size) {
     return file >= 0 && close_after(file, write_all(file, data, size));
 }
@@ -193,7 +193,7 @@ bool file_make_directory(const char *path, Error *error) {
         if (path[end] != '/' && path[end] != '\0') continue;
         snprintf(part, sizeof part, "%.*s", (int)end, path);
         if (mkdir(part, 0777) == 0 || is_directory(part)) continue;
-        /* is_directory has spoilt errno; asking again tells the reason. */
+        /* is_directory() has overwritten errno; a second mkdir() restores it. */
         mkdir(part, 0777);
         return error_system(error, part, "cannot make the directory: %s", strerror(errno));
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/hash.h"
 
-/* The same values by the widest vectors that the machine has, in half the time. */
+/* The same values with the widest vectors of the processor, in half the time. */
 #ifdef TWINBOX_AVX
 #include <xxh_x86dispatch.h>
 #else

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* 64-bit hashes: FNV-1a where the definition of the reference trajectories asks for it, XXH3 (libxxhash)
-   elsewhere. Neither guards against malice; both are the same on every machine. */
+/* 64-bit hashes: FNV-1a for the reference trajectories, whose format defines it, XXH3 (libxxhash) elsewhere. Neither is
+   cryptographic; both are the same on every machine. */
 #pragma once
 #include <stddef.h>
 #include <stdint.h>

@@ -2,5 +2,5 @@
 #pragma once
 #include <stdio.h>
 
-/* Writes text as HTML or XML, also within quotes: no text can be more than a text. */
+/* Writes text escaped for HTML or XML, also for use in attributes, so that no text can become markup. */
 void html_put(FILE *file, const char *text);

@@ -11,7 +11,7 @@ typedef struct NameList {
     char text[1536];
 } NameList;
 
-/* Appends a name that the list does not have yet; leaves out what has no room. */
+/* Appends a name that the list does not have yet; ignores it if there is no room. */
 void name_list_add(NameList *list, const char *name);
 
 /* The error for a name that a table lacks: "'foo' is not a method; known: a, b, c", where `what` is "a method". */

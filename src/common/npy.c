@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The head of one .npy array. */
+/* The header of one .npy array. */
 #include "common/npy.h"
 
 #include <inttypes.h>
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "arrays are stored little-endian and copied as they are"
+#error "arrays are stored little-endian and copied unconverted; this machine is not little-endian"
 #endif
 
 static const struct {
@@ -79,7 +79,7 @@ static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
     return false;
 }
 
-/* Steps over `word` where the text goes on with it. */
+/* Skips `word` if the text continues with it. */
 static bool take(const char **text, const char *word) {
     size_t length = strlen(word);
     if (strncmp(*text, word, length) != 0) return false;
@@ -112,40 +112,40 @@ static bool take_shape(const char **text, NpyHead *head) {
     return (head->rank > 1 || take(text, ",")) && take(text, ")");
 }
 
-/* The dictionary, then blanks to the line feed. */
+/* Reads the dictionary and the blanks up to the line feed. */
 static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_REASON_SIZE]) {
-    if (!take(&text, "{'descr': '")) return refuse(reason, "no plain array (or no .npy)");
+    if (!take(&text, "{'descr': '")) return refuse(reason, "not a plain array (or not .npy)");
     const char *type = text;
     if (!take_type(&text, head) || *text != '\'') {
         int length = (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
-        return refuse(reason, "of type '%.*s', which this program does not read", length < 32 ? length : 32, type);
+        return refuse(reason, "of the unsupported type '%.*s'", length < 32 ? length : 32, type);
     }
-    if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged head");
-    if (take(&text, "True")) return refuse(reason, "in Fortran order; C order is needed");
+    if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged header");
+    if (take(&text, "True")) return refuse(reason, "in Fortran order; expected C order");
     if (!take(&text, "False, 'shape': ") || !take_shape(&text, head) || !take(&text, ", }"))
-        return refuse(reason, "with a damaged head, or of more than %d dimensions", NPZ_MAX_RANK);
+        return refuse(reason, "with a damaged header, or of more than %d dimensions", NPZ_MAX_RANK);
     text += strspn(text, " ");
-    if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged head");
-    if (head->type == NPZ_TEXT && head->rank > 0) return refuse(reason, "an array of texts; a single one is needed");
+    if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged header");
+    if (head->type == NPZ_TEXT && head->rank > 0) return refuse(reason, "an array of texts; expected a single text");
     return npy_measure(head) || refuse(reason, "larger than 2 GiB");
 }
 
 bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NPY_REASON_SIZE]) {
     const unsigned char *bytes = (const unsigned char *)text;
     *head = (NpyHead){0};
-    if (size < VERSION_2_SIZE || memcmp(text, MAGIC, MAGIC_SIZE) != 0) return refuse(reason, "no .npy array");
+    if (size < VERSION_2_SIZE || memcmp(text, MAGIC, MAGIC_SIZE) != 0) return refuse(reason, "not a .npy array");
     int version = bytes[MAGIC_SIZE];
     if (version < 1 || version > 2 || bytes[MAGIC_SIZE + 1] != 0)
-        return refuse(reason, "in version %d.%d of .npy; 1.0 or 2.0 is needed", version, bytes[MAGIC_SIZE + 1]);
+        return refuse(reason, "in version %d.%d of .npy; expected 1.0 or 2.0", version, bytes[MAGIC_SIZE + 1]);
     size_t start = version == 1 ? VERSION_1_SIZE : VERSION_2_SIZE;
     uint64_t length = bytes[MAGIC_SIZE + 2] + 256U * bytes[MAGIC_SIZE + 3];
     if (version == 2) length += ((uint64_t)bytes[MAGIC_SIZE + 4] << 16) + ((uint64_t)bytes[MAGIC_SIZE + 5] << 24);
     if (length > size - start)
-        return refuse(reason, "with a head that is cut off or longer than %d bytes", NPY_HEAD_MAX);
+        return refuse(reason, "with a header that is cut off or longer than %d bytes", NPY_HEAD_MAX);
     char dictionary[NPY_HEAD_MAX + 1];
     memcpy(dictionary, text + start, length);
     dictionary[length] = '\0';
-    if (strlen(dictionary) != length) return refuse(reason, "with a damaged head");
+    if (strlen(dictionary) != length) return refuse(reason, "with a damaged header");
     head->head_size = start + length;
     return parse_dictionary(head, dictionary, reason);
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The head of one .npy array (NumPy format specification): what npz_write.c puts before the data of each
-   member and npz.c takes apart. Only those two include it. */
+/* The header of one .npy array (NumPy format specification). npz_write.c writes it before the data of each member,
+   npz.c parses it. Only those two include this file. */
 #pragma once
 #include "common/npz.h"
 
 #include <stdbool.h>
 
-/* Enough for the longest head of four dimensions; a longer one is refused. */
+/* Enough for the longest header of four dimensions; a longer one is refused. */
 enum { NPY_HEAD_MAX = 512, NPY_REASON_SIZE = 128 };
 
-/* No array and no file may hold more. */
+/* The most that an array or a file may hold. */
 #define NPZ_MAX_BYTES (UINT64_C(1) << 31)
 
 typedef struct NpyHead {
@@ -23,11 +23,11 @@ typedef struct NpyHead {
 
 const char *npy_type_name(NpzType type);
 
-/* Fills data_size from type, shape and characters; false when it passes NPZ_MAX_BYTES. */
+/* Computes data_size from type, shape and characters; false if it exceeds NPZ_MAX_BYTES. */
 bool npy_measure(NpyHead *head);
 
-/* Writes the head to text and fills head_size. */
+/* Writes the header to text and sets head_size. */
 void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]);
 
-/* Takes the first `size` bytes of a member apart, as strictly as NumPy writes them. False with a reason. */
+/* Parses the first `size` bytes of a member; accepts only the form that NumPy writes. False with a reason. */
 bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NPY_REASON_SIZE]);

@@ -19,7 +19,7 @@
 
 enum { MAX_ARRAYS = 256, NAME_SIZE = 64 };
 
-/* Deflate cannot do better than this, so a member that claims more is no honest one. */
+/* Deflate cannot exceed this ratio, so a member that claims more is invalid. */
 enum { DEFLATE_BEST_RATIO = 1032 };
 
 typedef struct StoredArray {
@@ -35,7 +35,7 @@ struct NpzFile {
     StoredArray arrays[MAX_ARRAYS]; /* in the order of the archive */
 };
 
-/* What libzip says of a file is the file's fault, but for these two. */
+/* Errors of libzip are input errors, except these two. */
 static bool zip_failed(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
     int code = zip_error_code_zip(cause);
     if (code == ZIP_ER_MEMORY) return error_memory(error, file->path);
@@ -49,19 +49,19 @@ static const StoredArray *find(const NpzFile *file, const char *name) {
     return NULL;
 }
 
-/* The member's name without ".npy"; only plain ones, since messages repeat them to a terminal. */
+/* The member's name without ".npy". Only letters, digits, '_', '-' and '.', since messages print it on a terminal. */
 static bool take_name(NpzFile *file, const char *member, char name[NAME_SIZE], Error *error) {
     size_t length = strlen(member);
     bool plain = length > 4 && length - 4 < NAME_SIZE;
     for (size_t i = 0; plain && i < length; i++) plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
     if (!plain || strcmp(member + length - 4, ".npy") != 0)
-        return error_input(error, file->path, "holds something else than named .npy arrays");
+        return error_input(error, file->path, "holds a member that is not a named .npy array");
     memcpy(name, member, length - 4);
     if (find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
     return true;
 }
 
-/* Everything that the directory tells of a member must fit its head before any data is inflated. */
+/* Before any data is inflated, the directory's entry of a member must agree with its header. */
 static bool check_member(const NpzFile *file, const StoredArray *array, const zip_stat_t *status, Error *error) {
     if (status->encryption_method != ZIP_EM_NONE)
         return error_input(error, file->path, "array '%s' is encrypted", array->name);
@@ -95,8 +95,7 @@ static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uin
 static bool read_directory(NpzFile *file, Error *error) {
     zip_int64_t count = zip_get_num_entries(file->archive, 0);
     if (count < 1 || count > MAX_ARRAYS)
-        return error_input(error, file->path, "holds %" PRId64 " arrays; 1 to %d are possible", (int64_t)count,
-                           MAX_ARRAYS);
+        return error_input(error, file->path, "holds %" PRId64 " arrays; expected 1 to %d", (int64_t)count, MAX_ARRAYS);
     for (; file->count < (zip_uint64_t)count; file->count++) {
         StoredArray *array = &file->arrays[file->count];
         zip_stat_t status;
@@ -109,9 +108,9 @@ static bool read_directory(NpzFile *file, Error *error) {
     return true;
 }
 
-/* A descriptor of the file, checked to be one that libzip can be let loose on. */
+/* Opens the file and checks that it is safe to pass to libzip. */
 static int open_checked(const char *path, Error *error) {
-    /* Without O_NONBLOCK opening a fifo would wait for somebody to write. */
+    /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
     int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status;
     if (descriptor < 0) {
@@ -142,7 +141,7 @@ static bool open_archive(NpzFile *file, Error *error) {
     if (cause == ZIP_ER_MEMORY)
         error_memory(error, file->path);
     else
-        error_input(error, file->path, "no intact .npz: %s", zip_error_strerror(&reason));
+        error_input(error, file->path, "not an intact .npz: %s", zip_error_strerror(&reason));
     zip_error_fini(&reason);
     close(descriptor);
     return false;
@@ -177,7 +176,7 @@ static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType
         return NULL;
     }
     if (array->head.type == type && array->head.rank == rank) return array;
-    error_input(error, file->path, "array '%s' is %s of %d dimensions; %s of %d is needed", name,
+    error_input(error, file->path, "array '%s' is %s of %d dimensions; expected %s of %d", name,
                 npy_type_name(array->head.type), array->head.rank, npy_type_name(type), rank);
     return NULL;
 }
@@ -197,7 +196,7 @@ static const char *shape_text(char text[96], int rank, const int64_t *shape) {
     return text;
 }
 
-/* The data, and that nothing follows it: only at the end does libzip compare the checksum. */
+/* Reads the data up to the end of the member: libzip compares the checksum only there. */
 static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *member, char *data, Error *error) {
     char skipped[NPY_HEAD_MAX], more;
     zip_int64_t head = zip_fread(member, skipped, array->head.head_size);
@@ -235,7 +234,7 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
     for (int i = 0; i < rank; i++) {
         if (array->head.shape[i] == shape[i]) continue;
         char found[96], wanted[96];
-        error_input(error, file->path, "array '%s' has shape %s; %s is needed", name,
+        error_input(error, file->path, "array '%s' has shape %s; expected %s", name,
                     shape_text(found, rank, array->head.shape), shape_text(wanted, rank, shape));
         return NULL;
     }
@@ -261,7 +260,7 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
         return error_input(error, file->path, "text '%s' is longer than %zu bytes", name, size - 1);
     uint32_t *characters = read_data(file, array, error);
     if (characters == NULL) return false;
-    /* NumPy fills a text up with zeros. */
+    /* NumPy pads a text with zeros. */
     while (count > 0 && characters[count - 1] == 0) count--;
     size_t used = 0;
     bool done = true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the readers of .npz files have in common. */
+/* What all readers of .npz files share. */
 #include "common/npz.h"
 
 #include <stdlib.h>
@@ -24,8 +24,8 @@ bool npz_check_kind(NpzFile *file, const char *kind, int32_t version, Error *err
     char found[64];
     int32_t stored;
     if (!npz_has(file, "kind") || !npz_read_text(file, "kind", found, sizeof found, error) || strcmp(found, kind) != 0)
-        return error_input(error, npz_path(file), "holds no %s", kind);
+        return error_input(error, npz_path(file), "not a file of kind '%s'", kind);
     if (!npz_read_scalar(file, "version", NPZ_INT32, &stored, sizeof stored, error)) return false;
-    return stored == version || error_input(error, npz_path(file), "%s of version %d; this program reads version %d",
-                                            kind, (int)stored, (int)version);
+    return stored == version ||
+           error_input(error, npz_path(file), "%s of version %d; expected version %d", kind, (int)stored, (int)version);
 }

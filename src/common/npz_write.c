@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing .npz: the archive is built in memory, then put in place whole. */
+/* Writing .npz: the archive is built in memory, then written atomically. */
 #include "common/file.h"
 #include "common/npy.h"
 #include "common/utf8.h"
@@ -10,27 +10,26 @@
 #include <string.h>
 #include <zip.h>
 
-/* Noon of 1980-01-01, in the local time of whoever reads it. libzip may go through the time zone of this
-   machine and back, which loses the hours that a zone skips at night. */
+/* Noon of 1980-01-01 in local time. libzip converts to the machine's time zone and back, which would change hours that
+   a zone skips at night. */
 enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
 
-/* zlib's own default. libzip's is 9, which made a file of positions no smaller. */
+/* zlib's default. libzip's is 9, which made a file of positions no smaller. */
 enum { DEFLATE_LEVEL = 6 };
 
-/* Bytes of floats from which on they are stored as they are: a second for every 30 MB would be spent on taking away
-   half of a dataset. */
+/* From this size on, floats are stored uncompressed: deflate takes a second per 30 MB to halve a dataset. */
 enum { STORED_SIZE = 1 << 24 };
 
 enum { MEMBER_NAME_SIZE = 72 };
 
-/* What libzip reads when it closes the archive, so it must live until then. */
+/* libzip reads this when it closes the archive, so it must live until then. */
 typedef struct Member {
     char head[NPY_HEAD_MAX];
     uint32_t *characters; /* of a text, in UTF-32 */
     zip_buffer_fragment_t fragments[2];
 } Member;
 
-/* NumPy has no text of length 0, so an empty one is one zero. */
+/* NumPy has no text of length 0, so an empty text is stored as one zero. */
 static bool decode_text(Member *member, NpyHead *head, const NpzArray *array, const char *path, Error *error) {
     const char *text = array->data;
     size_t length, left = strlen(text);
@@ -86,7 +85,7 @@ static bool add(zip_t *archive, const NpzArray *array, const Member *member, con
     return true;
 }
 
-/* Fills `source` with the finished archive. */
+/* Writes the finished archive into `source`. */
 static bool build(zip_source_t *source, Member *members, const NpzArray *arrays, size_t count, const char *path,
                   Error *error) {
     zip_error_t cause;
@@ -97,7 +96,7 @@ static bool build(zip_source_t *source, Member *members, const NpzArray *arrays,
         zip_error_fini(&cause);
         return false;
     }
-    /* The archive frees its source when it is closed or discarded, and the caller goes on with it. */
+    /* Closing or discarding the archive releases the source, which the caller still needs. */
     zip_source_keep(source);
     bool done = true;
     for (size_t i = 0; done && i < count; i++)

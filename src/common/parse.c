@@ -16,8 +16,8 @@ static const char *skip_digits(const char *text) {
     return text;
 }
 
-/* End of the decimal number that text begins with, or NULL. strtof alone would also take blanks, hex, inf and
- * nan. */
+/* End of the decimal number that text begins with, or NULL. strtof alone would also accept blanks, hexadecimal, inf and
+   nan. */
 static const char *decimal_end(const char *text) {
     const char *whole = skip_sign(text), *end = skip_digits(whole);
     ptrdiff_t digits = end - whole;
@@ -35,7 +35,7 @@ static const char *decimal_end(const char *text) {
     return end;
 }
 
-/* strtof and strtod read the decimal point of the thread's locale, so that must be the C locale's meanwhile.
+/* strtof and strtod use the decimal point of the thread's locale, so the C locale is set meanwhile.
  */
 static locale_t enter_c_locale(void) {
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -44,7 +44,7 @@ static locale_t enter_c_locale(void) {
 
 static void leave_c_locale(locale_t previous) { freelocale(uselocale(previous)); }
 
-/* One text, rounded once to each width: through double, a float would be rounded twice. */
+/* Each width is rounded once, from the text: a float by way of double would be rounded twice. */
 typedef struct Number {
     float single;
     double full;
@@ -107,8 +107,8 @@ bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *valu
     return true;
 }
 
-/* A value this far past the end (in steps) still counts as the end, and one this near zero as zero: A, B and
-   STEP are decimals and seldom exact in binary. */
+/* In steps: a value this far past the end still counts as the end, one this near zero as zero. A, B and STEP are
+   decimals and seldom exact in binary. */
 static const double STEP_TOLERANCE = 1e-6;
 
 bool parse_range(const char *text, int max_count, FloatRange *range) {

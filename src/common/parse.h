@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers from text, for scene files and options alike. The whole text must be the number; no locale, no
-   surrounding space, no NaN, no infinity. */
+/* Numbers from text, for scene files and options. The whole text must be a number: no locale, no surrounding space, no
+   NaN, no infinity. */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
@@ -8,7 +8,7 @@
 /* A decimal number, rounded to the nearest float32, or a fraction of two such as 1/60, divided in float32. */
 bool parse_float(const char *text, float *value);
 
-/* A decimal number within the reach of float32, rounded to the nearest double. */
+/* A decimal number in the range of float32, rounded to the nearest double. */
 bool parse_double(const char *text, double *value);
 
 /* The decimal number that text begins with, as parse_double reads it; *rest is what follows it. */

@@ -18,7 +18,7 @@ static bool spawn(Process *process, const char *const *argv, int child_input, Er
     posix_spawn_file_actions_adddup2(&actions, child_input, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(process->output), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(process->output), STDERR_FILENO);
-    /* The cast is posix_spawn's own: it does not write to the strings. */
+    /* posix_spawn's signature needs the cast; it does not write to the strings. */
     int code = posix_spawnp(&process->pid, argv[0], &actions, NULL, (char *const *)argv, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (code != 0)

@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How long work tells how far it is. The library never prints: cli/ supplies the bar. */
+/* Progress reports of long work. The library never prints: cli/ supplies the bar. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
 
 typedef struct Progress {
-    /* Called every now and then, never from two threads at once; returns false to ask the work to stop early. */
+    /* Called repeatedly, never from two threads at once; returns false to stop the work early. */
     bool (*report)(void *context, double done, double total);
     void *context;
 } Progress;
 
-/* True to go on. A NULL progress always goes on. */
+/* True to continue; always true for a NULL progress. */
 static inline bool progress_report(const Progress *progress, double done, double total) {
     return progress == NULL || progress->report(progress->context, done, total);
 }
 
-/* Part of a longer work: what is done of it counts for `share` of the whole, from `begin` on. Used as the context of a
-   Progress that reports by progress_stage. */
+/* A stage of longer work: it covers `share` of the whole, from `begin` on. The context of a Progress whose function is
+   progress_stage. */
 typedef struct ProgressStage {
     const Progress *whole; /* may be NULL */
     double begin, share;   /* 0 to 1 */
-    bool stopped;          /* it was asked to, and is not asked again */
+    bool stopped;          /* a stop was requested; `whole` is not called again */
 } ProgressStage;
 
 static inline bool progress_stage(void *context, double done, double total) {

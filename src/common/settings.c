@@ -27,14 +27,14 @@ static bool unknown_key(const SettingSpec *known, const char *key, const char *w
     return error_unknown(error, where, key, "a setting", &keys);
 }
 
-/* One "key=value" of `length` bytes. A value may hold further '='. */
+/* One "key=value" of `length` bytes. The value may contain further '='. */
 static bool parse_item(Settings *settings, const char *item, size_t length, const SettingSpec *known, const char *where,
                        Error *error) {
     Setting setting = {0};
     int shown = length < 64 ? (int)length : 64;
     const char *equals = memchr(item, '=', length);
     if (equals == NULL || equals == item || equals == item + length - 1)
-        return error_input(error, where, "'%.*s' is no key=value", shown, item);
+        return error_input(error, where, "'%.*s' is not key=value", shown, item);
     size_t key_length = (size_t)(equals - item), value_length = length - key_length - 1;
     if (key_length >= sizeof setting.key || value_length >= sizeof setting.value)
         return error_input(error, where, "'%.*s' is too long; a key has at most %d and a value %d bytes", shown, item,
@@ -80,7 +80,7 @@ bool settings_int(const Settings *settings, const char *key, int minimum, int ma
     if (text == NULL) return true;
     int64_t number;
     if (!parse_int(text, minimum, maximum, &number))
-        return error_input(error, key, "a whole number of %d to %d is needed (got '%.64s')", minimum, maximum, text);
+        return error_input(error, key, "must be a whole number from %d to %d (got '%.64s')", minimum, maximum, text);
     *value = (int)number;
     return true;
 }
@@ -91,7 +91,7 @@ bool settings_float(const Settings *settings, const char *key, float minimum, fl
     if (text == NULL) return true;
     float number;
     if (!parse_float(text, &number) || number < minimum || number > maximum)
-        return error_input(error, key, "a number of %g to %g is needed (got '%.64s')", (double)minimum, (double)maximum,
+        return error_input(error, key, "must be a number from %g to %g (got '%.64s')", (double)minimum, (double)maximum,
                            text);
     *value = number;
     return true;
@@ -101,7 +101,7 @@ bool settings_bool(const Settings *settings, const char *key, bool *value, Error
     const char *text = settings_get(settings, key);
     if (text == NULL) return true;
     bool on = strcmp(text, "on") == 0;
-    if (!on && strcmp(text, "off") != 0) return error_input(error, key, "'on' or 'off' is needed (got '%.64s')", text);
+    if (!on && strcmp(text, "off") != 0) return error_input(error, key, "must be on or off (got '%.64s')", text);
     *value = on;
     return true;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The settings of a method, as they stand on the command line: `name:key=value,key=value`. */
+/* The settings of a method, as on the command line: `name:key=value,key=value`. */
 #pragma once
 #include "common/error.h"
 
@@ -29,10 +29,10 @@ bool settings_known(const SettingSpec *known, const char *key);
 /* The value of key, or NULL. */
 const char *settings_get(const Settings *settings, const char *key);
 
-/* Sets key to value where the settings do not have it yet. False when there is no room. */
+/* Sets key to value unless it is set. False if there is no room. */
 bool settings_default(Settings *settings, const char *key, const char *value);
 
-/* The value of key as a whole number of [minimum, maximum]; *value is left as it is where the key is missing. */
+/* The value of key as a whole number of [minimum, maximum]; *value is unchanged if the key is missing. */
 bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error);
 
 /* The same for a number of [minimum, maximum]. */

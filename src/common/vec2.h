@@ -45,7 +45,7 @@ static inline Mat22 mat22_product(Mat22 a, Mat22 b) {
 
 static inline Mat22 mat22_abs(Mat22 m) { return (Mat22){vec2_abs(m.column1), vec2_abs(m.column2)}; }
 
-/* The double function rounded to float, so that no maths library's sinf can change a bit. */
+/* The double function rounded to float, so that the result does not depend on a maths library's sinf. */
 static inline Mat22 mat22_rotation(float angle) {
     float c = (float)cos((double)angle), s = (float)sin((double)angle);
     return (Mat22){vec2(c, s), vec2(-s, c)};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A look at a zip's directory before libzip sees it. */
+/* Checks a zip's directory before libzip reads it. */
 #include "common/zip_directory.h"
 
 #include <errno.h>
@@ -8,14 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The end record (its size, and how long a comment may follow it), and the locator that is before it in a
- * zip64. */
+/* The end record (its size, and the longest comment that may follow it), and the locator before it in a zip64. */
 enum { END_SIZE = 22, COMMENT_MAX = 65535, LOCATOR_SIZE = 20, TAIL_MAX = LOCATOR_SIZE + END_SIZE + COMMENT_MAX };
 
-/* 256 arrays with names of 64 bytes take half of it. */
+/* Twice the size of 256 entries with names of 64 bytes. */
 enum { DIRECTORY_MAX = 65536 };
 
-/* Compressed data looks like an end record once in 65,000 files; more of them are no accident. */
+/* Compressed data looks like an end record once in 65,000 files; more of them are an attack. */
 enum { ENDS_MAX = 3 };
 
 static uint32_t little_endian(const unsigned char *bytes) {
@@ -28,11 +27,11 @@ static bool check_tail(const unsigned char *tail, size_t length, uint64_t size, 
         if (memcmp(tail + i, "PK\5\6", 4) != 0) continue;
         uint64_t directory = little_endian(tail + i + 12), position = size - length + i;
         bool zip64 = i >= LOCATOR_SIZE && memcmp(tail + i - LOCATOR_SIZE, "PK\6\7", 4) == 0;
-        /* libzip itself refuses one that would begin before the file does. */
+        /* libzip refuses a directory that begins before the file. */
         if (zip64 || (directory > DIRECTORY_MAX && directory <= position) || ++ends > ENDS_MAX)
-            return error_input(error, path, "no .npz: its directory is too large");
+            return error_input(error, path, "not .npz: its directory is too large");
     }
-    return ends > 0 || error_input(error, path, "no .npz, or cut off");
+    return ends > 0 || error_input(error, path, "not .npz, or cut off");
 }
 
 bool zip_directory_check(int descriptor, uint64_t size, const char *path, Error *error) {
@@ -44,7 +43,7 @@ bool zip_directory_check(int descriptor, uint64_t size, const char *path, Error 
         ssize_t got = pread(descriptor, tail + used, length - used, (off_t)(size - length + used));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) done = error_system(error, path, "cannot read: %s", strerror(errno));
-        if (got == 0) done = error_input(error, path, "no .npz, or cut off");
+        if (got == 0) done = error_input(error, path, "not .npz, or cut off");
         if (got > 0) used += (size_t)got;
     }
     done = done && check_tail(tail, length, size, path, error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): for touching pairs of bodies, what the solver saw
-   and what it did. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
+/* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): inputs and changes by the solver, for touching pairs
+   of bodies. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
@@ -14,8 +14,8 @@
 
 enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
 
-/* Where the changes come from: the engine's own solution, or the converged one of the same contact problem
-   (reference/reference.h): the paper's more accurate source. */
+/* The source of the changes: the engine's solution, or the converged solution of the same contact problem
+   (reference/reference.h), the paper's more accurate source. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
 extern const char *const dataset_label_names[DATASET_LABELS];
@@ -27,8 +27,8 @@ typedef struct Dataset {
     int64_t rows;
     float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
     float *changes;  /* [rows, pair_change_count(target)]: pair_step_changes() */
-    float *context;  /* [rows, PAIR_CONTEXT]: pair_context(), what laws in the loss need; NULL where not recorded */
-    int32_t *launch; /* [rows] which launch the row comes from */
+    float *context;  /* [rows, PAIR_CONTEXT]: pair_context(), for laws in the loss; NULL if not recorded */
+    int32_t *launch; /* [rows] launch of the row */
     int32_t *frame;  /* [rows] number of the step */
     int32_t *bodies; /* [rows, 2] */
     int launches;
@@ -39,10 +39,10 @@ typedef struct Dataset {
     char scenes[DATASET_MAX_SCENES][DATASET_NAME_SIZE];
 } Dataset;
 
-/* Numbers in a row of inputs. */
+/* Number of inputs. */
 static inline int dataset_inputs(const Dataset *dataset) { return pair_views[dataset->view].count; }
 
-/* Whether a row is of a launch that is held out. */
+/* True if the row's launch is held out. */
 static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
     return dataset->launch_test[dataset->launch[row]] != 0;
 }
@@ -50,19 +50,19 @@ static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
-    FloatRange bomb_x; /* m: launches of each scene swept over x, rotation and spin the scene's; may have none */
-    int random;        /* further launches of each scene: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
+    FloatRange bomb_x; /* m: swept launches of each scene, with its rotation and spin; count may be 0 */
+    int random;        /* random launches of each scene: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
     PairView view;
     PairTarget target;
     DatasetLabels labels;
-    int every;     /* of the rows of a launch, the first and every so many after it; 0 or 1: all */
-    bool context;  /* record it too; for TARGET_PAIR */
+    int every;     /* keep every n-th row of a launch, from the first on; 0 or 1: all */
+    bool context;  /* record the context; for TARGET_PAIR */
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;
 
-/* Runs every launch of every scene by the engine and records it. The result does not depend on the number of
-   threads. ERROR_INPUT where a scene cannot be read or has no bomb, there are less than 5 launches a scene (so that one
-   can be held out), the target has no labels, or progress asks to stop. */
+/* Runs every launch of every scene with the engine and records it. The result does not depend on the number of threads.
+   ERROR_INPUT if a scene cannot be read or has no bomb, there are fewer than 5 launches per scene (one must be held
+   out), the target has no such labels, or progress requests a stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dataset files: .npz with version, kind ("dataset"), scenes (text, a name a line), view, target, labels
-   (words), launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
-   changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and where it was recorded context [rows, 17]. */
+/* Dataset files: .npz with version, kind ("dataset"), scenes (text, one name per line), view, target, labels (words),
+   launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
+   changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and, if recorded, context [rows, 17]. */
 #include "dataset/dataset.h"
 
 #include "common/npz.h"
@@ -77,7 +77,7 @@ static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error
         if (dataset->scene_count == DATASET_MAX_SCENES)
             return error_input(error, path, "scenes: more than %d names", DATASET_MAX_SCENES);
         if (length == 0 || length >= DATASET_NAME_SIZE)
-            return error_input(error, path, "scenes: a name of %zu bytes; 1 to %d are possible", length,
+            return error_input(error, path, "scenes: a name of %zu bytes; expected 1 to %d", length,
                                DATASET_NAME_SIZE - 1);
         char *name = dataset->scenes[dataset->scene_count++];
         memcpy(name, line, length);
@@ -87,7 +87,7 @@ static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error
     return true;
 }
 
-/* The place of a stored word in a list. */
+/* The index of a stored word in a list. */
 static bool read_word(NpzFile *file, const char *path, const char *name, const char *const *words, int count,
                       int *place, Error *error) {
     char text[32];
@@ -117,7 +117,7 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
     if (!npz_shape(file, "inputs", NPZ_FLOAT32, 2, shape, error)) return false;
     const int64_t rows = shape[0];
     if (launches < 1 || launches > INT_MAX || rows < 1)
-        return error_input(error, path, "%lld launches and %lld rows; at least one of each is needed",
+        return error_input(error, path, "%lld launches and %lld rows; expected at least one of each",
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
@@ -150,8 +150,8 @@ static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, 
                           Error *error) {
     for (int64_t i = 0; i < count; i++)
         if (numbers[i] < 0 || numbers[i] >= limit)
-            return error_input(error, path, "%s: number %lld is %d; 0 to %d are possible", name, (long long)i,
-                               numbers[i], limit - 1);
+            return error_input(error, path, "%s: number %lld is %d; expected 0 to %d", name, (long long)i, numbers[i],
+                               limit - 1);
     return true;
 }
 
@@ -168,12 +168,12 @@ static bool check_context(const Dataset *dataset, const char *path, Error *error
 static bool check_split(const Dataset *dataset, const char *path, Error *error) {
     for (int i = 0; i < dataset->launches; i++)
         if (dataset->launch_test[i] > 1)
-            return error_input(error, path, "launch_test: number %d is %d; 0 and 1 are possible", i,
+            return error_input(error, path, "launch_test: number %d is %d; expected 0 and 1", i,
                                dataset->launch_test[i]);
     int64_t test_rows = 0;
     for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset_is_test(dataset, r);
     if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, path, "%lld rows to train on and %lld to test on; at least one of each is needed",
+    return error_input(error, path, "%lld rows to train on and %lld to test on; expected at least one of each",
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 

@@ -17,7 +17,7 @@ static void put_launch(Dataset *dataset, int i, const Launch *launch) {
     dataset->launch_spin[i] = launch->spin;
 }
 
-/* Swept first, then random. */
+/* Swept launches first, then random ones. */
 static void put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
                          const gsl_rng *generator) {
     int i = 0;
@@ -38,7 +38,7 @@ static void put_launches(Dataset *dataset, const DatasetOptions *options, Scene 
     }
 }
 
-/* Draws which launches are held out. */
+/* Draws the held-out launches. */
 static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *generator) {
     int *order = malloc((size_t)launches_per_scene * sizeof *order);
     if (order == NULL) return false;
@@ -52,7 +52,7 @@ static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *gener
     return true;
 }
 
-/* The split comes first: it is the same whatever is drawn after it. */
+/* The split is drawn first, so that it does not depend on later draws. */
 static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes) {
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return false;

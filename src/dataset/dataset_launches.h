@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which launches a dataset is recorded from. */
+/* The launches of a dataset. */
 #pragma once
 #include "dataset/dataset.h"
 
-/* The launch tables, without rows yet; a fifth of each scene's launches, at least one, is held out. */
+/* Fills the launch tables; a fifth of each scene's launches, at least one, is held out. */
 Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error);
 
 /* Launch i of the dataset in its scene; shares the scene's bodies. */

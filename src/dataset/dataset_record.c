@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the threads share. */
+/* State shared by the threads. */
 typedef struct Recording {
     Scene *const *scenes;
     const Dataset *dataset;
     LaunchRows *launches;
-    int every; /* rows to keep */
+    int every; /* keep every n-th row */
 } Recording;
 
-/* Gives back the memory of the other rows: of many launches it would be more than a machine has. */
+/* Drops and frees the other rows now: those of many launches would exceed memory. */
 static void thin(LaunchRows *launch, size_t every) {
     size_t kept = 0;
     for (size_t row = 0; row < launch->count; row += every) launch->rows[kept++] = launch->rows[row];
@@ -48,7 +48,7 @@ static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t
     launch->rows = NULL;
 }
 
-/* Puts the launches' rows behind each other, in the order of the launches. */
+/* Concatenates the rows of the launches, in order. */
 static bool gather(Dataset *dataset, LaunchRows *launches, bool context, Error *error) {
     size_t rows = 0;
     for (int i = 0; i < dataset->launches; i++) {
@@ -65,7 +65,7 @@ static bool gather(Dataset *dataset, LaunchRows *launches, bool context, Error *
         dataset->bodies == NULL || (context && dataset->context == NULL))
         return error_memory(error, "dataset");
     dataset->rows = (int64_t)rows;
-    /* Most of the time is the system's, which makes memory where it is first touched. */
+    /* In parallel: most of the time is page faults at the first write. */
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < dataset->launches; i++) place_rows(dataset, &launches[i], i, launches[i].start);
     if (rows == 0) return error_input(error, "dataset", "no two bodies touched in any launch");
@@ -91,18 +91,18 @@ static Dataset *record_scenes(const DatasetOptions *options, Scene *const *scene
 
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error) {
     if (options->scene_count < 1 || options->scene_count > DATASET_MAX_SCENES) {
-        error_input(error, "dataset", "%d scenes; from 1 to %d can be recorded", options->scene_count,
-                    DATASET_MAX_SCENES);
+        error_input(error, "dataset", "%d scenes; expected 1 to %d", options->scene_count, DATASET_MAX_SCENES);
         return NULL;
     }
     int launches = options->bomb_x.count + options->random;
     if (launches < 5 || launches > DATASET_MAX_LAUNCHES) {
-        error_input(error, "dataset", "%d launches a scene; at least 5 are needed to hold out a fifth, at most %d",
+        error_input(error, "dataset", "%d launches per scene; expected at least 5, to hold out a fifth, and at most %d",
                     launches, DATASET_MAX_LAUNCHES);
         return NULL;
     }
     if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
-        error_input(error, "dataset", "the target impulse is what a sweep of the engine does; the reference has none");
+        error_input(error, "dataset",
+                    "the target impulse is the change by a sweep of the engine; the reference has none");
         return NULL;
     }
     if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS) {
@@ -111,7 +111,7 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
     }
     if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact) {
         error_input(error, "dataset",
-                    "the target points needs the view contact or neighbours, where the warm start can be seen");
+                    "the target points needs the view contact or neighbours, whose inputs have the warm start");
         return NULL;
     }
     if (options->context && options->target != TARGET_PAIR) {

@@ -8,9 +8,9 @@
 
 #include <stdlib.h>
 
-/* The launch that is being recorded. */
+/* The launch being recorded. */
 typedef struct LaunchRecorder {
-    const Dataset *dataset; /* what is to be recorded */
+    const Dataset *dataset; /* options of the recording */
     const Scene *scene;
     LaunchRows *launch;
     Reference reference;
@@ -24,7 +24,7 @@ static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSo
     return true;
 }
 
-/* The solution of the step's problem that the changes are taken from. */
+/* The solution that the changes are computed from. */
 static bool label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, Error *error) {
     const ContactProblem *problem = world_problem(world);
     *solution = *world_solution(world);
@@ -42,7 +42,7 @@ static bool label(LaunchRecorder *recorder, const World *world, ContactSolution 
     return true;
 }
 
-/* A new row of a pair with its inputs at this moment (pair_inputs). NULL when memory is short. */
+/* Appends a row of a pair with its current inputs (pair_inputs). NULL when memory is short. */
 static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProblem *problem, int first,
                         const PairMoment *now) {
     LaunchRows *launch = recorder->launch;
@@ -55,14 +55,14 @@ static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProble
     return row;
 }
 
-/* changes[3]: from one velocity to another. */
+/* changes[3]: the difference of two velocities. */
 static void difference(float *changes, const BodyVelocity *to, const BodyVelocity *from) {
     changes[0] = to->linear.x - from->linear.x;
     changes[1] = to->linear.y - from->linear.y;
     changes[2] = to->angular - from->angular;
 }
 
-/* As the engine begins a step, and as its contacts first see it: after the warm start. */
+/* The state after the warm start, before the first sweep. */
 static SequentialOptions sweeps_of(const Scene *scene) {
     return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true, .relaxation = 1};
 }
@@ -75,7 +75,7 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
     if (!label(recorder, world, &solution, error) || !reserve(&recorder->now, problem, &begun, error)) return false;
     const bool by_contact = pair_views[dataset->view].by_contact;
     if (by_contact) sequential_impulses_begin(problem, &options, &begun);
-    if (dataset->view == PAIR_NEIGHBOURS) pair_moment_look(&recorder->now, problem);
+    if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&recorder->now, problem);
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
         PairRow *row = add_row(recorder, frame, problem, first, by_contact ? &recorder->now : NULL);
         if (row == NULL) return error_memory(error, "dataset");
@@ -85,7 +85,7 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
     return true;
 }
 
-/* The engine's sweeps once more, in plain text, pair by pair. */
+/* Repeats the engine's sweeps with the scalar reference implementation, pair by pair. */
 static bool record_visits(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
     const SequentialOptions options = sweeps_of(recorder->scene);

@@ -9,12 +9,12 @@ typedef struct PairRow {
     int32_t frame, bodies[2];
 } PairRow;
 
-/* What one launch gave. */
+/* The rows of one launch. */
 typedef struct LaunchRows {
     PairRow *rows;
     size_t count, capacity;
-    size_t start; /* of its rows in the dataset */
+    size_t start; /* index of its first row in the dataset */
 } LaunchRows;
 
-/* Runs a launched scene by the engine, and appends the rows that the dataset's view, target and labels ask for. */
+/* Runs a launched scene with the engine, and appends the rows for the dataset's view, target and labels. */
 bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error);

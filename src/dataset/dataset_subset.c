@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Copies items of `size` bytes; NULL (and so no copy) where there are none. */
+/* Copies items of `size` bytes; NULL (and no copy) if there are none. */
 static bool copy(void **to, const void *from, size_t count, size_t size) {
     if (from == NULL) return true;
     *to = malloc((count + 1) * size);
@@ -27,7 +27,7 @@ static bool is_kept(const Dataset *dataset, const bool *keep, int64_t row) {
     return dataset_is_test(dataset, row) || keep[dataset->launch[row]];
 }
 
-/* The kept rows of an array with `size` bytes a row. */
+/* Copies the kept rows of an array with `size` bytes per row. */
 static bool copy_rows(void **to, const void *from, const Dataset *dataset, const bool *keep, int64_t kept,
                       size_t size) {
     if (from == NULL) return true;
@@ -72,7 +72,7 @@ Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) 
     return error_memory(error, "dataset"), NULL;
 }
 
-/* Numbers of the launches to train on that have rows into order[launches]; returns how many. */
+/* Writes the indices of training launches with rows to order[launches]; returns their number. */
 static int list_launches(const Dataset *dataset, bool *has_rows, int *order) {
     int count = 0;
     for (int64_t row = 0; row < dataset->rows; row++) has_rows[dataset->launch[row]] = !dataset_is_test(dataset, row);
@@ -84,8 +84,7 @@ static int list_launches(const Dataset *dataset, bool *has_rows, int *order) {
 static bool draw(const Dataset *dataset, int count, uint64_t seed, bool *keep, int *order, Error *error) {
     const int launches = list_launches(dataset, keep, order);
     if (count < 1 || count > launches)
-        return error_input(error, "dataset", "%d launches to train on asked for; 1 to %d are possible", count,
-                           launches);
+        return error_input(error, "dataset", "%d training launches requested; expected 1 to %d", count, launches);
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return error_memory(error, "dataset");
     gsl_rng_set(generator, (unsigned long)seed);

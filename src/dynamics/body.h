@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/* What a body is made from. Zero-initialised, it is a static box of no size: set at least size and mass. */
+/* The definition of a body. Zero-initialise, then set at least size and mass. */
 typedef struct BodyDef {
     Vec2 size;              /* full width and height, m, > 0 */
     bool fixed;             /* static: infinite mass */
@@ -24,5 +24,5 @@ typedef struct Body {
     float angular_velocity;
     Vec2 size;
     float friction;
-    float inv_mass, inv_inertia; /* 0 where static */
+    float inv_mass, inv_inertia; /* 0 if static */
 } Body;

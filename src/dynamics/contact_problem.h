@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One step's contact problem, frozen: everything a contact solver may see. Datasets are recorded from it and
-   accuracy is scored on it. Source: Catto, "Iterative Dynamics with Temporal Coherence" (2005) and "Fast and
-   Simple Physics using Sequential Impulses" (GDC 2006). */
+/* The contact problem of one step, frozen: the whole input of a contact solver. Datasets are recorded from it and
+   accuracy is measured on it. Source: Catto, "Iterative Dynamics with Temporal Coherence" (2005) and "Fast and Simple
+   Physics using Sequential Impulses" (GDC 2006). */
 #pragma once
 #include "common/vec2.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* m: overlap that is left as it is. */
+/* m: penetration that position correction leaves. */
 #define CONTACT_SLOP 0.01f
 
 typedef struct ProblemBody {
@@ -20,7 +20,7 @@ typedef struct ProblemBody {
     float angular_velocity;      /* rad/s */
 } ProblemBody;
 
-/* Can an impulse move it? */
+/* True for a body of finite mass. */
 static inline bool problem_body_moves(const ProblemBody *body) {
     return body->inv_mass != 0.0f || body->inv_inertia != 0.0f;
 }
@@ -30,11 +30,11 @@ typedef struct ContactPoint {
     Vec2 position;                   /* m, world */
     Vec2 normal;                     /* unit, from a to b; the tangent is normal turned a quarter clockwise */
     Vec2 arm_a, arm_b;               /* m, from the centre of each body to the point */
-    float separation;                /* m, negative where they overlap */
+    float separation;                /* m, negative for penetration */
     float mass_normal, mass_tangent; /* kg, effective masses along normal and tangent */
     float friction;                  /* coefficient of the pair */
-    float bias;       /* m/s, target normal velocity that undoes penetration; 0 without position correction */
-    uint32_t feature; /* which edges made the point: the same number means the same point a step later */
+    float bias;                      /* m/s, target normal velocity of position correction; 0 without it */
+    uint32_t feature;                /* feature id: the edges that make the point; identifies it in the next step */
     float warm_normal, warm_tangent; /* N s, impulses of the step before; 0 without warm starting or when new */
 } ContactPoint;
 
@@ -55,19 +55,19 @@ typedef struct ContactImpulse {
     float normal, tangent; /* N s, accumulated over the step; b gets +, a gets - */
 } ContactImpulse;
 
-/* What a network said in a step and no body got to feel, counted by contacts or pairs. */
+/* Network outputs of a step that were discarded or corrected, counted by contact or pair. */
 typedef struct NetworkFallbacks {
-    int not_finite;      /* no numbers, or beyond all bounds: the solver goes on without */
-    int outside_cone;    /* impulses that were brought into the friction cone */
-    int beyond_training; /* steps in which it was not asked, as they are not like those that it learned from */
+    int not_finite;      /* NaN, infinite or out of bounds; discarded */
+    int outside_cone;    /* impulses that were clamped to the friction cone */
+    int beyond_training; /* steps without the network, because the gate found them unlike its training data */
 } NetworkFallbacks;
 
 /* What a solver fills in; the arrays are the caller's. */
 typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */
-    ContactImpulse *impulses; /* [contact_count]; zeros from a method that has none */
-    /* N s: momentum that the method made from nothing: sum over pairs of moving bodies of |ma dva + mb dvb|; 0 where it
-       pushes by impulses */
+    ContactImpulse *impulses; /* [contact_count]; zeros from a method without impulses */
+    /* N s: momentum that the method created: the sum over pairs of moving bodies of |ma dva + mb dvb|; 0 for a method
+       that applies impulses */
     float momentum_error;
     NetworkFallbacks fallbacks; /* zeros without a network */
 } ContactSolution;

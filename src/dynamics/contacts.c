@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of every float operation here is fixed: reference trajectories are compared bit by bit. */
+/* The order of all float operations is fixed: reference trajectories are compared bit by bit. */
 #include "dynamics/contacts.h"
 
 #include "common/array.h"
@@ -15,7 +15,7 @@ void contact_set_free(ContactSet *set) {
     *set = (ContactSet){0};
 }
 
-/* Room for every candidate to touch in two points. */
+/* Reserves two points for every candidate pair. */
 static bool reserve(ContactSet *set, size_t pairs) {
     return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
            array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
@@ -86,7 +86,7 @@ void contact_set_forget(ContactSet *set, int body) {
         if (set->arbiters[i].a == body || set->arbiters[i].b == body) set->arbiters[i].count = 0;
 }
 
-/* Mass that an impulse along the unit vector `axis` meets at the contact. */
+/* The effective mass of a contact along the unit vector `axis`. */
 static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm_a, Vec2 arm_b, Vec2 axis) {
     float along_a = vec2_dot(arm_a, axis), along_b = vec2_dot(arm_b, axis);
     float inverse = a->inv_mass + b->inv_mass;
@@ -96,8 +96,8 @@ static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm
 }
 
 float contact_bias(float separation, float inverse_dt) {
-    /* Only what is deeper than the slop is pushed out, or resting contacts would jitter between touching and apart
-       (Catto 2006). */
+    /* Correct only penetration beyond the slop; otherwise resting contacts jitter between touching and apart (Catto
+       2006). */
     const float bias_factor = 0.2f;
     float depth = separation + CONTACT_SLOP;
     return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The contacts of one step, arbiter by arbiter. An arbiter is a touching pair; it persists, and its impulses with
-   it, as long as the pair touches. */
+/* The contacts of one step, grouped by arbiter. An arbiter is a touching pair; it persists with its impulses as long as
+   the pair touches. */
 #pragma once
 #include "collision/broad_phase.h"
 #include "dynamics/contact_problem.h"
@@ -10,15 +10,15 @@
 
 typedef struct Arbiter {
     int a, b;         /* bodies, a < b */
-    int first, count; /* its points in the contact set; none where it is forgotten */
+    int first, count; /* its points in the contact set; count is 0 once forgotten */
 } Arbiter;
 
-/* Zero-initialise; arrays grow and are reused. Arbiters rise by (a, b). */
+/* Zero-initialise; arrays grow and are reused. Arbiters are sorted by (a, b). */
 typedef struct ContactSet {
     int arbiter_count, contact_count;
     Arbiter *arbiters;
     ContactPoint *contacts;   /* [contact_count] */
-    ContactImpulse *impulses; /* [contact_count] what the solver found */
+    ContactImpulse *impulses; /* [contact_count] of the solution */
     size_t arbiter_capacity, contact_capacity, impulse_capacity;
 } ContactSet;
 
@@ -27,19 +27,18 @@ void contact_set_free(ContactSet *set);
 /* Makes `to` equal to `from`. False when memory is short. */
 bool contact_set_copy(ContactSet *to, const ContactSet *from);
 
-/* Narrow phase over the candidate pairs; fills where, which way and how deep, not yet masses or impulses. False
-   when memory is short. */
+/* Narrow phase over the candidate pairs; fills positions, normals, separations and feature ids, not masses or impulses.
+   False when memory is short. */
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes);
 
-/* Hands the impulses of the last step to the points of this one that have the same pair and feature. */
+/* Sets warm-start impulses: those of the last step at the point with the same pair and feature id. */
 void contact_set_match(ContactSet *set, const ContactSet *last);
 
-/* The pairs of a body are as if they had never touched. Contacts and impulses stay where they are: who reads the last
-   step still needs them. */
+/* Forgets the arbiters of a body. Contacts and impulses stay in memory, for readers of the last step. */
 void contact_set_forget(ContactSet *set, int body);
 
-/* The velocity, m/s, that position correction wants along the normal (Baumgarte 1972, as Box2D-Lite has it);
-   inverse_dt in 1/s. */
+/* The target velocity of position correction along the normal, m/s (Baumgarte 1972, as in Box2D-Lite); inverse_dt in
+   1/s. */
 float contact_bias(float separation, float inverse_dt);
 
 /* Lever arms, effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body.

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a problem's file holds of each body and each contact. Only problem_read.c and problem_write.c include this. */
+/* The arrays that a problem file holds for bodies and contacts. Only problem_read.c and problem_write.c include
+   this. */
 #pragma once
 #include "dynamics/problem_file.h"
 
@@ -7,7 +8,7 @@
 
 #define PROBLEM_KIND "contact problem"
 
-/* An array of floats, `count` for each body or contact, and where they stand in its record. */
+/* An array of `count` floats per body or contact, and their offset in its struct. */
 typedef struct ProblemField {
     const char *name;
     size_t offset;

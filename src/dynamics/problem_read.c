@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact problems from files, which may hold anything. */
+/* Reads contact problems from untrusted files. */
 #include "common/npz.h"
 #include "dynamics/problem_fields.h"
 
@@ -16,7 +16,7 @@ static bool read_head(StoredProblem *stored, NpzFile *file, const char *path, Er
         !npz_read_scalar(file, "dt", NPZ_FLOAT32, &dt, sizeof dt, error) ||
         !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
         return false;
-    if (frame < 1) return error_input(error, path, "frame is %d; 1 is the first", (int)frame);
+    if (frame < 1) return error_input(error, path, "frame must be at least 1 (got %d)", (int)frame);
     if (!isfinite(dt) || !(dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)dt);
     stored->frame = frame;
@@ -31,9 +31,9 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
         !npz_shape(file, "contact_bodies", NPZ_INT32, 2, contacts, error))
         return false;
     if (bodies < 1 || bodies > PROBLEM_MAX_BODIES)
-        return error_input(error, path, "%lld bodies; 1 to %d are possible", (long long)bodies, PROBLEM_MAX_BODIES);
+        return error_input(error, path, "%lld bodies; expected 1 to %d", (long long)bodies, PROBLEM_MAX_BODIES);
     if (contacts[0] > PROBLEM_MAX_CONTACTS)
-        return error_input(error, path, "%lld contacts; at most %d are possible", (long long)contacts[0],
+        return error_input(error, path, "%lld contacts; expected at most %d", (long long)contacts[0],
                            PROBLEM_MAX_CONTACTS);
     ContactProblem *problem = &stored->problem;
     problem->body_count = (int)bodies;
@@ -45,7 +45,7 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
     return (stored->bodies != NULL && stored->contacts != NULL) || error_memory(error, path);
 }
 
-/* Reads one array of floats into the records. */
+/* Reads one array of floats into the structs. */
 static bool read_field(NpzFile *file, const char *path, const ProblemField *field, void *records, size_t record_size,
                        int count, Error *error) {
     const int64_t shape[] = {count, field->count};
@@ -102,18 +102,18 @@ static bool check_body(const StoredProblem *stored, int i, const char *path, Err
 static bool check_pair(const StoredProblem *stored, int i, const char *path, Error *error) {
     const ContactPoint *contact = &stored->contacts[i];
     if (contact->a < 0 || contact->a >= contact->b || contact->b >= stored->problem.body_count)
-        return error_input(error, path, "contact %d: no pair of bodies (%d and %d)", i, contact->a, contact->b);
+        return error_input(error, path, "contact %d: bodies %d and %d are not a valid pair", i, contact->a, contact->b);
     if (stored->bodies[contact->a].inv_mass + stored->bodies[contact->b].inv_mass == 0.0f)
         return error_input(error, path, "contact %d: bodies %d and %d are both static", i, contact->a, contact->b);
     const ContactPoint *last = contact - 1;
     if (i > 0 && (contact->a < last->a || (contact->a == last->a && contact->b < last->b)))
-        return error_input(error, path, "contact %d: pairs do not rise", i);
+        return error_input(error, path, "contact %d: pairs are not sorted", i);
     return true;
 }
 
 static bool check_contact(const StoredProblem *stored, int i, const char *path, Error *error) {
     const ContactPoint *contact = &stored->contacts[i];
-    const float unit_tolerance = 1e-3f; /* far above what float rounding does to a rotation's column */
+    const float unit_tolerance = 1e-3f; /* far above the rounding error of a rotation's column */
     if (!check_pair(stored, i, path, error)) return false;
     if (!(fabsf(vec2_dot(contact->normal, contact->normal) - 1.0f) <= unit_tolerance))
         return error_input(error, path, "contact %d: its normal is not of unit length", i);

@@ -7,7 +7,7 @@
 
 enum { HEAD_ARRAYS = 8, ARRAYS = HEAD_ARRAYS + BODY_FIELDS + CONTACT_FIELDS };
 
-/* The arrays of these fields, one after the other in `numbers`; returns where the next ones begin. */
+/* Fills the arrays of these fields, in sequence in `numbers`; returns the end. */
 static float *split_records(NpzArray *arrays, const ProblemField *fields, int field_count, const void *records,
                             size_t record_size, int count, float *numbers) {
     for (int f = 0; f < field_count; f++) {
@@ -35,7 +35,7 @@ bool problem_write(const ContactProblem *problem, const char *scene, int frame, 
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     int32_t(*pairs)[2] = calloc(contacts + 1, sizeof *pairs);
     uint32_t *features = calloc(contacts + 1, sizeof *features);
-    /* Every float of the two records, and no more than the records are large. */
+    /* The size of the structs bounds the number of floats in them. */
     float *numbers = malloc(bodies * sizeof *problem->bodies + (contacts + 1) * sizeof *problem->contacts);
     bool done = pairs != NULL && features != NULL && numbers != NULL;
     if (done) {

@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Everything of one body that a step writes is in arrays of body_capacity items, so that a step which fails can
-   leave `bodies` and `last` as they were. */
+/* A step writes per-body data to arrays of body_capacity items, so that a failed step leaves `bodies` and `last`
+   unchanged. */
 struct World {
     WorldDef def;
     int body_count, bomb;
-    int posed; /* bodies with boxes and bounds: of the pose in `moved`, and after a step that failed in `bodies` */
+    int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
     size_t body_capacity;
-    Body *bodies, *moved; /* now, and after the step in progress */
+    Body *bodies, *moved; /* before and after the step in progress */
     bool *fixed;
     float *friction;
     Box *boxes;
@@ -95,7 +95,7 @@ bool world_add_body(World *world, const BodyDef *def, Error *error) {
 void world_remove_last_body(World *world) {
     int body = --world->body_count;
     contact_set_forget(&world->last, body);
-    /* Or a body added in its place would get its box. */
+    /* A body added in its place must not reuse its box. */
     if (world->posed > body) world->posed = body;
     if (world->bomb == body) world->bomb = -1;
 }
@@ -140,7 +140,7 @@ static bool collide(World *world) {
            contact_set_collide(&world->next, &world->pairs, world->boxes);
 }
 
-/* The bodies as the solver meets them: gravity is in their velocities already. */
+/* The bodies of the contact problem, with gravity in their velocities. */
 static void apply_gravity(World *world, float dt) {
     for (int i = 0; i < world->body_count; i++) {
         const Body *body = &world->bodies[i];
@@ -149,7 +149,7 @@ static void apply_gravity(World *world, float dt) {
                              body->velocity, body->angular_velocity};
         if (body->inv_mass == 0.0f) continue;
         out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
-        /* No torque, yet not nothing: -0 becomes 0 here, as it does in Box2D-Lite. */
+        /* No torque, but this turns -0 into 0, as Box2D-Lite does. */
         out->angular_velocity += 0.0f;
     }
 }
@@ -159,7 +159,7 @@ static bool is_finite_body(const Body *body) {
            isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity);
 }
 
-/* One body after the step. Semi-implicit Euler: the new velocity carries it. */
+/* Moves one body: semi-implicit Euler, with the new velocity. */
 static void move_body(World *world, int i) {
     float dt = world->problem.dt;
     Body *body = &world->moved[i];
@@ -173,12 +173,12 @@ static void move_body(World *world, int i) {
 static bool check_finite(const World *world, Error *error) {
     for (int i = 0; i < world->body_count; i++)
         if (!is_finite_body(&world->moved[i]))
-            return error_input(error, "world", "body %d left the finite numbers (its velocity was %g, %g m/s)", i,
-                               (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
+            return error_input(error, "world", "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)",
+                               i, (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
     return true;
 }
 
-/* The step has succeeded: what it wrote becomes the state, and what was the state is written over next time. */
+/* After success: swaps the new state with the old one, which the next step overwrites. */
 static void commit(World *world) {
     Body *bodies = world->bodies;
     world->bodies = world->moved;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The changing half of a simulation: bodies, the contacts that persist between them, and the step.
+/* The mutable state of a simulation: bodies, the contacts that persist between them, and the step.
 
    Collision detection, then gravity, then the contact problem with its warm start, then a contact solver, then
-   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), same bits (tests/reference). */
+   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), with the same bits (tests/reference). */
 #pragma once
 #include "common/error.h"
 #include "dynamics/body.h"
@@ -21,46 +21,47 @@ typedef struct World World;
 World *world_create(const WorldDef *def, Error *error);
 void world_destroy(World *world);
 
-/* Adds a body; its index is the number of bodies before it. Indices order the pairs, so the order matters. */
+/* Adds a body; its index is the number of bodies before it. Pairs are sorted by index, so the order of bodies
+   matters. */
 bool world_add_body(World *world, const BodyDef *def, Error *error);
 
-/* Takes out the body added last. Its contacts are forgotten; those between the others keep their impulses. There is
-   one. */
+/* Removes the body added last, and its contacts; the other contacts keep their impulses. The world must have a body. */
 void world_remove_last_body(World *world);
 
 /* Tells the contact problem which body is the bomb (-1: none). */
 void world_set_bomb(World *world, int body);
 
-/* Makes `to` what `from` is now, whatever it was. False with error set when memory is short. */
+/* Copies the state of `from` to `to`. False with error set when memory is short. */
 bool world_copy(World *to, const World *from, Error *error);
 
-/* A step, in parts, for who solves contacts in another way than by one call of a solver. Until the step ends, the
-   world is as it was before: a step begun may be forgotten.
+/* A step in parts, for steppers that need more than one solver call. The world does not change before the step ends, so
+   a step need not be ended.
 
-   Begins one of dt seconds (dt > 0): collision detection, gravity, the contact problem. Its arrays and the solution,
-   which is to be filled in, are the world's and last until the next step. */
+   Begins a step of dt seconds (dt > 0): collision detection, gravity, the contact problem. The world owns the problem's
+   arrays and the solution, which the caller fills; they are valid until the next step. */
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error);
 
-/* Ends it by the solution filled in: the new velocities carry the bodies. On failure world is unchanged and error
-   says which body left the finite numbers. */
+/* Ends the step: moves the bodies by the velocities of the solution. On failure the world is unchanged and error names
+   the first body whose state is NaN or infinite. */
 bool world_end_step(World *world, Error *error);
 
-/* Where a body is. */
+/* Position and angle of a body. */
 typedef struct BodyPose {
     Vec2 position; /* m */
     float angle;   /* rad */
 } BodyPose;
 
-/* The same, with the poses [body_count] that the bodies came to on the way. */
+/* The same, with the final poses [body_count] given, for steppers that integrate in substeps. */
 bool world_end_step_at(World *world, const BodyPose *poses, Error *error);
 
-/* Advances world by dt seconds: begins, solves, ends. On failure world is unchanged and error says why. */
+/* Advances the world by dt seconds. On failure the world is unchanged; error names the first body whose state is NaN or
+   infinite, or is the solver's. */
 bool world_step(World *world, const ContactSolver *solver, float dt, Error *error);
 
 int world_body_count(const World *world);
 const Body *world_bodies(const World *world);
 
-/* The contact problem of the last step and its solution; valid until the next, also where bodies have been added or
-   taken out meanwhile. Empty before the first. */
+/* The contact problem of the last step and its solution; valid until the next step, even if bodies are added or removed
+   meanwhile. Empty before the first step. */
 const ContactProblem *world_problem(const World *world);
 const ContactSolution *world_solution(const World *world);

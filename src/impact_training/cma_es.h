@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CMA-ES: derivative-free minimisation of a function of up to some dozens of variables. Source: Hansen, "The CMA
-   Evolution Strategy: A Tutorial" (2016), with its default parameters, without negative weights. */
+   Evolution Strategy: A Tutorial" (2016), with its default parameters, without negative weights. Own code on
+   GSL's matrices and eigenvalues: of derivative-free minimisers GSL has the Nelder-Mead simplex only. */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"

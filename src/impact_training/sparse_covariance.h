@@ -4,7 +4,9 @@
        C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of the rows of (A Q - 1 mean^T Q))^T / n
 
    C is never formed. The mean is subtracted from the products A Q and not from the rows, which would lose their
-   sparsity. The last term is 0 except for rounding errors, which it cancels if the mean is large. */
+   sparsity. The last term is 0 except for rounding errors, which it cancels if the mean is large. Own code:
+   GSL's sparse matrices are in double, multiply a single vector at a time and use one thread; here the bits are the
+   same for any number of threads (tests/impact_training/test_principal.c). */
 #pragma once
 #include "common/error.h"
 

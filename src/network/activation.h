@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sigmoid, tanh and the rectifier in fixed operations, so that they have the same bits whatever the maths library,
-   compiler or instruction set; and without calls or branches, so that a loop over them becomes vector instructions.
+/* Sigmoid, tanh and ReLU in a fixed sequence of operations, so that the bits do not depend on maths library, compiler
+   or instruction set, and without calls or branches, so that the compiler vectorises loops over them.
 
-   float32 for inference: within 3 units in the last place of a normal result (a sigmoid below 2^-127 is 0). In
-   double a correctly rounded activation would cost more than the rest of a network. double for training: within
-   4e-16 of the result.
+   float32 for inference: within 3 units in the last place of a normal result (a sigmoid below 2^-127 is 0). In double a
+   correctly rounded activation would cost more than the rest of a network. double for training: within 4e-16 of the
+   result.
 
-   e^y = 2^k e^r with k the integer nearest to y / ln 2: ln 2 is subtracted in two parts, the first short enough for
-   its multiples to be exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980). The polynomial is
-   e^r = 1 + r + r^2 g(r), g interpolated at the Chebyshev nodes of |r| <= ln 2 / 2; its error is 1.0e-8 in float32,
-   1.7e-17 in double. Adding 1.5 * 2^23 (2^52 in double) rounds to an integer and leaves it in the low bits of the sum. */
+   e^y = 2^k e^r with k the integer nearest to y / ln 2: ln 2 is subtracted in two parts, the first short enough for its
+   multiples to be exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980). The polynomial is e^r =
+   1 + r + r^2 g(r), g interpolated at the Chebyshev nodes of |r| <= ln 2 / 2; its error is 1.0e-8 in float32, 1.7e-17
+   in double. Adding 1.5 * 2^23 (2^52 in double) rounds to an integer and leaves it in the low bits of the sum. */
 #pragma once
 #include <math.h>
 #include <stdint.h>
@@ -46,10 +46,10 @@ static inline double exp_parts(double y, double *power) {
     return r + r2 * (g0 + r4 * (g4 + r4 * g8));
 }
 
-/* Comparisons are written so that NaN passes through. */
+/* Comparisons are written so that NaN propagates. */
 static inline float sigmoid_float(float x) {
     float y = -x > 88.8f ? 88.8f : -x, power, q = exp_parts_float(y, &power), e = power * (1.0f + q);
-    return 1.0f / (1.0f + (x > 87.0f ? 0.0f : e)); /* e^-87 is nothing beside 1 */
+    return 1.0f / (1.0f + (x > 87.0f ? 0.0f : e)); /* e^-87 is negligible beside 1 */
 }
 
 static inline double sigmoid(double x) {
@@ -57,7 +57,7 @@ static inline double sigmoid(double x) {
     return 1.0 / (1.0 + (x > 700.0 ? 0.0 : e));
 }
 
-/* (e^y - 1) / (e^y + 1) with y = 2 |x|; e^y - 1 = 2^k (e^r - 1) + (2^k - 1) loses nothing near 0. */
+/* (e^y - 1) / (e^y + 1) with y = 2 |x|; e^y - 1 = 2^k (e^r - 1) + (2^k - 1) keeps full precision near 0. */
 static inline float tanh_float(float x) {
     float y = 2.0f * fabsf(x), power;
     y = y > 20.0f ? 20.0f : y;

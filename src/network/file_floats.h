@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The float32 arrays of a network's file: one list of them serves writing and reading. */
+/* The float32 arrays of a network's file: one list for writing and reading. */
 #pragma once
 #include "common/npz.h"
 
-/* What numbers may be; none may be other than finite. */
+/* The range of the numbers, which must be finite. */
 typedef struct FloatRange {
     float least, most;
     const char *words; /* "must be ..." */
@@ -15,11 +15,11 @@ typedef struct FileFloats {
     char name[24];
     int rank;
     int64_t shape[2];
-    float *numbers; /* of the network, at least as many as the shape says */
+    float *numbers; /* the network's array, at least of the shape's size */
     const FloatRange *range;
 } FileFloats;
 
 NpzArray file_floats_array(const FileFloats *floats);
 
-/* Fills the numbers of each; an error names the file, the array and the number. */
+/* Reads the arrays; an error names the file, the array and the number. */
 bool file_floats_read(NpzFile *file, const FileFloats *list, int count, Error *error);

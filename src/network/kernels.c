@@ -7,7 +7,7 @@ void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
     if (__builtin_cpu_supports("avx512f")) list[count++] = &kernels_avx512;
     if (__builtin_cpu_supports("avx2")) list[count++] = &kernels_avx2;
 #endif
-    list[count++] = &kernels_plain;
+    list[count++] = &kernels_scalar;
     list[count] = NULL;
 }
 

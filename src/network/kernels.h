@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loops over rows, compiled once for each instruction set (see CMakeLists.txt) from kernels_code.h. Every number
-   is made by the same operations in the same order, so all give the same bits; the widest that the CPU has runs. */
+/* The loops over rows, compiled once for each instruction set (see CMakeLists.txt) from kernels_code.h. All perform the
+   same operations in the same order, so they have the same bits; the widest that the CPU supports is used. */
 #pragma once
 #include "network/network_gradient.h"
 
-/* Rows of a batch that go through the layers together: 2 x 10 x 64 numbers stay in the first cache. */
+/* Rows of a batch that pass the layers together: 2 x 10 x 64 numbers stay in the L1 cache. */
 enum { TILE_ROWS = 64, CACHE_LINE = 64 };
 
 typedef struct Kernels {
@@ -19,9 +19,9 @@ typedef struct Kernels {
     double (*dot)(const double *a, const double *b);
 } Kernels;
 
-extern const Kernels kernels_plain, kernels_avx2, kernels_avx512;
+extern const Kernels kernels_scalar, kernels_avx2, kernels_avx512;
 
-/* Those that this CPU can run, widest first; ends with NULL. */
+/* The kernels that this CPU supports, widest first; ends with NULL. */
 enum { KERNELS_MAX = 3 };
 void kernels_list(const Kernels *list[KERNELS_MAX + 1]);
 

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels' code; included once by each kernels_*.c. Rows are innermost and independent, so the compiler turns
-   them into vector instructions without changing a sum's order. In the gradient, each step forward stands beside its
-   step back; B stands for BLOCK_ROWS. */
+/* The kernels' code; included once by each kernels_*.c. Rows are innermost and independent, so the compiler vectorises
+   them without changing the order of sums. In the gradient, each forward step is next to its backward step; B stands
+   for BLOCK_ROWS. */
 #include "network/activation.h"
 #include "network/kernels.h"
 
-/* One register, from any address. Left to itself the compiler keeps an array of sums in memory. */
+/* One register, loaded from any address. Explicit, because the compiler keeps an array of sums in memory. */
 typedef float Floats __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(float)), may_alias));
 typedef double Doubles __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(double)), may_alias));
 
 /* ---- Inference: float32. T stands for TILE_ROWS; a tile is always computed whole, so that the compiler knows the
    length of every loop. */
 
-/* Registers that sums of one output take at once: enough to hide the time that an addition takes. */
+/* Registers for the sums of one output: enough to hide the latency of additions. */
 enum { FLOATS = VECTOR_BYTES / sizeof(float), GROUP = 4, GROUP_ROWS = GROUP * FLOATS };
-_Static_assert(TILE_ROWS % GROUP_ROWS == 0, "a tile is whole groups");
+_Static_assert(TILE_ROWS % GROUP_ROWS == 0, "a tile must consist of whole groups");
 
 /* out[outputs, T] = weights[outputs, inputs] in[inputs, T] + biases[outputs] */
 static void tile_sums(const float *restrict weights, const float *restrict biases, int inputs, int outputs,
@@ -41,7 +41,7 @@ static void tile_activations(Activation activation, float *values, int count) {
 
 static void predict(const Network *network, const float *inputs, float *scratch, float *outputs, int rows, int first,
                     int count) {
-    /* A vector across the border of two cache lines is loaded in two goes. */
+    /* Aligned: a vector across two cache lines takes two loads. */
     float *in = (float *)(((uintptr_t)scratch + CACHE_LINE - 1) & ~(uintptr_t)(CACHE_LINE - 1));
     float *out = in + network_scratch_width(network) * TILE_ROWS;
     for (int i = 0; i < network->widths[0]; i++) {
@@ -67,8 +67,8 @@ static void predict(const Network *network, const float *inputs, float *scratch,
 
 /* ---- Training: double. */
 
-/* Rows that a sum over rows keeps apart, and sums of rows that are carried along at once: the same on every
-   machine, in one to four registers. */
+/* Partial sums of a sum over rows, and the number of sums computed together: the same on every machine, in one to four
+   registers. */
 enum { LANES = 8, DOUBLES = VECTOR_BYTES / sizeof(double), PARTS = LANES / DOUBLES };
 
 static size_t parameter_count(const Network *shape, int l) {
@@ -120,7 +120,7 @@ static void activation_forward(Activation activation, double *values, size_t cou
         for (size_t i = 0; i < count; i++) values[i] = relu(values[i]);
 }
 
-/* d loss / dx = d loss / dy * dy / dx, in place; all slopes follow from y alone. The rectifier's at its kink is 0. */
+/* d loss / dx = d loss / dy * dy / dx, in place; all derivatives follow from y alone. That of ReLU at 0 is 0. */
 static void activation_backward(Activation activation, const double *restrict values, double *restrict deltas,
                                 size_t count) {
     if (activation == ACTIVATION_SIGMOID)

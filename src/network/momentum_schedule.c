@@ -53,11 +53,11 @@ bool momentum_schedules_write(const MomentumSchedules *schedules, const char *pa
     return ok;
 }
 
-/* The numbers of sweeps, checked; their sum in *total. */
+/* Checks the numbers of sweeps; their sum in *total. */
 static int32_t *read_sweeps(NpzFile *file, const char *path, int64_t *count, int64_t *total, Error *error) {
     if (!npz_shape(file, "sweeps", NPZ_INT32, 1, count, error)) return NULL;
     if (*count < 1 || *count > MOMENTUM_MAX_SCHEDULES) {
-        error_input(error, path, "has %lld schedules; 1 to %d are possible", (long long)*count, MOMENTUM_MAX_SCHEDULES);
+        error_input(error, path, "has %lld schedules; expected 1 to %d", (long long)*count, MOMENTUM_MAX_SCHEDULES);
         return NULL;
     }
     int32_t *sweeps = npz_read(file, "sweeps", NPZ_INT32, 1, count, error);

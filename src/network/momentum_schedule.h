@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Learned momentum: one factor before each sweep, a schedule for each number of sweeps it was fitted for. Training
-   writes them, solvers/learned_momentum.c reads them. */
+/* Learned momentum: a schedule has one factor per sweep, and there is one schedule for each number of sweeps that was
+   fitted. Training writes them, solvers/learned_momentum.c reads them. */
 #pragma once
 #include "common/error.h"
 
 enum { MOMENTUM_VERSION = 1, MOMENTUM_MAX_SCHEDULES = 16, MOMENTUM_MAX_SWEEPS = 1000, MOMENTUM_TEXT_SIZE = 512 };
 
-#define MOMENTUM_MAX_FACTOR 2.0f /* more would throw the impulses further ahead than two sweeps carried them */
+#define MOMENTUM_MAX_FACTOR 2.0f /* a larger factor would extrapolate by more than the change of two sweeps */
 
 typedef struct MomentumSchedules {
     int count;
     int sweeps[MOMENTUM_MAX_SCHEDULES];     /* rising */
     float *factors[MOMENTUM_MAX_SCHEDULES]; /* [sweeps], 0 to MOMENTUM_MAX_FACTOR; the first has no effect */
-    char command[MOMENTUM_TEXT_SIZE];       /* that made them */
+    char command[MOMENTUM_TEXT_SIZE];       /* the command that made them */
 } MomentumSchedules;
 
 void momentum_schedules_free(MomentumSchedules *schedules);
 
-/* The factors for that many sweeps, or NULL. */
+/* The schedule for that many sweeps, or NULL. */
 const float *momentum_schedules_find(const MomentumSchedules *schedules, int sweeps);
 
 /* Appends a schedule of a larger number of sweeps than the last; factors are copied. False when memory is short. */
@@ -26,5 +26,5 @@ bool momentum_schedules_add(MomentumSchedules *schedules, int sweeps, const floa
 /* .npz: version, kind ("momentum-schedules"), command, sweeps[count], factors[sum of sweeps], one after the other. */
 bool momentum_schedules_write(const MomentumSchedules *schedules, const char *path, Error *error);
 
-/* ERROR_INPUT, naming the file, for what is damaged, of another version, or out of the bounds above. */
+/* ERROR_INPUT, naming the file, if it is damaged, of another version, or has factors out of bounds. */
 bool momentum_schedules_read(MomentumSchedules *schedules, const char *path, Error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks in memory, and inference with one order of summation. */
+/* Networks in memory, and inference with a fixed order of summation. */
 #include "network/network.h"
 
 #include "network/activation.h"
@@ -10,10 +10,10 @@
 
 static bool check_widths(int layers, const int *widths, Error *error) {
     if (layers < 1 || layers > NETWORK_MAX_LAYERS)
-        return error_input(error, "network", "%d layers of weights; 1 to %d are possible", layers, NETWORK_MAX_LAYERS);
+        return error_input(error, "network", "%d layers of weights; expected 1 to %d", layers, NETWORK_MAX_LAYERS);
     for (int l = 0; l <= layers; l++)
         if (widths[l] < 1 || widths[l] > NETWORK_MAX_WIDTH)
-            return error_input(error, "network", "width %d of layer %d; 1 to %d are possible", widths[l], l,
+            return error_input(error, "network", "width %d of layer %d; expected 1 to %d", widths[l], l,
                                NETWORK_MAX_WIDTH);
     return true;
 }
@@ -24,7 +24,7 @@ static size_t number_count(const Network *network) {
            3 * (size_t)network->widths[network->layers];
 }
 
-/* One block, so that training can take the parameters as one vector. */
+/* One block, so that the parameters are one vector in training. */
 static void place_arrays(Network *network, float *block) {
     for (int l = 0; l < network->layers; l++) {
         network->weights[l] = block;

@@ -21,7 +21,7 @@ static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
 
 enum { ACTIVATION_COUNT = sizeof activation_names / sizeof activation_names[0] };
 
-/* One list serves writing and reading. */
+/* One list for writing and reading. */
 static int list_floats(const Network *network, FileFloats list[MAX_FLOATS]) {
     int count = 0, inputs = network->widths[0], outputs = network->widths[network->layers];
     for (int l = 0; l < network->layers; l++) {
@@ -76,7 +76,7 @@ static int read_widths(NpzFile *file, const char *path, int widths[NETWORK_MAX_L
     int64_t count;
     if (!npz_shape(file, "widths", NPZ_INT32, 1, &count, error)) return 0;
     if (count < 2 || count > NETWORK_MAX_LAYERS + 1)
-        return error_input(error, path, "widths has %lld numbers; 2 to %d are possible", (long long)count,
+        return error_input(error, path, "widths has %lld numbers; expected 2 to %d", (long long)count,
                            NETWORK_MAX_LAYERS + 1);
     int32_t *stored = npz_read(file, "widths", NPZ_INT32, 1, &count, error);
     if (stored == NULL) return 0;
@@ -87,7 +87,7 @@ static int read_widths(NpzFile *file, const char *path, int widths[NETWORK_MAX_L
     }
     free(stored);
     if (bad < 0) return (int)count - 1;
-    return error_input(error, path, "widths[%d] is %d; 1 to %d are possible", bad, widths[bad], NETWORK_MAX_WIDTH);
+    return error_input(error, path, "widths[%d] is %d; expected 1 to %d", bad, widths[bad], NETWORK_MAX_WIDTH);
 }
 
 static bool parse_activation(const char *word, Activation *activation) {
@@ -106,7 +106,7 @@ static bool read_activations(NpzFile *file, const char *path, Network *network, 
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL; count++) {
         if (count == network->layers) return error_input(error, path, "more activations than its %d layers", count);
         if (!parse_activation(word, &network->activations[count]))
-            return error_input(error, path, "activation %d is none of linear, sigmoid, tanh and relu", count);
+            return error_input(error, path, "activation %d is unknown; known: linear, sigmoid, tanh, relu", count);
     }
     if (count == network->layers) return true;
     return error_input(error, path, "%d activations for %d layers", count, network->layers);

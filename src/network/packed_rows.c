@@ -6,7 +6,8 @@
 
 enum { STEPS = INT8_MAX };
 
-static const float nothing = 1e-30f; /* a row of no more than that is 0: its steps would have no finite number */
+static const float nothing =
+    1e-30f; /* a row with no larger number becomes 0, because the reciprocal of its unit is infinite */
 
 bool packed_rows_make(PackedRows *packed, int count, int width) {
     *packed =

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A matrix in a quarter of a float's room: each number a byte, times a unit of its row. Rounding a row to 127 steps of
-   its largest number moves what a network says by less than 1%, which training sees (impact_training/slot_fit.h) and makes up
-   for. */
+/* A quantised matrix, a quarter of the size of floats: each number is a byte, times a unit per row. Rounding to 127
+   steps of the row's largest number changes a network's outputs by less than 1%, and training compensates for it
+   (impact_training/slot_fit.h). */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,7 +12,7 @@ typedef struct PackedRows {
     float *units;    /* [count] */
 } PackedRows;
 
-/* All numbers and units 0. False when memory is short; what there is must be freed all the same. */
+/* All numbers and units 0. False when memory is short; free it in any case. */
 bool packed_rows_make(PackedRows *packed, int count, int width);
 void packed_rows_free(PackedRows *packed);
 

@@ -9,7 +9,7 @@ void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
     if (__builtin_cpu_supports("avx512f")) list[count++] = &row_kernels_avx512;
     if (__builtin_cpu_supports("avx2")) list[count++] = &row_kernels_avx2;
 #endif
-    list[count++] = &row_kernels_plain;
+    list[count++] = &row_kernels_scalar;
     list[count] = NULL;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The code of row_kernels.h; included once by each row_kernels_*.c, which says VECTOR_BYTES. */
+/* The code of row_kernels.h; included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
 #include "network/activation.h"
 #include "network/row_kernels.h"
 
@@ -15,10 +15,10 @@ enum {
     FLOATS = VECTOR_BYTES / sizeof(float),
     LANE_VECTORS = ROW_LANES / FLOATS,            /* registers for the lanes of one row */
     CHAINS = 4,                                   /* sums of each column */
-    GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once: so many registers times CHAINS there are */
+    GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once, in CHAINS times as many registers */
 };
 
-/* As floats; gcc 12 takes a conversion of vectors apart into single bytes. */
+/* Converts to floats; gcc 12 splits a vector conversion into single bytes. */
 static inline Floats load(const int8_t *bytes) {
 #if VECTOR_BYTES == 64
     return (Floats)_mm512_cvtepi32_ps(_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)bytes)));
@@ -38,8 +38,8 @@ static inline __attribute__((always_inline)) void add_row(Floats held[GROUP], co
     for (int v = 0; v < vectors; v++) held[v] += by * load(from + v * FLOATS);
 }
 
-/* The columns from `at` on, as many as `vectors` registers hold, in CHAINS sums each: an addition waits for the one
-   before it, and one chain of them would leave the processor idle. */
+/* The columns from `at` on, as many as `vectors` registers hold, in CHAINS partial sums each, to hide the latency of
+   additions. */
 static inline __attribute__((always_inline)) void add_columns(float *sums, const PackedRows *rows, const int32_t *index,
                                                               const float *numbers, int count, int at,
                                                               const int vectors) {
@@ -101,8 +101,8 @@ static void spread(float *rows, int width, const int32_t *index, const float *nu
     }
 }
 
-static void bend(float *numbers, int count) {
+static void apply_tanh(float *numbers, int count) {
     for (int i = 0; i < count; i++) numbers[i] = tanh_float(numbers[i]);
 }
 
-const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, multiply, spread, bend};
+const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, multiply, spread, apply_tanh};

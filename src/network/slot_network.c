@@ -40,10 +40,10 @@ bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *whe
         shape->bomb >= shape->body_count)
         return error_input(error, where, "%d bodies, of which %d is the bomb", shape->body_count, shape->bomb);
     if (shape->slot_count < 1 || shape->slot_count > SLOTS_MAX)
-        return error_input(error, where, "%d slots, not 1 to %d", shape->slot_count, SLOTS_MAX);
+        return error_input(error, where, "%d slots; expected 1 to %d", shape->slot_count, SLOTS_MAX);
     if (!widths_are_whole(shape->state) || !widths_are_whole(shape->present) || !widths_are_whole(shape->warm) ||
         !widths_are_whole(shape->hidden))
-        return error_input(error, where, "a width is no multiple of %d up to %d", ROW_LANES, SLOT_WIDTH_MAX);
+        return error_input(error, where, "a width is not a multiple of %d up to %d", ROW_LANES, SLOT_WIDTH_MAX);
     for (int i = 0; i < shape->slot_count; i++) {
         const Slot *slot = &slots[i];
         bool known = slot->a >= 0 && slot->a < slot->b && slot->b < shape->body_count;
@@ -52,12 +52,12 @@ bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *whe
             known = last->a < slot->a || (last->a == slot->a &&
                                           (last->b < slot->b || (last->b == slot->b && last->feature < slot->feature)));
         }
-        if (!known) return error_input(error, where, "slot %d is of no two bodies or out of order", i);
+        if (!known) return error_input(error, where, "slot %d has invalid bodies or is not sorted", i);
     }
     return true;
 }
 
-/* Layers, rows and biases one behind the other. */
+/* Layers, rows and biases in one block. */
 static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
     const size_t inputs = (size_t)(ROW_LANES + shape->state + shape->present + shape->warm);
     const size_t hidden = (size_t)shape->hidden, outputs = 2 * (size_t)shape->slot_count;
@@ -78,7 +78,7 @@ static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
            network->high != NULL;
 }
 
-/* Where the slots of each pair begin. */
+/* The first slot of each pair. */
 static void index_pairs(SlotNetwork *network) {
     const int pairs = network->body_count * network->body_count;
     for (int pair = 0, slot = 0; pair <= pairs; pair++) {
@@ -155,7 +155,7 @@ void slot_network_look(const SlotNetwork *network, const SlotView *view, float *
 static void run_layer(const RowKernels *kernels, const SlotLayer *layer, const float *in, float *out) {
     memcpy(out, layer->biases, (size_t)layer->to * sizeof *out);
     kernels->add(out, &layer->packed, NULL, in, layer->from);
-    kernels->bend(out, layer->to);
+    kernels->apply_tanh(out, layer->to);
 }
 
 void slot_network_predict(const SlotNetwork *network, const float *inputs, const SlotView *view, float *first,

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A network for the impacts of one scene: from the state of all its bodies it says, for all its contacts at once, how
-   far their impulses go beyond the warm start. A slot is a contact that may be there: two bodies and a feature, met in
-   training; which of them there are, the step says.
+/* A network for the impacts of one scene: from the state of all bodies it predicts, for all contacts at once, their
+   impulses less the warm start. A slot is a possible contact of the scene: two bodies and a feature that occurred in
+   training. In each step some of the slots are present.
 
-       x  = bomb's state; projections (impact_training/principal.h) of the other bodies' state, of which slots there are, and
-            of their warm impulses
+       x  = bomb's state; projections (impact_training/principal.h) of the other bodies' state, of which slots are
+            present, and of their warm-start impulses
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
 
-   Only the rows of slots that there are get touched. It looks and predicts by rows rounded to bytes (packed_rows.h);
-   those in float are what training changes and files keep. Sums run in a fixed order (row_kernels.h): the same bits
-   everywhere. */
+   Only the rows of present slots are read. Inference uses rows rounded to bytes (packed_rows.h); training and files use
+   the float rows. Sums run in a fixed order (row_kernels.h), for the same bits on every machine. */
 #pragma once
 #include "common/error.h"
 #include "network/row_kernels.h"
@@ -41,7 +40,7 @@ typedef struct Projection {
     PackedRows packed;
 } Projection;
 
-/* Dense layer, input by input. */
+/* Dense layer, one row per input. */
 typedef struct SlotLayer {
     int from, to;
     float *rows;   /* [from, to] */
@@ -50,7 +49,7 @@ typedef struct SlotLayer {
 } SlotLayer;
 
 typedef struct SlotNetwork {
-    int body_count, bomb; /* of the scene, with the bomb; its index */
+    int body_count, bomb; /* bodies of the scene, with the bomb; the bomb's index */
     int slot_count;
     Slot *slots;                  /* [slot_count] rising by a, b, feature */
     Projection bomb_state, state; /* of SLOT_BODY_NUMBERS, and of as many for each body but the bomb */
@@ -59,31 +58,31 @@ typedef struct SlotNetwork {
     float *rows, *biases;         /* [2 slot_count, second.to], [2 slot_count]: the last layer */
     PackedRows packed;            /* its rows */
     float *scale;                 /* [slot_count] N s */
-    float *cap;                   /* [slot_count] N s: a warm impulse is taken up to here */
-    float gate;                   /* m/s: it is asked where the warm start misses the contacts' bias by so much (RMS) */
-    float *low, *high;            /* [inputs] between which it was trained */
-    float bomb_inv_mass;          /* 1/kg: that it was trained with */
-    int sweeps;                   /* that the factors were learned for; 0: none were */
+    float *cap;                   /* [slot_count] N s: larger warm-start impulses are clamped to it */
+    float gate;        /* m/s: the network is used if the warm start's residual (RMS over the contacts) exceeds this */
+    float *low, *high; /* [inputs] range in training */
+    float bomb_inv_mass;            /* 1/kg: in training */
+    int sweeps;                     /* number of sweeps that the factors were fitted for; 0: none */
     float factors[SLOT_SWEEPS_MAX]; /* of momentum, after the network */
-    char scene[SLOT_TEXT_SIZE];     /* that it was trained for */
-    char command[SLOT_TEXT_SIZE];   /* that made it */
-    int32_t *pair_slots;            /* [body_count * body_count + 1] first slot of a pair (a, b) or a later one */
-    float *parameters;              /* what training changes: layers, rows, biases; in one block */
+    char scene[SLOT_TEXT_SIZE];     /* the scene of the training */
+    char command[SLOT_TEXT_SIZE];   /* the command that made it */
+    int32_t *pair_slots;            /* [body_count * body_count + 1] first slot of pair (a, b) or of a later pair */
+    float *parameters;              /* the trained parameters: layers, rows, biases; in one block */
     size_t parameter_count;
-    const RowKernels *kernels; /* that predict; the fastest there are */
+    const RowKernels *kernels; /* for inference; the fastest */
 } SlotNetwork;
 
-/* Numbers of its inputs. */
+/* Sizes of its inputs. */
 static inline int slot_network_inputs(const SlotNetwork *network) { return network->first.from; }
 static inline int slot_network_hidden(const SlotNetwork *network) { return network->second.to; }
 
 typedef struct SlotShape {
     int body_count, bomb, slot_count;
-    int state, present, warm; /* components of each; the bomb has ROW_LANES */
+    int state, present, warm; /* components of each; those of the bomb are ROW_LANES */
     int hidden;               /* width of both hidden layers */
 } SlotShape;
 
-/* ERROR_INPUT, naming `where`, where the shape is out of bounds or the slots do not rise. */
+/* ERROR_INPUT, naming `where`, if the shape is out of bounds or the slots are not sorted. */
 bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *where, Error *error);
 
 /* All numbers 0, the slots copied. ERROR_INPUT as from slot_shape_check(). */
@@ -93,15 +92,16 @@ void slot_network_destroy(SlotNetwork *network);
 /* The slot of a contact, or -1. */
 int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature);
 
-/* Rounds the rows as they are now; a network that was read is rounded already. Of all, or only of the three layers. */
+/* Rounds the current rows: of all matrices, or only of the three layers. A network read from a file is already
+   rounded. */
 void slot_network_pack(SlotNetwork *network);
 void slot_network_pack_layers(SlotNetwork *network);
 
-/* What there is to see. */
+/* The inputs in one step. */
 typedef struct SlotView {
     const float *bomb;       /* [SLOT_BODY_NUMBERS] */
     const float *state;      /* [SLOT_BODY_NUMBERS * (body_count - 1)] */
-    int slot_count;          /* that there are */
+    int slot_count;          /* present */
     const int32_t *slots;    /* [slot_count] */
     const int32_t *impulses; /* [2 slot_count]: 2 slot, 2 slot + 1 */
     const float *ones;       /* [slot_count] 1 each */
@@ -117,6 +117,6 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 
 bool slot_network_write(const SlotNetwork *network, const char *path, Error *error);
 
-/* ERROR_INPUT, naming the file, for what is damaged, of another version or kind, of shapes that do not fit, or holds a
-   number that is not finite, a scale, cap, gate or mass below 0, or factors that momentum_schedule.h would not have. */
+/* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, or holds a NaN
+   or infinite number, a negative scale, cap, gate or mass, or factors out of the bounds of momentum_schedule.h. */
 SlotNetwork *slot_network_read(const char *path, Error *error);

@@ -13,7 +13,7 @@
 
 enum { HEAD_ARRAYS = 10, FLOAT_ARRAYS = 21 };
 
-/* One list serves writing and reading. */
+/* One list for writing and reading. */
 static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
     const Projection *bomb = &network->bomb_state, *state = &network->state, *present = &network->present,
                      *warm = &network->warm;
@@ -45,7 +45,7 @@ static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
     memcpy(list, all, sizeof all);
 }
 
-/* a, b and feature of the slots, one after the other; NULL when memory is short. */
+/* a of all slots, then b, then feature; NULL when memory is short. */
 static int32_t *slot_columns(const SlotNetwork *network) {
     const int count = network->slot_count;
     int32_t *columns = malloc(3 * (size_t)count * sizeof *columns);
@@ -74,7 +74,7 @@ bool slot_network_write(const SlotNetwork *network, const char *path, Error *err
         {.name = "slot_b", .type = NPZ_INT32, .rank = 1, .shape = {count}, .data = slots + count},
         {.name = "slot_feature", .type = NPZ_UINT32, .rank = 1, .shape = {count}, .data = slots + 2 * count},
     };
-    SlotNetwork copy = *network; /* the list is one to read into, too */
+    SlotNetwork copy = *network; /* the list has pointers that are not const */
     FileFloats floats[FLOAT_ARRAYS];
     list_floats(&copy, floats);
     for (int i = 0; i < FLOAT_ARRAYS; i++) arrays[HEAD_ARRAYS + i] = file_floats_array(&floats[i]);
@@ -90,12 +90,12 @@ static bool read_int(NpzFile *file, const char *name, int *number, Error *error)
     return true;
 }
 
-/* The columns of a matrix that must have so many rows: what is made room for, the file must hold. */
+/* The number of columns of a matrix that must have this many rows. Memory is allocated only for what the file holds. */
 static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width, Error *error) {
     int64_t shape[2];
     if (!npz_shape(file, name, NPZ_FLOAT32, 2, shape, error)) return false;
     if (shape[0] != rows || shape[1] > SLOT_WIDTH_MAX)
-        return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); (%lld, up to %d) is needed", name,
+        return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); expected (%lld, up to %d)", name,
                            (long long)shape[0], (long long)shape[1], (long long)rows, SLOT_WIDTH_MAX);
     *width = (int)shape[1];
     return true;
@@ -107,7 +107,7 @@ static bool read_shape(NpzFile *file, SlotShape *shape, Error *error) {
         !npz_shape(file, "slot_a", NPZ_INT32, 1, &slots, error))
         return false;
     if (slots > SLOTS_MAX)
-        return error_input(error, npz_path(file), "%lld slots, not 1 to %d", (long long)slots, SLOTS_MAX);
+        return error_input(error, npz_path(file), "%lld slots; expected 1 to %d", (long long)slots, SLOTS_MAX);
     shape->slot_count = (int)slots;
     return read_width(file, "state_rows", SLOT_BODY_NUMBERS * ((int64_t)shape->body_count - 1), &shape->state, error) &&
            read_width(file, "present_rows", slots, &shape->present, error) &&
@@ -135,8 +135,7 @@ static bool read_contents(NpzFile *file, SlotNetwork *network, Error *error) {
         !read_int(file, "sweeps", &network->sweeps, error))
         return false;
     if (network->sweeps < 0 || network->sweeps > SLOT_SWEEPS_MAX)
-        return error_input(error, npz_path(file), "sweeps is %d; 0 to %d are possible", network->sweeps,
-                           SLOT_SWEEPS_MAX);
+        return error_input(error, npz_path(file), "sweeps is %d; expected 0 to %d", network->sweeps, SLOT_SWEEPS_MAX);
     FileFloats floats[FLOAT_ARRAYS];
     list_floats(network, floats);
     if (!file_floats_read(file, floats, FLOAT_ARRAYS, error)) return false;

@@ -16,7 +16,7 @@ const char *pair_output_names(PairView view, PairTarget target, int outputs) {
     return NULL;
 }
 
-/* A vector's parts along a contact's normal and tangent. */
+/* A vector's components along a contact's normal and tangent. */
 static Vec2 in_contact_frame(const ContactPoint *contact, Vec2 v) {
     return vec2(vec2_dot(v, contact->normal), vec2_dot(v, vec2_cross_scalar(contact->normal, 1.0f)));
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the laws of physics need to know of a touching pair to judge a change of its velocities: more than a network is
-   shown. */
+/* The data of a touching pair that the laws of physics (training/law_terms.h) need, beyond the inputs of a network. */
 #pragma once
 #include "dynamics/contact_problem.h"
 
-/* Where in a pair's context is what. Vectors in world axes. */
+/* Indices into a pair's context. Vectors in world axes. */
 enum {
     CONTEXT_INV_MASS_A,    /* 1/kg, 0 for a static body */
     CONTEXT_INV_INERTIA_A, /* 1/(kg m^2) */
@@ -21,5 +20,5 @@ enum {
 /* Fills the context of the pair whose contacts begin at `first`. */
 void pair_context(const ContactProblem *problem, int first, float context[PAIR_CONTEXT]);
 
-/* What is wrong with a context read from a file, whose numbers are finite; NULL where nothing is. */
+/* Returns why a context of finite numbers is invalid, or NULL. */
 const char *pair_context_fault(const float context[PAIR_CONTEXT]);

@@ -27,9 +27,9 @@ ContactSolution pair_moment_solution(const PairMoment *moment) {
     return (ContactSolution){moment->velocities, moment->impulses, 0, {0}};
 }
 
-/* Adds `sign` times what the contact's own push does to a body. */
-static void add_push(BodyVelocity *velocity, const ContactProblem *problem, const ContactPoint *contact,
-                     ContactImpulse push, int body, float sign) {
+/* Adds `sign` times the change of a body's velocity by the contact's Jacobi impulse. */
+static void add_impulse(BodyVelocity *velocity, const ContactProblem *problem, const ContactPoint *contact,
+                        ContactImpulse push, int body, float sign) {
     const ProblemBody *pushed = &problem->bodies[body];
     Vec2 impulse = vec2_add(vec2_scale(push.normal, contact->normal),
                             vec2_scale(push.tangent, vec2_cross_scalar(contact->normal, 1.0f)));
@@ -41,8 +41,8 @@ static void add_push(BodyVelocity *velocity, const ContactProblem *problem, cons
 
 static float clamp(float value, float low, float high) { return value < low ? low : value > high ? high : value; }
 
-/* The accumulated impulses that would stop the approach and the sliding here, less those so far. */
-static ContactImpulse push_alone(const PairMoment *moment, const ContactProblem *problem, int i) {
+/* The impulses of one visit of this contact, less those so far. */
+static ContactImpulse jacobi_impulse(const PairMoment *moment, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const ContactImpulse so_far = moment->impulses[i];
     const Vec2 velocity =
@@ -54,19 +54,19 @@ static ContactImpulse push_alone(const PairMoment *moment, const ContactProblem 
     return (ContactImpulse){normal - so_far.normal, tangent - so_far.tangent};
 }
 
-void pair_moment_look(PairMoment *moment, const ContactProblem *problem) {
+void pair_moment_jacobi(PairMoment *moment, const ContactProblem *problem) {
     memset(moment->pushes, 0, (size_t)problem->body_count * sizeof *moment->pushes);
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        const ContactImpulse push = moment->alone[i] = push_alone(moment, problem, i);
-        add_push(&moment->pushes[contact->a], problem, contact, push, contact->a, 1);
-        add_push(&moment->pushes[contact->b], problem, contact, push, contact->b, 1);
+        const ContactImpulse push = moment->alone[i] = jacobi_impulse(moment, problem, i);
+        add_impulse(&moment->pushes[contact->a], problem, contact, push, contact->a, 1);
+        add_impulse(&moment->pushes[contact->b], problem, contact, push, contact->b, 1);
     }
 }
 
 BodyVelocity pair_moment_others(const PairMoment *moment, const ContactProblem *problem, int first, int body) {
     BodyVelocity others = moment->pushes[body];
     for (int i = first, end = first + pair_contact_count(problem, first); i < end; i++)
-        add_push(&others, problem, &problem->contacts[i], moment->alone[i], body, -1);
+        add_impulse(&others, problem, &problem->contacts[i], moment->alone[i], body, -1);
     return others;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A moment within a step, as pairs see it: velocities and impulses so far, and what the contacts around would do next. */
+/* The state within a step between two sweeps: velocities and impulses so far, and one Jacobi sweep from there. */
 #pragma once
 #include "dynamics/contact_problem.h"
 
@@ -10,22 +10,22 @@
 typedef struct PairMoment {
     BodyVelocity *velocities; /* [body_count] */
     ContactImpulse *impulses; /* [contact_count] so far */
-    /* filled by pair_moment_look(): */
-    ContactImpulse *alone; /* [contact_count] what each contact would add if it were the only one */
-    BodyVelocity *pushes;  /* [body_count] what these would change of each body, all together */
+    /* filled by pair_moment_jacobi(): */
+    ContactImpulse *alone; /* [contact_count] added by each contact alone */
+    BodyVelocity *pushes;  /* [body_count] change of each body by all of these */
     size_t velocity_capacity, impulse_capacity, alone_capacity, push_capacity;
 } PairMoment;
 
 void pair_moment_free(PairMoment *moment);
 
-/* Makes room for a problem; the caller fills velocities and impulses. False when memory is short. */
+/* Reserves memory for a problem; the caller fills velocities and impulses. False when memory is short. */
 bool pair_moment_reserve(PairMoment *moment, const ContactProblem *problem);
 
-/* The velocities and impulses as a solution to be filled in. */
+/* The velocities and impulses as a solution for a solver to fill. */
 ContactSolution pair_moment_solution(const PairMoment *moment);
 
-/* Lets every contact look: one visit each, all from these same velocities (a sweep of Jacobi's). */
-void pair_moment_look(PairMoment *moment, const ContactProblem *problem);
+/* One Jacobi sweep: visits every contact once, all from the same velocities. */
+void pair_moment_jacobi(PairMoment *moment, const ContactProblem *problem);
 
-/* Of these pushes, those by other pairs than the one whose contacts begin at `first`, on one of its two bodies. */
+/* Of `pushes`, the part by other pairs than the one whose contacts begin at `first`, on one of its two bodies. */
 BodyVelocity pair_moment_others(const PairMoment *moment, const ContactProblem *problem, int first, int body);

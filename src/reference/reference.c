@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NNCG: nonsmooth nonlinear conjugate gradients over sweeps of projected Gauss-Seidel.
 
-   A sweep over all contacts (the map of sequential impulses, in double) turns impulses p into p'. Its step is taken
-   as a steepest descent, and the steps are made conjugate as Fletcher and Reeves do:
+   One sweep of projected Gauss-Seidel over all contacts, in double, maps impulses p to p'. Its step serves as the
+   gradient of a Fletcher-Reeves conjugate gradient method:
 
-       g = p - p',  beta = |g|^2 / |g of the sweep before|^2,  d' = beta d - g,  p = p' + beta d.
+       g = p - p',  beta = |g|^2 / |g of the previous sweep|^2,  d' = beta d - g,  p = p' + beta d.
 
-   Velocities are linear in the impulses: theirs is the same recursion. Source: Silcowitz, Niebuhr, Poulsen, Erleben,
-   "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force Problems" (2010). They begin anew
-   (d' = -g, p = p') where beta > 1. Here that is done where a step turns against d, and beta is at most 1: contacts
-   that share a load in more than one way drift at constant speed, beta = 1, until one slips or parts, and the
-   published rule stops every second step of that (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
-   Schemes", 2015). A third to a tenth of the sweeps for the same error.
+   Velocities are linear in the impulses, so the same recursion holds for them. Source: Silcowitz, Niebuhr, Poulsen,
+   Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force Problems" (2010). The paper
+   restarts (d' = -g, p = p') if beta > 1. This implementation restarts if a step points against d, and limits beta to
+   1: redundant contacts drift at constant speed, beta = 1, until one slips or separates, and the published rule stops
+   every second step of that (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). A third to
+   a tenth of the sweeps for the same error.
 
-   Fails slowly where such a drift is long; the residual says so. */
+   Fails by slow convergence if such a drift is long; the residual shows it. */
 #include "reference/reference_units.h"
 #include "sweeps/sweeps.h"
 
@@ -28,12 +28,12 @@ static void swap_sums(Reference *r) {
 static ReferenceSweep sweep(Reference *r, double beta) {
     swap_sums(r);
     r->sweeps++;
-    bool lanes = !r->plain && sweeps_can(SWEEP_AVX2);
-    return lanes ? reference_sweep_avx2(r, beta) : reference_sweep_plain(r, beta);
+    bool lanes = !r->scalar && sweeps_can(SWEEP_AVX2);
+    return lanes ? reference_sweep_avx2(r, beta) : reference_sweep_scalar(r, beta);
 }
 
-/* Ends with a sweep that began where another left off: its change is the residual of what the first one left, and
-   that is kept. */
+/* Ends with a plain sweep from the current impulses: its change is their residual, and the impulses before it are the
+   result. */
 static void iterate(Reference *r, double tolerance, int max_sweeps) {
     double before = 0, beta = 0;
     for (;;) {
@@ -56,7 +56,7 @@ bool reference_solve(Reference *reference, const ContactProblem *problem, double
     if (!reference_load(reference, problem)) return error_memory(error, "reference");
     reference_start(reference, problem, start);
     iterate(reference, tolerance, problem->contact_count > 0 ? max_visits / problem->contact_count : 0);
-    reference_hand_out(reference, problem);
+    reference_store(reference, problem);
     return true;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sweep of the reference, four pairs at a time: operation by operation the text of reference_sweep.c, without fused
-   multiply-add, which would round once where that text rounds twice. */
+/* A sweep of the reference, four pairs at a time: the operations of reference_sweep.c, without fused multiply-add,
+   which rounds once where that file rounds twice. */
 #include "reference/reference_units.h"
 
 #ifdef TWINBOX_AVX
@@ -17,7 +17,7 @@ typedef struct Side {
     Lanes x, y, spin;
 } Side;
 
-/* What ReferenceSweep holds, lane by lane. */
+/* ReferenceSweep, lane by lane. */
 typedef struct LaneSweep {
     Lanes squared, along, change;
 } LaneSweep;
@@ -27,7 +27,7 @@ INLINE Lanes subtract(Lanes x, Lanes y) { return _mm256_sub_pd(x, y); }
 INLINE Lanes multiply(Lanes x, Lanes y) { return _mm256_mul_pd(x, y); }
 INLINE Lanes magnitude(Lanes x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
 INLINE Lanes negative(Lanes x) { return _mm256_xor_pd(_mm256_set1_pd(-0.0), x); }
-/* x > y ? x : y and x < y ? x : y, zeros of either sign included. */
+/* x > y ? x : y and x < y ? x : y, also for zeros of either sign. */
 INLINE Lanes larger(Lanes x, Lanes y) { return _mm256_max_pd(x, y); }
 INLINE Lanes smaller(Lanes x, Lanes y) { return _mm256_min_pd(x, y); }
 
@@ -68,14 +68,14 @@ INLINE void apply(Side *side, const double row[3][REFERENCE_LANES], Lanes impuls
 }
 
 /* p = p' + beta d and d' = beta d - g. */
-INLINE Lanes go_on(Lanes value, Lanes step, double *direction, Lanes beta) {
+INLINE Lanes advance(Lanes value, Lanes step, double *direction, Lanes beta) {
     Lanes carried = multiply(beta, _mm256_loadu_pd(direction));
     Lanes tiny = _mm256_set1_pd(reference_floor);
     _mm256_storeu_pd(direction, subtract(add(add(carried, step), tiny), tiny));
     return add(value, carried);
 }
 
-/* The impulses of the pairs, in `sums`, and their changes: reference_sweep.c. */
+/* The impulses of the pairs, in `sums`, and their changes, as in reference_sweep.c. */
 INLINE void solve_pairs(const ReferenceGroup *group, const Lanes *before, const Lanes *wanted, Lanes *sums,
                         Lanes *steps) {
     Lanes limit = _mm256_setzero_pd();
@@ -103,8 +103,8 @@ INLINE LaneSweep visit(Reference *r, int i, Lanes beta) {
     Lanes squares[REFERENCE_ROWS], products[REFERENCE_ROWS], change = _mm256_setzero_pd();
     for (int k = 0; k < REFERENCE_ROWS; k++) {
         const ReferenceRow *row = &group->rows[k];
-        before[k] = go_on(_mm256_loadu_pd(r->sums_before[i].rows[k]), _mm256_loadu_pd(r->steps[i].rows[k]),
-                          r->direction[i].rows[k], beta);
+        before[k] = advance(_mm256_loadu_pd(r->sums_before[i].rows[k]), _mm256_loadu_pd(r->steps[i].rows[k]),
+                            r->direction[i].rows[k], beta);
         wanted[k] =
             subtract(add(before[k], _mm256_loadu_pd(row->target)), add(along_row(&a, row->a), along_row(&b, row->b)));
     }
@@ -123,11 +123,11 @@ INLINE LaneSweep visit(Reference *r, int i, Lanes beta) {
     return (LaneSweep){sum_four(squares), sum_four(products), change};
 }
 
-INLINE void go_on_momenta(Reference *r, Lanes beta) {
+INLINE void advance_momenta(Reference *r, Lanes beta) {
     for (int i = 0; i < r->body_count; i++) {
         double *now = &r->momenta[i].x, *before = &r->momenta_before[i].x;
         Lanes value = _mm256_loadu_pd(now), step = subtract(value, _mm256_loadu_pd(before));
-        value = go_on(value, step, &r->momenta_direction[i].x, beta);
+        value = advance(value, step, &r->momenta_direction[i].x, beta);
         _mm256_storeu_pd(now, value);
         _mm256_storeu_pd(before, value);
     }
@@ -149,7 +149,7 @@ INLINE double largest_lane(Lanes x) {
 
 TARGET ReferenceSweep reference_sweep_avx2(Reference *r, double factor) {
     Lanes beta = _mm256_set1_pd(factor);
-    go_on_momenta(r, beta);
+    advance_momenta(r, beta);
     LaneSweep all = {_mm256_setzero_pd(), _mm256_setzero_pd(), _mm256_setzero_pd()};
     for (int i = 0; i < r->group_count; i++) {
         LaneSweep found = visit(r, i, beta);

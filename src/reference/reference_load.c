@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact problems into the groups of the reference's sweeps. */
+/* Packs contact problems into the groups of the reference's sweeps. */
 #include "common/array.h"
 #include "reference/reference_units.h"
 #include "sweeps/colours.h"
@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum {
-    SECOND_POINT = -1, /* in Reference.rounds: visited with the contact before it */
+    SECOND_POINT = -1, /* in Reference.rounds: visited with the previous contact */
     NUMBERS = 4        /* for each impulse */
 };
 
@@ -42,10 +42,10 @@ static bool reserve_groups(Reference *r, int count) {
 
 static bool same_pair(const ContactPoint *x, const ContactPoint *y) { return x->a == y->a && x->b == y->b; }
 
-/* Pairs of the last round may share bodies: one a group there. */
+/* Pairs of the last round may share bodies: there, one pair per group. */
 static int lanes_of(int round) { return round < COLOURS - 1 ? REFERENCE_LANES : 1; }
 
-/* A round is a colour: of pairs that share no moving body. Returns the number of groups that they fill. */
+/* A round is a colour (sweeps/colours.h): its pairs share no moving body. Returns the number of groups. */
 static int find_rounds(Reference *r, const ContactProblem *problem) {
     int pairs[COLOURS] = {0}, groups = 0;
     memset(r->taken, 0, (size_t)problem->body_count * sizeof *r->taken);
@@ -58,7 +58,7 @@ static int find_rounds(Reference *r, const ContactProblem *problem) {
     return groups;
 }
 
-/* Half a row: what an impulse along x, y does to one body; a velocity that no impulse changes goes to the target. */
+/* Half a row: the effect of an impulse along x, y on one body. The velocity of a static body is added to the target. */
 static void load_half(ReferenceRow *row, double half[3][REFERENCE_LANES], int lane, double scale,
                       const ProblemBody *body, Vec2 arm, double x, double y) {
     const double inverse[] = {(double)body->inv_mass, (double)body->inv_mass, (double)body->inv_inertia};

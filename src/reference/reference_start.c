@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Impulses and velocities into the units of the reference's sweeps, and back. */
+/* Converts impulses and velocities to the units of the reference's sweeps, and back. */
 #include "reference/reference_units.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@ static void add_impulse(ReferenceVelocity *velocity, const ProblemBody *body, Ve
     velocity->spin += (double)body->inv_inertia * ((double)arm.x * y - (double)arm.y * x);
 }
 
-/* The velocities that impulses give, in the problem's units and order. */
+/* The velocities for given impulses, in the problem's units and order. */
 static void apply_impulses(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
@@ -43,7 +43,7 @@ static void start_momenta(Reference *r, const ContactProblem *problem) {
     memset(r->momenta_direction, 0, size);
 }
 
-/* One point of a group's pairs, from the impulses of the problem or back into them. */
+/* Copies one point of a group's pairs from the impulses of the problem, or back. */
 static void start_point(Reference *r, const ContactProblem *problem, int i, int k) {
     for (int lane = 0; lane < REFERENCE_LANES; lane++) {
         int contact = r->groups[i].contacts[k][lane];
@@ -54,7 +54,7 @@ static void start_point(Reference *r, const ContactProblem *problem, int i, int 
     }
 }
 
-static void hand_out_point(Reference *r, const ContactProblem *problem, int i, int k) {
+static void store_point(Reference *r, const ContactProblem *problem, int i, int k) {
     for (int lane = 0; lane < REFERENCE_LANES; lane++) {
         int contact = r->groups[i].contacts[k][lane];
         if (contact < 0) continue;
@@ -86,8 +86,8 @@ void reference_start(Reference *r, const ContactProblem *problem, const ContactI
     r->sweeps = 0;
 }
 
-void reference_hand_out(Reference *r, const ContactProblem *problem) {
+void reference_store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < r->group_count; i++)
-        for (int k = 0; k < REFERENCE_POINTS; k++) hand_out_point(r, problem, i, k);
+        for (int k = 0; k < REFERENCE_POINTS; k++) store_point(r, problem, i, k);
     apply_impulses(r, problem);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sweep of the reference, pair by pair: for every processor. */
+/* A sweep of the reference, pair by pair: the scalar reference implementation. */
 #include "reference/reference_units.h"
 
 #include <math.h>
@@ -15,25 +15,25 @@ static void apply(ReferenceMomentum *body, const double row[3][REFERENCE_LANES],
 }
 
 /* p = p' + beta d and d' = beta d - g. */
-static double go_on(double value, double step, double *direction, double beta) {
+static double advance(double value, double step, double *direction, double beta) {
     double carried = beta * *direction;
     *direction = (carried + step + reference_floor) - reference_floor;
     return value + carried;
 }
 
-static void go_on_momentum(ReferenceMomentum *now, ReferenceMomentum *before, ReferenceMomentum *direction,
-                           double beta) {
-    now->x = before->x = go_on(now->x, now->x - before->x, &direction->x, beta);
-    now->y = before->y = go_on(now->y, now->y - before->y, &direction->y, beta);
-    now->spin = before->spin = go_on(now->spin, now->spin - before->spin, &direction->spin, beta);
+static void advance_momentum(ReferenceMomentum *now, ReferenceMomentum *before, ReferenceMomentum *direction,
+                             double beta) {
+    now->x = before->x = advance(now->x, now->x - before->x, &direction->x, beta);
+    now->y = before->y = advance(now->y, now->y - before->y, &direction->y, beta);
+    now->spin = before->spin = advance(now->spin, now->spin - before->spin, &direction->spin, beta);
 }
 
 static double sum_four(const double *x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* From a pair's impulses before the visit, and those that each row alone would want by the velocities that the visit
-   meets, the impulses after it and their changes. */
+/* From a pair's impulses before the visit, and those that solve each row alone at the velocities before the visit: the
+   impulses after it and their changes. */
 static void solve_pair(const ReferenceGroup *group, int lane, const double *before, const double *wanted, double *sums,
                        double *steps) {
     double limit = 0;
@@ -60,7 +60,7 @@ static ReferenceSweep visit(Reference *r, int i, int lane, double beta) {
     for (int k = 0; k < REFERENCE_ROWS; k++) {
         const ReferenceRow *row = &group->rows[k];
         before[k] =
-            go_on(r->sums_before[i].rows[k][lane], r->steps[i].rows[k][lane], &r->direction[i].rows[k][lane], beta);
+            advance(r->sums_before[i].rows[k][lane], r->steps[i].rows[k][lane], &r->direction[i].rows[k][lane], beta);
         wanted[k] = (before[k] + row->target[lane]) - (along_row(&a, row->a, lane) + along_row(&b, row->b, lane));
     }
     solve_pair(group, lane, before, wanted, sums, steps);
@@ -78,9 +78,9 @@ static ReferenceSweep visit(Reference *r, int i, int lane, double beta) {
     return (ReferenceSweep){sum_four(squares), sum_four(products), change};
 }
 
-ReferenceSweep reference_sweep_plain(Reference *r, double beta) {
+ReferenceSweep reference_sweep_scalar(Reference *r, double beta) {
     for (int i = 0; i < r->body_count; i++)
-        go_on_momentum(&r->momenta[i], &r->momenta_before[i], &r->momenta_direction[i], beta);
+        advance_momentum(&r->momenta[i], &r->momenta_before[i], &r->momenta_direction[i], beta);
     double squared[REFERENCE_LANES] = {0}, along[REFERENCE_LANES] = {0}, change = 0;
     for (int i = 0; i < r->group_count; i++) {
         for (int lane = 0; lane < REFERENCE_LANES && r->groups[i].contacts[0][lane] >= 0; lane++) {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* |u - v|^2, the spin's square weighed. */
+/* |u - v|^2 with a weight for the spin's square. */
 static double squared_distance(const ReferenceVelocity *u, const ReferenceVelocity *v, double spin_weight) {
     double x = u->x - v->x, y = u->y - v->y, spin = u->spin - v->spin;
     return x * x + y * y + spin_weight * (spin * spin);

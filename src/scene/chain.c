@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The number being read, for its messages. */
+/* The number being read, for messages. */
 typedef struct Chain {
     const YamlTree *tree;
     int node;
@@ -19,7 +19,7 @@ bool chain_is(const YamlTree *tree, int node) {
     return tree->nodes[node].kind == YAML_SCALAR && strpbrk(yaml_text(tree, node), "*/$") != NULL;
 }
 
-/* A parameter of the name that the text begins with, or NULL. */
+/* The parameter whose name begins the text, or NULL. */
 static const SceneParameter *find(const Parameters *parameters, const char *text, size_t length) {
     for (int i = 0; i < parameters->count; i++) {
         const SceneParameter *parameter = &parameters->items[i];
@@ -28,7 +28,7 @@ static const SceneParameter *find(const Parameters *parameters, const char *text
     return NULL;
 }
 
-/* " with ratio = 10, size = 2": the parameters that the text names. */
+/* " with ratio = 10, size = 2": the parameters in the text. */
 static void add_values(const Parameters *parameters, const char *text, char *out, size_t room) {
     bool named[SCENE_MAX_PARAMETERS] = {false};
     for (const char *name = text; (name = strchr(name, '$')) != NULL;) {
@@ -45,7 +45,7 @@ static void add_values(const Parameters *parameters, const char *text, char *out
     }
 }
 
-/* The text, and what its names stand for. */
+/* The text, and the values of its names. */
 static ChainShown show_text(const YamlTree *tree, int node) {
     ChainShown shown;
     snprintf(shown.text, sizeof shown.text, "%s", yaml_show(tree, node).text);
@@ -67,21 +67,21 @@ static bool malformed(const Chain *chain, Error *error) {
                       yaml_show(tree, chain->node).text);
 }
 
-/* The value of the name that the text begins with, behind its '$'. */
+/* The value of the name that begins the text, without its '$'. */
 static bool take_name(const Chain *chain, const char *text, double *value, const char **rest, Error *error) {
     Parameters *parameters = chain->tree->parameters;
     size_t length = strspn(text, PARAMETER_LETTERS);
     if (length == 0)
-        return yaml_error(chain->tree, chain->node, error, "%s: the name of a parameter must follow the '$' (got %s)",
+        return yaml_error(chain->tree, chain->node, error, "%s: a parameter's name must follow the '$' (got %s)",
                           chain->what, yaml_show(chain->tree, chain->node).text);
     if (parameters == NULL)
-        return yaml_error(chain->tree, chain->node, error, "%s may not be made of parameters itself (got %s)",
-                          chain->what, yaml_show(chain->tree, chain->node).text);
+        return yaml_error(chain->tree, chain->node, error, "%s must not contain parameters (got %s)", chain->what,
+                          yaml_show(chain->tree, chain->node).text);
     const SceneParameter *parameter = find(parameters, text, length);
     if (parameter == NULL) {
         char name[SCENE_PARAMETER_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), text);
-        return yaml_error(chain->tree, chain->node, error, "%s: unknown parameter '$%s'; %s", chain->what, name,
+        return yaml_error(chain->tree, chain->node, error, "%s: '$%s' is not a parameter; %s", chain->what, name,
                           parameters_hint(parameters, name).text);
     }
     parameters->used[parameter - parameters->items] = true;
@@ -102,8 +102,8 @@ static bool apply(const Chain *chain, char operation, double number, double *val
                           show_text(chain->tree, chain->node).text);
     *value = operation == '/' ? *value / number : *value * number;
     return isfinite(*value) ||
-           yaml_error(chain->tree, chain->node, error, "%s leaves the finite numbers on the way (got %s)", chain->what,
-                      show_text(chain->tree, chain->node).text);
+           yaml_error(chain->tree, chain->node, error, "%s has an intermediate result that is infinite (got %s)",
+                      chain->what, show_text(chain->tree, chain->node).text);
 }
 
 bool chain_read(const YamlTree *tree, int node, const char *what, double *value, Error *error) {
@@ -120,7 +120,7 @@ bool chain_read(const YamlTree *tree, int node, const char *what, double *value,
         operation = *rest++;
         if (operation != '*' && operation != '/') return malformed(&chain, error);
         if (count == CHAIN_MAX_NUMBERS)
-            return yaml_error(tree, node, error, "%s: a chain may have at most %d numbers (got %s)", what,
+            return yaml_error(tree, node, error, "%s: a chain must have at most %d numbers (got %s)", what,
                               CHAIN_MAX_NUMBERS, yaml_show(tree, node).text);
     }
 }

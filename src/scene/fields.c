@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of keys, and the values that are alike in all of them. */
+/* Reads mappings by tables of keys, and the types of values that the tables share. */
 #include "scene/fields.h"
 
 #include "common/names.h"
@@ -26,7 +26,7 @@ const Range range_gravity = {-1e4f, 1e4f, " m/s^2"};
 const Range range_dt = {SCENE_MIN_DT, SCENE_MAX_DT, " s"};
 const Range range_rate = {-1e4f, 1e4f, " 1/s"};
 
-/* The key that a mistyped one most likely stands for, or NULL. */
+/* The known key that is nearest to a mistyped one, or NULL. */
 static const char *nearest_key(const Field *fields, const char *key) {
     const char *keys[FIELDS_MAX];
     int count = 0;
@@ -65,7 +65,7 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
                  int nodes[FIELDS_MAX], Error *error) {
     memset(nodes, 0, FIELDS_MAX * sizeof *nodes);
     if (tree->nodes[node].kind != YAML_MAPPING)
-        return yaml_error(tree, node, error, "%s is a mapping of keys to values (got %s)", what,
+        return yaml_error(tree, node, error, "%s must be a mapping of keys to values (got %s)", what,
                           yaml_show(tree, node).text);
     for (int key = node + 1; key < tree->nodes[node].end;) {
         if (tree->nodes[key].kind != YAML_SCALAR || yaml_text(tree, key)[0] == '\0')
@@ -73,7 +73,7 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
         int value = key + 1;
         const Field *field = find_field(fields, yaml_text(tree, key));
         if (field == NULL) return unknown_key(tree, key, what, fields, error);
-        if (nodes[field - fields] != 0) return yaml_error(tree, key, error, "key '%s' is there twice", field->key);
+        if (nodes[field - fields] != 0) return yaml_error(tree, key, error, "key '%s' is given twice", field->key);
         nodes[field - fields] = value;
         if (!field->parse(tree, value, field, (char *)target + field->offset, error)) return false;
         key = tree->nodes[value].end;
@@ -87,7 +87,7 @@ bool field_number(const YamlTree *tree, int node, const Field *field, void *memb
     float value;
     double full;
     const Range *range = field->range;
-    /* A decimal, and a fraction of two, are rounded as everywhere else; a chain once, at its end. */
+    /* A decimal and a fraction of two are rounded as everywhere else; a chain is rounded once, at its end. */
     if (is_scalar(tree, node) && parse_float(yaml_text(tree, node), &value))
         full = (double)value;
     else if (chain_read(tree, node, field->key, &full, error))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mappings of a scene file, read by tables: each key with the parser of its value and the member it goes to.
+/* Reads mappings of a scene file by tables: each key with the parser of its value and the member that it fills.
  */
 #pragma once
 #include "scene/yaml_tree.h"
@@ -9,7 +9,7 @@
 
 enum { FIELDS_MAX = 16 };
 
-/* What a number may be, ends included. */
+/* The range of a number, ends included. */
 typedef struct Range {
     float minimum, maximum;
     const char *unit;
@@ -25,20 +25,20 @@ typedef struct Field Field;
 typedef bool FieldParser(const YamlTree *tree, int node, const Field *field, void *member, Error *error);
 
 struct Field {
-    const char *key; /* NULL ends a table, of FIELDS_MAX rows at most */
+    const char *key; /* NULL ends a table, which has at most FIELDS_MAX rows */
     FieldParser *parse;
     size_t offset;      /* of the member in the struct that the mapping describes */
     const Range *range; /* of field_number, field_vector, field_int */
     bool required;
 };
 
-/* Reads a mapping into *target and tells the value's node of each field in `nodes`, 0 where the key is
-   missing. Refused: what is no mapping, keys that are unknown (the nearest is proposed), twice there, or
+/* Reads a mapping into *target and stores the value's node of each field in `nodes`, 0 if the key is missing. Refused:
+   a node that is not a mapping, and keys that are unknown (the message suggests the nearest), given twice or
    missing. */
 bool fields_read(const YamlTree *tree, int node, const char *what, const Field *fields, void *target,
                  int nodes[FIELDS_MAX], Error *error);
 
-/* The value's node of a key, 0 where it is missing, from what fields_read told. */
+/* The value's node of a key in the `nodes` of fields_read(), 0 if it is missing. */
 int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key);
 
 /* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain (chain.h). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a scene's bomb is thrown: tables of launches to train and to score on. */
+/* Launches: start conditions of the bomb, and tables of them for training and studies. */
 #pragma once
 #include "common/csv_table.h"
 #include "scene/scene.h"
@@ -8,14 +8,14 @@ enum { LAUNCHES_MAX = 10000 };
 
 typedef struct Launch {
     float x, rotation, spin, mass; /* m, rad, rad/s, kg */
-    int frame;                     /* step after which the bomb is put in */
+    int frame;                     /* step after which the bomb is added */
 } Launch;
 
-/* The scene's own launch. The scene has a bomb. */
+/* The scene's own launch. The scene must have a bomb. */
 Launch launch_of(const Scene *scene);
 
-/* The scene with its bomb thrown so: a shallow copy, which shares the bodies with the scene and is not to be destroyed.
-   A bomb that aims (scene_bomb_body) gets its velocity from the new place. */
+/* The scene with this launch: a shallow copy that shares the bodies with the scene; do not destroy it. A bomb with a
+   velocity law (scene_bomb_body) gets its velocity from the new position. */
 Scene launch_scene(const Scene *scene, const Launch *launch);
 
 typedef struct LaunchTable {
@@ -33,10 +33,10 @@ void launches_free(LaunchTable *table);
    without a bomb, a bomb after the scene's last frame, a bomb that would start too fast. */
 bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Error *error);
 
-/* `count` launches of the scene spread evenly over the paper's grid, x = -5 to 5 m in steps of 0.05 (of 201 places:
-   beyond that they repeat). */
+/* `count` launches of the scene spread evenly over the paper's grid, x = -5 to 5 m in steps of 0.05 (201 positions,
+   then they repeat). */
 void launches_for_training(const Scene *scene, int count, Launch *out);
 
-/* The same over the midpoints of that grid, x = -4.975 to 4.975 m (200 places): never one that was trained on, and
-   never 0, where a bomb on a stack is an exact tie. */
+/* The same over the midpoints of that grid, x = -4.975 to 4.975 m (200 positions): all are held-out, and none is 0,
+   where a bomb on a stack is an exact tie. */
 void launches_for_scoring(const Scene *scene, int count, Launch *out);

@@ -8,7 +8,7 @@ enum { WORD_SIZE = 32 };
 
 static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Letters to insert, drop or replace (Levenshtein 1966), kept row by row. */
+/* The edit distance (Levenshtein 1966), computed row by row. */
 static size_t edits(const char *a, const char *b) {
     size_t row[WORD_SIZE], columns = strlen(b);
     for (size_t j = 0; j <= columns; j++) row[j] = j;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a mistyped word most likely stands for. */
+/* Suggestions for mistyped words. Own code: no library in use has an edit distance. */
 #pragma once
 
-/* The nearest of the words, or NULL where none is near. */
+/* The nearest of the words by edit distance, or NULL if none is near. */
 const char *nearest_word(const char *word, const char *const *words, int count);

@@ -14,7 +14,7 @@ static bool field_bound(const YamlTree *tree, int node, const Field *field, void
     return chain_read(tree, node, field->key, member, error);
 }
 
-/* What source_printable never cuts. */
+/* The longest text that source_printable() never cuts. */
 enum { UNIT_LENGTH = SCENE_PARAMETER_SIZE - 8 };
 
 static bool field_unit(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -40,7 +40,7 @@ static bool copy_name(const YamlTree *tree, int node, char *name, Error *error) 
     size_t length = strspn(text, PARAMETER_LETTERS);
     if (length == 0 || text[length] != '\0' || length >= SCENE_PARAMETER_SIZE)
         return yaml_error(tree, node, error,
-                          "a parameter's name is made of a-z, 0-9 and _, at most %d of them (got %s)",
+                          "a parameter's name must have 1 to %d characters of a-z, 0-9 and _ (got %s)",
                           SCENE_PARAMETER_SIZE - 1, yaml_show(tree, node).text);
     memcpy(name, text, length + 1);
     return true;
@@ -48,12 +48,12 @@ static bool copy_name(const YamlTree *tree, int node, char *name, Error *error) 
 
 static bool is_whole(double value) { return value == floor(value); }
 
-/* What no key can tell by itself. */
+/* Checks that involve several keys. */
 static bool check(const YamlTree *tree, const int *nodes, const SceneParameter *parameter, Error *error) {
     const double numbers[] = {parameter->value, parameter->from, parameter->to};
     for (int i = VALUE; i <= TO; i++)
         if (parameter->whole && !is_whole(numbers[i]))
-            return yaml_error(tree, nodes[i], error, "%s must be a whole number, as whole is on (got %s)",
+            return yaml_error(tree, nodes[i], error, "%s must be a whole number, because whole is on (got %s)",
                               fields[i].key, chain_show(tree, nodes[i], numbers[i]).text);
     return (parameter->value >= parameter->from && parameter->value <= parameter->to) ||
            yaml_error(tree, nodes[VALUE], error, "value must be from %.9g to %.9g (got %s)", parameter->from,
@@ -68,12 +68,12 @@ static SceneParameter *find(Parameters *parameters, const char *name) {
 
 static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int value, Error *error) {
     if (parameters->count == SCENE_MAX_PARAMETERS)
-        return yaml_error(tree, key, error, "a scene may have at most %d parameters", SCENE_MAX_PARAMETERS);
+        return yaml_error(tree, key, error, "a scene must have at most %d parameters", SCENE_MAX_PARAMETERS);
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
     if (!copy_name(tree, key, parameter.name, error)) return false;
     if (find(parameters, parameter.name) != NULL)
-        return yaml_error(tree, key, error, "key '%s' is there twice", parameter.name);
+        return yaml_error(tree, key, error, "key '%s' is given twice", parameter.name);
     if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error) ||
         !check(tree, nodes, &parameter, error))
         return false;
@@ -82,7 +82,7 @@ static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int 
     return true;
 }
 
-/* The value's node of the key `parameters`, 0 where it is missing. A second one is the scene's table's to refuse. */
+/* The value's node of the key `parameters`, 0 if it is missing. The scene's table refuses a second one. */
 static int find_node(const YamlTree *tree) {
     bool mapping = tree->nodes[0].kind == YAML_MAPPING;
     for (int key = 1; mapping && key < tree->nodes[0].end;) {
@@ -98,7 +98,7 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
     int node = find_node(tree);
     if (node == 0) return true;
     if (tree->nodes[node].kind != YAML_MAPPING)
-        return yaml_error(tree, node, error, "parameters is a mapping of names to values (got %s)",
+        return yaml_error(tree, node, error, "parameters must be a mapping of names to values (got %s)",
                           yaml_show(tree, node).text);
     for (int key = node + 1; key < tree->nodes[node].end;) {
         int value = tree->nodes[key].end;
@@ -136,7 +136,7 @@ bool parameters_set(Parameters *parameters, const char *path, const SceneSetting
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error) {
     for (int i = 0; i < parameters->count; i++)
         if (!parameters->used[i])
-            return yaml_error(tree, parameters->nodes[i], error, "no number of the scene has the parameter '$%s'",
+            return yaml_error(tree, parameters->nodes[i], error, "no number of the scene uses the parameter '$%s'",
                               parameters->items[i].name);
     return true;
 }

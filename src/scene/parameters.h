@@ -6,21 +6,21 @@
 
 #define PARAMETER_LETTERS "abcdefghijklmnopqrstuvwxyz0123456789_"
 
-/* What the $names of a file stand for. */
+/* The parameters ($names) of a scene file. */
 typedef struct Parameters {
     int count;
     SceneParameter items[SCENE_MAX_PARAMETERS];
     int nodes[SCENE_MAX_PARAMETERS]; /* of their names */
-    bool used[SCENE_MAX_PARAMETERS]; /* the file's numbers have it (chain.h) */
+    bool used[SCENE_MAX_PARAMETERS]; /* a number of the file uses it (chain.h) */
 } Parameters;
 
-/* Reads what the tree says of its parameters, wherever it does; none is not wrong. */
+/* Reads the tree's parameters, wherever the key is; a scene may have none. */
 bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error);
 
-/* Gives them the values of the settings; see scene_read_with. */
+/* Sets their values; see scene_read_with(). */
 bool parameters_set(Parameters *parameters, const char *path, const SceneSetting *settings, int count, Error *error);
 
-/* Refuses one that no number is made of: it would promise what it does not do. */
+/* Refuses a parameter that no number uses, because setting it would have no effect. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);
 
 /* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */

@@ -14,8 +14,8 @@ static Vec2 line_position(Vec2 first, Vec2 spacing, int count, int64_t i) {
 
 static int64_t pyramid_body_count(int rows) { return (int64_t)rows * (rows + 1) / 2; }
 
-/* Row by row from below, each from left to right; a row has one body less than the one below it and begins
-   half a spacing further right. */
+/* Row by row from below, each from left to right; a row has one body less than the row below it and begins half a
+   spacing further right. */
 static Vec2 pyramid_position(Vec2 first, Vec2 spacing, int rows, int64_t i) {
     int row = 0;
     for (; i >= rows - row; row++) i -= rows - row;

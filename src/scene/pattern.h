@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One entry of a scene's bodies: a single body, or a pattern of many alike. */
+/* One entry of a scene's bodies: a single body, or a pattern of equal bodies. */
 #pragma once
 #include "dynamics/body.h"
 
 #include <stdint.h>
 
-/* A way to lay out bodies. */
+/* A kind of pattern. */
 typedef struct PatternKind {
     const char *name;
     int64_t (*body_count)(int count);
@@ -16,7 +16,7 @@ typedef struct Pattern {
     const PatternKind *kind; /* NULL: one body */
     int count;               /* bodies of a row or a stack, rows of a pyramid */
     Vec2 spacing;            /* m */
-    int until;               /* the step after which a single body goes; 0: it stays */
+    int until;               /* the step after which a single body is removed; 0: never */
     BodyDef first;           /* the first body; the others differ from it by their position only */
 } Pattern;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene: what there is before the first step, and the bomb that comes. Read from YAML (libfyaml); constant
-   while worlds run. SI units, radians, y up. */
+/* A scene: the state before the first step, and the bomb. Read from YAML (libfyaml); constant while worlds run. SI
+   units, radians, y up. */
 #pragma once
 #include "common/error.h"
 #include "dynamics/world.h"
@@ -16,33 +16,33 @@ enum {
     SCENE_MAX_NETWORKS = 8,
     SCENE_MAX_PARAMETERS = 4,
     SCENE_PARAMETER_SIZE = 32, /* of a parameter's name and of its unit, with the NUL */
-    SCENE_IMPACT_FRAMES = 6    /* where a file does not say */
+    SCENE_IMPACT_FRAMES = 6    /* default of a file */
 };
 
 #define SCENE_MAX_POSITION 1e6f /* m, either way along each axis */
 #define SCENE_MIN_DT 1e-5f      /* s */
 #define SCENE_MAX_DT 1.0f       /* s */
 
-/* The bomb: a box put in after step `frame` (so it is in that frame's state; 0: from the start). */
+/* The bomb: a box that is added after step `frame` (so it is in that frame's state; 0: from the start). */
 typedef struct SceneBomb {
     bool present;
     int frame;
-    BodyDef body;                /* velocity: only where the law below is off (scene_bomb_body) */
+    BodyDef body;                /* velocity: only without the law below (scene_bomb_body) */
     bool velocity_from_position; /* velocity = velocity_factor * position */
     float velocity_factor;       /* 1/s */
     int impact_frames;           /* from its first touch on, in studies */
 } SceneBomb;
 
-/* Which trained network a method of this scene uses. */
+/* The trained network of a method for this scene. */
 typedef struct SceneNetwork {
     char method[SCENE_NAME_SIZE];
     char path[SCENE_PATH_SIZE]; /* resolved against the folder of the scene file */
 } SceneNetwork;
 
-/* A number that the scene leaves open within bounds: $name in its file. */
+/* A parameter of the scene, within bounds: $name in its file. */
 typedef struct SceneParameter {
     char name[SCENE_PARAMETER_SIZE], unit[SCENE_PARAMETER_SIZE];
-    double value, from, to; /* from <= value <= to; the value is the setting's where there is one */
+    double value, from, to; /* from <= value <= to; value is the setting's if there is one */
     bool whole;             /* whole numbers only */
 } SceneParameter;
 
@@ -59,25 +59,24 @@ typedef struct Scene {
     int iterations;             /* of sequential impulses, per step */
     bool warm_starting, accumulate_impulses, position_correction;
     int frames;                      /* steps to run */
-    Vec2 camera_center, camera_size; /* m; size 0, 0: fitted to what happens */
+    Vec2 camera_center, camera_size; /* m; size 0, 0: fitted to the run */
     int body_count;
     BodyDef *bodies;     /* [body_count], patterns written out, in the order of the file */
-    int last_body_until; /* the last body is taken out after this step; 0: it stays. Never beside a bomb */
+    int last_body_until; /* the last body is removed after this step; 0: never. 0 with a bomb */
     SceneBomb bomb;
     int network_count;
     SceneNetwork networks[SCENE_MAX_NETWORKS];
     int parameter_count;
-    SceneParameter
-        parameters[SCENE_MAX_PARAMETERS]; /* in the order of the file; their values are in all of the above */
+    SceneParameter parameters[SCENE_MAX_PARAMETERS]; /* in the order of the file; the members above have their values */
 } Scene;
 
-/* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Never takes more
-   than 0.1 s or some 20 MB, whatever the file holds: the limits are in source.h and yaml_tree.h. The format
-   is described at the head of scenes/pyramid_settled.yaml. */
+/* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Takes at most 0.1 s and 20
+   MB for any file: the limits are in source.h and yaml_tree.h. The format is described at the head of
+   scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 
-/* The same with values for some of its parameters. A setting that is unknown, there twice, out of its parameter's
-   bounds or not whole where it must be is refused: "path: error: what". */
+/* The same with values for some of its parameters. Refuses settings that are unknown, given twice, out of their
+   parameter's bounds or not whole where they must be: "path: error: what". */
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error);
 
 void scene_destroy(Scene *scene);
@@ -86,16 +85,16 @@ void scene_destroy(Scene *scene);
  */
 World *scene_world(const Scene *scene, Error *error);
 
-/* The bomb as it is put in: with the velocity that its law gives at its position. */
+/* The bomb with its start velocity: the velocity law applied to its position. */
 BodyDef scene_bomb_body(const Scene *scene);
 
-/* Adds the bomb to a world of this scene, and tells the world which body it is. */
+/* Adds the bomb to a world of this scene and calls world_set_bomb(). */
 bool scene_add_bomb(const Scene *scene, World *world, Error *error);
 
-/* XXH3 of all that decides a run: equal physics, equal hash, whatever the file looks like. Gravity, dt,
-   iterations, switches, bodies (and when the last one goes) and bomb (with the velocity that it gets) count; name,
-   frames, camera, networks and impact_frames do not, nor does what parameters made of it. */
+/* XXH3 of everything that determines a run: equal physics, equal hash. Gravity, dt, iterations, switches, bodies (and
+   when the last is removed) and bomb (with its start velocity) count; name, frames, camera, networks, impact_frames and
+   parameters do not. */
 uint64_t scene_hash(const Scene *scene);
 
-/* Path of the network that the scene names for a method, or NULL. */
+/* Path of the scene's network for a method, or NULL. */
 const char *scene_network(const Scene *scene, const char *method);

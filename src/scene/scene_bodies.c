@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list of bodies, single ones and patterns. */
+/* Reads the list of bodies: single bodies and patterns. */
 #include "scene/scene_bodies.h"
 
 #include "common/array.h"
@@ -40,16 +40,17 @@ static const Field body_fields[] = {
     [SPACING] = {"spacing", field_vector, offsetof(Pattern, spacing), &range_position, false},
     {NULL, NULL, 0, NULL, false}};
 
-/* What no key can tell by itself. */
+/* Checks that involve several keys. */
 static bool check_keys(const YamlTree *tree, int node, const Pattern *pattern, const int *nodes, Error *error) {
     bool fixed = pattern->first.fixed, mass = nodes[MASS] != 0;
-    if (fixed && mass) return yaml_error(tree, nodes[MASS], error, "a static body has no mass");
+    if (fixed && mass) return yaml_error(tree, nodes[MASS], error, "a static body must not have a mass");
     if (!fixed && !mass) return yaml_error(tree, node, error, "a body needs the key 'mass', or 'static: true'");
     for (int moving = VELOCITY; fixed && moving <= UNTIL; moving++)
         if (nodes[moving] != 0)
-            return yaml_error(tree, nodes[moving], error, "a static body has no %s", body_fields[moving].key);
+            return yaml_error(tree, nodes[moving], error, "a static body must not have the key '%s'",
+                              body_fields[moving].key);
     if (pattern->kind != NULL && nodes[UNTIL] != 0)
-        return yaml_error(tree, nodes[UNTIL], error, "until is for a single body and not for a pattern");
+        return yaml_error(tree, nodes[UNTIL], error, "until is only for a single body, not for a pattern");
     for (int key = COUNT; key <= SPACING; key++) {
         if (pattern->kind == NULL && nodes[key] != 0)
             return yaml_error(tree, nodes[key], error, "%s needs the key 'pattern' beside it", body_fields[key].key);
@@ -67,13 +68,13 @@ static bool read_entry(const YamlTree *tree, int node, Pattern *pattern, int *no
 
 static bool within(float value) { return fabsf(value) <= range_position.maximum; }
 
-/* Appends the entry's bodies. `place` is the node to show where they are too many or too far away. */
+/* Appends the entry's bodies. `place` is the node for errors: too many bodies, or too far away. */
 static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, Scene *scene, size_t *capacity,
                        Error *error) {
     int64_t count = pattern_body_count(pattern);
     if (count > SCENE_MAX_BODIES - scene->body_count)
-        return yaml_error(tree, place, error, "a scene may have at most %d bodies (here they become %lld)",
-                          SCENE_MAX_BODIES, (long long)(scene->body_count + count));
+        return yaml_error(tree, place, error, "a scene must have at most %d bodies (got %lld)", SCENE_MAX_BODIES,
+                          (long long)(scene->body_count + count));
     void *bodies = scene->bodies;
     bool room = array_reserve(&bodies, capacity, (size_t)(scene->body_count + count), sizeof *scene->bodies);
     scene->bodies = bodies;
@@ -81,9 +82,8 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     for (int64_t i = 0; i < count; i++) {
         BodyDef body = pattern_body(pattern, i);
         if (!within(body.position.x) || !within(body.position.y))
-            return yaml_error(tree, place, error, "body %lld of the pattern would lie at (%g, %g), beyond %g m",
-                              (long long)i, (double)body.position.x, (double)body.position.y,
-                              (double)range_position.maximum);
+            return yaml_error(tree, place, error, "body %lld of the pattern is at (%g, %g), beyond %g m", (long long)i,
+                              (double)body.position.x, (double)body.position.y, (double)range_position.maximum);
         scene->bodies[scene->body_count++] = body;
     }
     return true;
@@ -92,7 +92,7 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
 bool field_bodies(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     const YamlNode *list = &tree->nodes[node];
     if (list->kind != YAML_SEQUENCE || list->count == 0)
-        return yaml_error(tree, node, error, "%s must be a list of one body or more (got %s)", field->key,
+        return yaml_error(tree, node, error, "%s must be a list of at least one body (got %s)", field->key,
                           list->kind == YAML_SEQUENCE ? "none" : yaml_show(tree, node).text);
     size_t capacity = 0;
     for (int entry = node + 1; entry < list->end; entry = tree->nodes[entry].end) {
@@ -119,8 +119,8 @@ static int last_body_node(const YamlTree *tree, int node, const char *key) {
 
 bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Error *error) {
     int until = last_body_node(tree, node, body_fields[UNTIL].key);
-    if (scene->bomb.present) return yaml_error(tree, until, error, "until does not go with a bomb");
+    if (scene->bomb.present) return yaml_error(tree, until, error, "until cannot be combined with a bomb");
     return scene->last_body_until <= scene->frames ||
-           yaml_error(tree, until, error, "the body would go after step %d, after the last (frames: %d)",
-                      scene->last_body_until, scene->frames);
+           yaml_error(tree, until, error, "until %d is after the last frame (frames: %d)", scene->last_body_until,
+                      scene->frames);
 }

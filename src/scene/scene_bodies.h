@@ -4,12 +4,12 @@
 #include "scene/fields.h"
 #include "scene/scene.h"
 
-/* Box2D-Lite's, for bodies that name none. */
+/* Default of Box2D-Lite. */
 #define DEFAULT_FRICTION 0.2f
 
 /* Fills bodies and body_count of the Scene that member points to. */
 FieldParser field_bodies;
 
-/* Whether the body that goes does so within the run, and without a bomb, which would take its index. node: of the
-   bodies. */
+/* Checks that a body with `until` is removed within the run, and that there is no bomb, which would take its index.
+   node: of the bodies. */
 bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene file's tables of keys: from YAML to Scene. */
+/* Reads a scene from YAML by tables of keys. */
 #include "scene/scene.h"
 
 #include "common/file.h"
@@ -59,16 +59,16 @@ static bool field_bomb(const YamlTree *tree, int node, const Field *field, void 
     Vec2 velocity = scene_bomb_body(scene).velocity;
     if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) <= range_speed.maximum) return true;
     return yaml_error(tree, fields_node(bomb_fields, nodes, "velocity"), error,
-                      "the bomb would start with (%g, %g) m/s, above %g", (double)velocity.x, (double)velocity.y,
-                      (double)range_speed.maximum);
+                      "the bomb's start velocity is (%g, %g) m/s; the largest allowed component is %g",
+                      (double)velocity.x, (double)velocity.y, (double)range_speed.maximum);
 }
 
-/* Letters, digits and dashes, as the table of methods has them. */
+/* Letters, digits and dashes, as in all methods' names. */
 static bool copy_method(const YamlTree *tree, int node, char *method, Error *error) {
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789-");
     if (length == 0 || text[length] != '\0' || length >= SCENE_NAME_SIZE)
-        return yaml_error(tree, node, error, "a method's name is made of a-z, 0-9 and - (got %s)",
+        return yaml_error(tree, node, error, "a method's name must consist of a-z, 0-9 and - (got %s)",
                           yaml_show(tree, node).text);
     memcpy(method, text, length + 1);
     return true;
@@ -83,34 +83,35 @@ static bool has_control_character(const char *text) {
 static bool copy_path(const YamlTree *tree, int node, char *path, Error *error) {
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     if (text[0] == '\0' || has_control_character(text))
-        return yaml_error(tree, node, error, "a network is the path of a file (got %s)", yaml_show(tree, node).text);
+        return yaml_error(tree, node, error, "a network must be the path of a file (got %s)",
+                          yaml_show(tree, node).text);
     int folder = text[0] == '/' ? 0 : (int)file_folder_length(tree->source.path);
     int length = snprintf(path, SCENE_PATH_SIZE, "%.*s%s", folder, tree->source.path, text);
     return (length >= 0 && length < SCENE_PATH_SIZE) ||
-           yaml_error(tree, node, error, "the path of a network may have at most %d bytes", SCENE_PATH_SIZE - 1);
+           yaml_error(tree, node, error, "the path of a network must have at most %d bytes", SCENE_PATH_SIZE - 1);
 }
 
 static bool field_networks(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Scene *scene = member;
     if (tree->nodes[node].kind != YAML_MAPPING)
-        return yaml_error(tree, node, error, "%s is a mapping of methods to files (got %s)", field->key,
+        return yaml_error(tree, node, error, "%s must be a mapping of methods to files (got %s)", field->key,
                           yaml_show(tree, node).text);
     for (int key = node + 1; key < tree->nodes[node].end;) {
         int value = tree->nodes[key].end;
         if (scene->network_count == SCENE_MAX_NETWORKS)
-            return yaml_error(tree, key, error, "a scene may name at most %d networks", SCENE_MAX_NETWORKS);
+            return yaml_error(tree, key, error, "a scene must have at most %d networks", SCENE_MAX_NETWORKS);
         SceneNetwork *network = &scene->networks[scene->network_count];
         if (!copy_method(tree, key, network->method, error) || !copy_path(tree, value, network->path, error))
             return false;
         if (scene_network(scene, network->method) != NULL)
-            return yaml_error(tree, key, error, "key '%s' is there twice", network->method);
+            return yaml_error(tree, key, error, "key '%s' is given twice", network->method);
         scene->network_count++;
         key = tree->nodes[value].end;
     }
     return true;
 }
 
-/* They are read before all else, as numbers may be made of them. */
+/* Parameters are read first, because other numbers may use them. */
 static bool field_parameters(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)node, (void)field, (void)error;
     Scene *scene = member;
@@ -141,7 +142,7 @@ static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
         return bodies_check_until(tree, fields_node(scene_fields, nodes, "bodies"), scene, error);
     return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
            yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
-                      "the bomb would come in frame %d, after the last (frames: %d)", scene->bomb.frame, scene->frames);
+                      "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame, scene->frames);
 }
 
 static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
@@ -155,7 +156,7 @@ static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings
     return ok;
 }
 
-/* The name goes into captions and files, so it must be text that prints. */
+/* The name is used in captions and file names, so it must be printable. */
 static void name_scene(Scene *scene, const char *path) {
     char file[NAME_MAX + 1];
     snprintf(file, sizeof file, "%s", path + file_folder_length(path));

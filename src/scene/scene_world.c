@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Worlds made from a scene, and the scene's hash. */
+/* Creates worlds from a scene, and computes the scene's hash. */
 #include "scene/scene.h"
 
 #include "common/hash.h"
@@ -46,7 +46,7 @@ const char *scene_network(const Scene *scene, const char *method) {
     return NULL;
 }
 
-/* 32-bit words, little-endian on every machine, behind the hash of what came before. */
+/* 32-bit words, little-endian on every machine, after the hash of the previous words. */
 enum { RECORD_WORDS = 16 };
 
 typedef struct Record {
@@ -79,7 +79,7 @@ static Record begin_record(uint64_t hash) {
 static uint64_t hash_body(uint64_t hash, const BodyDef *body) {
     Record record = begin_record(hash);
     put_vector(&record, body->size);
-    put_float(&record, body->fixed ? 0 : body->mass); /* no moving body has mass 0 */
+    put_float(&record, body->fixed ? 0 : body->mass); /* no dynamic body has mass 0 */
     put_float(&record, body->friction);
     put_vector(&record, body->position);
     put_float(&record, body->angle);

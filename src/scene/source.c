@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scene file text: what is refused before any parser sees it, and excerpts with a caret. */
+/* Scene file text: checks before parsing, and excerpts with a caret. */
 #include "scene/source.h"
 
 #include "common/file.h"
@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Characters of the line that an excerpt shows, and how many of them stand before the caret at most. */
+/* Characters of the line in an excerpt, and the most of them before the caret. */
 enum { EXCERPT_WIDTH = 100, EXCERPT_BEFORE = 70 };
 
-/* Control characters could drive the terminal; direction marks could show the line as something else. */
+/* Control characters could control the terminal; direction marks could disguise the line. */
 static bool prints(uint32_t c) {
     if (c < 0x20 || (c >= 0x7f && c < 0xa0)) return false;
     return !((c >= 0x200b && c <= 0x200f) || (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) ||
@@ -51,7 +51,7 @@ void source_printable(char *out, size_t room, const char *text) {
 
 static bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
-/* The byte behind the end of the line that `at` lies in; "\r\n" is one end, as in YAML. */
+/* The end of the line that contains `at`; "\r\n" is one end, as in YAML. */
 static size_t next_line(const Source *source, size_t at) {
     while (at < source->size && !ends_line(source->text[at])) at++;
     if (at < source->size) at += source->text[at] == '\r' && source->text[at + 1] == '\n' ? 2 : 1;
@@ -60,15 +60,15 @@ static size_t next_line(const Source *source, size_t at) {
 
 static bool in_line(const Source *source, size_t at) { return at < source->size && !ends_line(source->text[at]); }
 
-/* Bytes of the character at `at`; a byte that is no UTF-8 counts as one. */
+/* Bytes of the character at `at`; 1 for a byte that is not UTF-8. */
 static size_t character_length(const Source *source, size_t at) {
     uint32_t character;
     size_t length = utf8_decode(source->text + at, source->size - at, &character);
     return length > 0 ? length : 1;
 }
 
-/* Where the line of a place begins. The end of the file is shown behind its last line and not on an empty one
-   below it. *place is moved into the line where it lies beyond. */
+/* Start of a place's line. The end of the file is shown after its last line, not on an empty line below. *place is
+   moved into the line if it is beyond its end. */
 static size_t find_place(const Source *source, Place *place) {
     size_t start = 0;
     for (int line = 0; line < place->line; line++) {
@@ -82,7 +82,7 @@ static size_t find_place(const Source *source, Place *place) {
     return start;
 }
 
-/* The shown part of the line, and below it blanks up to the caret. */
+/* Prints the excerpt of the line, and below it blanks up to the caret. */
 typedef struct Excerpt {
     char line[4 * EXCERPT_WIDTH + 8], blanks[EXCERPT_WIDTH];
 } Excerpt;
@@ -124,14 +124,14 @@ bool source_error(const Source *source, Place place, Error *error, const char *f
                        excerpt.blanks);
 }
 
-/* What the checks keep from one character to the next. */
+/* State of the checks between characters. */
 typedef struct Check {
     Place place;
     size_t line_start;
-    size_t blanks, squares; /* length of the run of blanks so far, and the sum of squares of all of them */
+    size_t blanks, squares; /* length of the current run of blanks, and the sum of the squares of all runs */
 } Check;
 
-/* Adds to the sum of squares as the run grows: n^2 = 1 + 3 + ... + (2n - 1). */
+/* Updates the sum of squares: n^2 = 1 + 3 + ... + (2n - 1). */
 static void count_blanks(Check *check, char c) {
     if (c == ' ' || c == '\t' || ends_line(c))
         check->squares += 2 * ++check->blanks - 1;
@@ -139,7 +139,8 @@ static void count_blanks(Check *check, char c) {
         check->blanks = 0;
 }
 
-/* What YAML does not allow, or libfyaml lets pass (0.7.12: bytes that are no UTF-8) or takes minutes over. */
+/* Refuses text that YAML forbids, that libfyaml wrongly accepts (0.7.12: invalid UTF-8) or that it takes minutes
+   for. */
 static bool check_character(const Source *source, size_t at, uint32_t character, Check *check, Error *error) {
     count_blanks(check, source->text[at]);
     if (check->squares > SOURCE_MAX_BLANKS)
@@ -151,10 +152,10 @@ static bool check_character(const Source *source, size_t at, uint32_t character,
         return true;
     }
     if ((character < 0x20 && character != '\t') || character == 0x7f)
-        return source_error(source, check->place, error, "control character 0x%02x in a text file",
+        return source_error(source, check->place, error, "control character 0x%02x in a scene file",
                             (unsigned)character);
     if (at - check->line_start >= SOURCE_MAX_LINE)
-        return source_error(source, check->place, error, "a line may have at most %d bytes", SOURCE_MAX_LINE);
+        return source_error(source, check->place, error, "a line must have at most %d bytes", SOURCE_MAX_LINE);
     if (at == check->line_start && character == '%')
         return source_error(source, check->place, error, "YAML directives are not allowed in a scene");
     check->place.column++;
@@ -166,7 +167,7 @@ static bool check_text(const Source *source, Error *error) {
     for (size_t at = 0, length; at < source->size; at += length) {
         uint32_t character;
         length = utf8_decode(source->text + at, source->size - at, &character);
-        if (length == 0) return source_error(source, check.place, error, "this is not UTF-8 text");
+        if (length == 0) return source_error(source, check.place, error, "not UTF-8 text");
         if (!check_character(source, at, character, &check, error)) return false;
     }
     return true;

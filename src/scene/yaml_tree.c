@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libfyaml's events -> YamlTree. */
+/* Builds a YamlTree from libfyaml's events. */
 #include "scene/yaml_tree.h"
 
 #include "common/array.h"
@@ -15,9 +15,9 @@ typedef struct Builder {
     YamlTree *tree;
     size_t node_capacity, text_size, text_capacity;
     int depth, documents;
-    int open[YAML_MAX_DEPTH];             /* lists and mappings not yet ended, outermost first */
-    Place place;                          /* of the last event that had one */
-    size_t handed_out, handed_out_before; /* bytes that libfyaml has had, now and at the last event */
+    int open[YAML_MAX_DEPTH]; /* open lists and mappings, outermost first */
+    Place place;              /* of the last event that had one */
+    size_t fed, fed_before;   /* bytes that libfyaml has read, now and at the last event */
     bool gap_too_long;
 } Builder;
 
@@ -25,13 +25,13 @@ static bool fail(const Builder *builder, Error *error, const char *what) {
     return source_error(&builder->tree->source, builder->place, error, "%s", what);
 }
 
-/* A mapping counts keys and values here; yaml_read halves it. */
+/* Here a mapping counts keys and values; yaml_read() halves the count. */
 static bool count_in_parent(Builder *builder, Error *error) {
     if (builder->depth == 0) return true;
     YamlNode *parent = &builder->tree->nodes[builder->open[builder->depth - 1]];
     parent->count++;
     if (parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
-        return source_error(&builder->tree->source, builder->place, error, "a mapping may have at most %d keys",
+        return source_error(&builder->tree->source, builder->place, error, "a mapping must have at most %d keys",
                             YAML_MAX_KEYS);
     return true;
 }
@@ -55,7 +55,7 @@ static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
     size_t length = 0;
     const char *text = value == NULL ? "" : fy_token_get_text(value, &length);
     if (text == NULL) return error_memory(error, builder->tree->source.path);
-    if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text may not contain the character \\0");
+    if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text must not contain the character \\0");
     void *texts = builder->tree->texts;
     bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
     builder->tree->texts = texts;
@@ -69,7 +69,7 @@ static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
 static bool open_node(Builder *builder, YamlKind kind, Error *error) {
     if (builder->depth == YAML_MAX_DEPTH)
         return source_error(&builder->tree->source, builder->place, error,
-                            "lists and mappings may be nested %d deep at most", YAML_MAX_DEPTH);
+                            "lists and mappings must be nested at most %d deep", YAML_MAX_DEPTH);
     if (!add_node(builder, kind, error)) return false;
     builder->open[builder->depth++] = builder->tree->node_count - 1;
     return true;
@@ -81,15 +81,15 @@ static void close_node(Builder *builder) {
     if (node->kind == YAML_MAPPING) node->count /= 2;
 }
 
-/* Anchors stand before their value, so refusing them refuses aliases too; an alias alone is a mistake as well. */
+/* Aliases need an anchor before them, so without anchors there are no valid aliases. */
 static bool refuse_extras(const Builder *builder, const struct fy_token *anchor, const struct fy_token *tag,
                           Error *error) {
     if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed in a scene");
     return tag == NULL || fail(builder, error, "tags (!) are not allowed in a scene");
 }
 
-/* `dt:` with nothing behind it; `dt: ""` is something. */
-static bool is_left_out(struct fy_event *event) {
+/* `dt:` without a value; `dt: ""` has one. */
+static bool is_missing_value(struct fy_event *event) {
     if (event->type != FYET_SCALAR) return false;
     struct fy_token *value = event->scalar.value;
     return value == NULL || (fy_token_scalar_style(value) == FYSS_PLAIN && fy_token_get_text_length(value) == 0);
@@ -97,12 +97,12 @@ static bool is_left_out(struct fy_event *event) {
 
 static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     const struct fy_mark *mark = fy_event_start_mark(event);
-    /* A value left out is shown at its key; some versions of libfyaml give it a mark, some do not. */
-    if (mark != NULL && !is_left_out(event)) builder->place = (Place){mark->line, mark->column};
-    builder->handed_out_before = builder->handed_out;
+    /* A missing value is shown at its key; not all versions of libfyaml give it a mark. */
+    if (mark != NULL && !is_missing_value(event)) builder->place = (Place){mark->line, mark->column};
+    builder->fed_before = builder->fed;
     switch (event->type) {
     case FYET_DOCUMENT_START:
-        return ++builder->documents == 1 || fail(builder, error, "a scene file holds one document only");
+        return ++builder->documents == 1 || fail(builder, error, "a scene file must hold one document only");
     case FYET_MAPPING_START:
         return refuse_extras(builder, event->mapping_start.anchor, event->mapping_start.tag, error) &&
                open_node(builder, YAML_MAPPING, error);
@@ -119,7 +119,7 @@ static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     }
 }
 
-/* Passes on what libfyaml found wrong: the first error that it collected. */
+/* Reports the first error that libfyaml collected. */
 static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Error *error) {
     const Source *source = &builder->tree->source;
     void *position = NULL;
@@ -129,7 +129,7 @@ static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Erro
         source_printable(words, sizeof words, found->msg);
         return source_error(source, (Place){found->line - 1, found->column - 1}, error, "%s", words);
     }
-    return fail(builder, error, "this is not valid YAML");
+    return fail(builder, error, "not valid YAML");
 }
 
 static bool gap_error(const Builder *builder, Error *error) {
@@ -148,20 +148,20 @@ static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_di
         if (!taken) return false;
     }
     return builder->tree->node_count > 0 ||
-           source_error(&builder->tree->source, (Place){0, 0}, error, "there is no scene in this file");
+           source_error(&builder->tree->source, (Place){0, 0}, error, "the file holds no scene");
 }
 
-/* Hands the text out piece by piece, so that what libfyaml reads ahead of its events has an end: a million
-   brackets would cost it a second and half a gigabyte before the first event. */
-static ssize_t hand_out(void *user, void *buffer, size_t size) {
+/* Feeds the text in pieces, which limits how far libfyaml reads ahead of its events: a million brackets would cost it a
+   second and half a gigabyte before the first event. */
+static ssize_t feed(void *user, void *buffer, size_t size) {
     Builder *builder = user;
     const Source *source = &builder->tree->source;
-    builder->gap_too_long = builder->handed_out - builder->handed_out_before > YAML_MAX_GAP;
+    builder->gap_too_long = builder->fed - builder->fed_before > YAML_MAX_GAP;
     if (builder->gap_too_long) return 0;
-    size_t left = source->size - builder->handed_out;
+    size_t left = source->size - builder->fed;
     if (size > left) size = left;
-    memcpy(buffer, source->text + builder->handed_out, size);
-    builder->handed_out += size;
+    memcpy(buffer, source->text + builder->fed, size);
+    builder->fed += size;
     return (ssize_t)size;
 }
 
@@ -171,14 +171,14 @@ static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
     struct fy_parser *parser = fy_parser_create(&settings);
     if (parser == NULL) return error_memory(error, tree->source.path);
     Builder builder = {.tree = tree};
-    bool done = fy_parser_set_input_callback(parser, &builder, hand_out) == 0
+    bool done = fy_parser_set_input_callback(parser, &builder, feed) == 0
                     ? take_events(&builder, parser, diagnosis, error)
                     : error_memory(error, tree->source.path);
     fy_parser_destroy(parser);
     return done;
 }
 
-/* libfyaml's messages are collected; without an object of their own they would go to stderr, however quiet.
+/* Collects libfyaml's messages; without this object it writes them to stderr, even if set to quiet.
  */
 static bool build_silently(YamlTree *tree, Error *error) {
     struct fy_diag_cfg nowhere;

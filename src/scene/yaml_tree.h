@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A YAML file as a small tree: plain arrays, built from libfyaml's events within fixed limits.
 
-   libfyaml's own documents take seconds over thousands of keys and minutes over aliases of aliases. Here
-   there are no aliases, anchors, tags or second documents: no scene needs them. */
+   libfyaml's own documents take seconds for thousands of keys and minutes for aliases of aliases. This tree allows no
+   aliases, anchors, tags or second documents. */
 #pragma once
 #include "scene/source.h"
 
@@ -18,13 +18,13 @@ enum {
 
 typedef enum YamlKind { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
 
-/* Nodes stand in the order of the file: the first below node n is n + 1, its next sibling is nodes[n].end. A
-   mapping holds key, value, key, value. */
+/* Nodes are in the order of the file: the first child of node n is n + 1, its next sibling is nodes[n].end. A mapping
+   holds key, value, key, value. */
 typedef struct YamlNode {
     YamlKind kind;
-    int end;   /* the node after this one and all below it */
+    int end;   /* the node after this one and all its descendants */
     int count; /* items of a sequence, pairs of a mapping */
-    int text;  /* of a scalar: where its text begins in texts */
+    int text;  /* of a scalar: offset of its text in texts */
     Place place;
 } YamlNode;
 
@@ -33,18 +33,18 @@ typedef struct YamlTree {
     int node_count;  /* >= 1; node 0 is the root */
     YamlNode *nodes; /* [node_count] */
     char *texts;     /* the scalars, each with a NUL */
-    /* What $names in it stand for (parameters.h), NULL while they are not known; not owned. */
+    /* The parameters of its $names (parameters.h), NULL before they are read; not owned. */
     struct Parameters *parameters;
 } YamlTree;
 
-/* Reads the file. An error shows the place (source_error). On failure nothing is to be freed. */
+/* Reads the file. An error shows the place (source_error). On failure there is nothing to free. */
 bool yaml_read(YamlTree *tree, const char *path, Error *error);
 void yaml_free(YamlTree *tree);
 
 /* The text of a scalar. */
 const char *yaml_text(const YamlTree *tree, int node);
 
-/* What a node is, for a message: the text of a scalar or "nothing", "a list", "a mapping". */
+/* A node for a message: the text of a scalar or "nothing", "a list", "a mapping". */
 typedef struct YamlShown {
     char text[YAML_SHOWN_SIZE];
 } YamlShown;

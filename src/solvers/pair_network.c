@@ -102,7 +102,7 @@ static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const 
     static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
     ContactSolution begun = pair_moment_solution(&pair->moment);
     sequential_impulses_begin(problem, &options, &begun);
-    if (pair->view == PAIR_NEIGHBOURS) pair_moment_look(&pair->moment, problem);
+    if (pair->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&pair->moment, problem);
     *now = &pair->moment;
     return true;
 }

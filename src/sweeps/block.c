@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Block solver: sequential impulses where the normal impulses x of a pair with two points are found together.
+/* Block solver: sequential impulses that solve both normal impulses x of a pair with two points together.
 
    They solve the linear complementarity problem
 
        v = K x + q >= 0,   x >= 0,   v . x = 0
 
    (v: normal velocities less their bias, q: those without x) by trying its four cases: both points push, only the
-   first, only the second, none. A box on a face comes to rest in one sweep, where one by one the two points would
-   tilt it to and fro. Friction goes first, point by point, within the normal impulse so far: so after few sweeps it
-   may be out of the friction cone by what the normal impulse has changed since. Source: Catto, "Modeling and Solving
-   Constraints" (GDC 2009), and the contact solver of Box2D 2.4. Pairs with one point, and with two that nearly
-   coincide, are solved one by one (Box2D drops one of these points instead). Fails as sequential impulses do: between
-   pairs an impulse travels no faster, so high stacks and heavy boxes on light ones stay soft.
+   first, only the second, none. A box on a face comes to rest in one sweep; solved separately, its two points would
+   tilt it back and forth. Friction is solved first, point by point, bounded by the normal impulse so far: after few
+   sweeps it may exceed the friction cone by the later change of the normal impulse. Source: Catto, "Modeling and
+   Solving Constraints" (GDC 2009), and the contact solver of Box2D 2.4. Points of pairs with one point, or with two
+   that nearly coincide, are solved separately (Box2D drops one of the two). Fails as sequential impulses do: between
+   pairs an impulse propagates no faster, so high stacks and heavy boxes on light ones stay soft.
 
-   Bit-exact: the order of every float operation is fixed. This is the plain text; block_lanes.h is its fast equal. */
+   Bit-exact: the order of all float operations is fixed. This is the scalar reference implementation; block_lanes.h
+   vectorises it. */
 #include "sweeps/block.h"
 
 #include "sweeps/contact_velocity.h"
@@ -66,7 +67,7 @@ static void solve_normal(const ContactPoint *contact, const ProblemBody *bodies,
     sum->normal = total;
 }
 
-/* The first of the four cases that holds; x as it was where rounding leaves none. */
+/* The first of the four cases that holds; x unchanged if rounding leaves none. */
 static Vec2 solve_cases(const Block *block, float mass1, float mass2, Vec2 x, Vec2 q) {
     Vec2 both = {block->inverse_determinant * (block->k12 * q.y - block->k22 * q.x),
                  block->inverse_determinant * (block->k12 * q.x - block->k11 * q.y)};
@@ -78,7 +79,7 @@ static Vec2 solve_cases(const Block *block, float mass1, float mass2, Vec2 x, Ve
     return x;
 }
 
-/* Two points at once. */
+/* Solves both normal impulses together. */
 static void solve_normals(const ContactPoint contacts[2], const Block *block, const ProblemBody *bodies,
                           BodyVelocity *velocities, ContactImpulse sums[2]) {
     Vec2 x = vec2(sums[0].normal, sums[1].normal);

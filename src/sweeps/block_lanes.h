@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The visit of the block solver over the lanes of a vector: operation by operation the plain text of block.c, with the
-   liberties of sweeps_lanes.h. All cases are computed, and each lane takes its own. */
+/* The block solver's visit over the lanes of a vector: the operations of block.c, with the exceptions of
+   sweeps_lanes.h. All cases are computed; each lane selects its own. */
 
-/* What a pair has of its points. */
+/* The points of the pairs, one pair per lane. */
 typedef struct LanePoints {
     Lanes arms[2][4];   /* of a and b, x and y */
     Lanes masses[2][4]; /* normal, tangent, bias, extra (SweepPoint) */
@@ -18,7 +18,7 @@ TARGET static inline void push(Side *a, Side *b, LaneVec n, const Lanes arms[4],
           (LaneVec){lanes_mul(impulse, n.x), lanes_mul(impulse, n.y)});
 }
 
-/* block: k11, k12, k22, inverse determinant; from the last case to the first, which comes before all others. */
+/* block: k11, k12, k22, inverse determinant; from the last case to the first, which takes precedence. */
 TARGET static inline LaneVec solve_cases(const Lanes block[4], Lanes mass1, Lanes mass2, LaneVec x, LaneVec q) {
     const Lanes zero = lanes_zero();
     Lanes none = lanes_and(lanes_at_least(q.x, zero), lanes_at_least(q.y, zero));
@@ -40,7 +40,7 @@ TARGET static inline LaneVec solve_cases(const Lanes block[4], Lanes mass1, Lane
     return (LaneVec){lanes_choose(found.x, both.x, holds), lanes_choose(found.y, both.y, holds)};
 }
 
-/* Two points at once. */
+/* Solves both normal impulses together. */
 TARGET static inline void solve_normals(Side *a, Side *b, LaneVec n, const LanePoints *points, const Lanes block[4],
                                         Lanes *sum1, Lanes *sum2) {
     const Lanes *masses1 = points->masses[0], *masses2 = points->masses[1];
@@ -66,7 +66,7 @@ TARGET static inline void solve_frictions(Side *a, Side *b, const Surface *surfa
     keep_where_single(b, &single_b, points->masses[1][3]);
 }
 
-/* The normal impulses one by one. */
+/* Solves the normal impulses separately. */
 TARGET static inline void solve_apart(Side *a, Side *b, const Surface *surface, const LanePoints *points,
                                       Lanes sums[4]) {
     solve_normal(a, b, surface, points->arms[0], points->masses[0], &sums[0]);

@@ -22,7 +22,7 @@ static bool reserve(Colours *colours, size_t contacts, size_t bodies) {
            array_reserve((void **)&colours->taken, &colours->taken_capacity, bodies, sizeof *colours->taken);
 }
 
-/* Returns how many there are. */
+/* Returns their number. */
 static int find_pairs(Colours *colours, const ContactProblem *problem) {
     int count = 0;
     for (int i = 0; i < problem->contact_count; i += contact_surface_points(problem, i)) colours->pairs[count++] = i;
@@ -30,7 +30,7 @@ static int find_pairs(Colours *colours, const ContactProblem *problem) {
     return count;
 }
 
-/* points[colour + 1]: how many contacts have it. Returns how many colours there are. */
+/* points[colour + 1]: the number of contacts of that colour. Returns the number of colours. */
 static int paint(Colours *colours, const ContactProblem *problem, int pairs, int points[COLOURS + 1]) {
     memset(colours->taken, 0, (size_t)problem->body_count * sizeof *colours->taken);
     int most = 0;

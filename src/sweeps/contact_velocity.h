@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an impulse at a contact does to the two bodies, and what the contact sees of them: for the plain texts. The
-   order of every float operation is part of the engine's result. */
+/* Impulses and relative velocities at contacts, for the scalar reference implementations. The order of all float
+   operations is part of the engine's result. */
 #pragma once
 #include "dynamics/contact_problem.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-/* Do the same two bodies touch in both, along one normal? */
+/* True if both contacts are of the same bodies and normal. */
 static inline bool contact_shares_surface(const ContactPoint *first, const ContactPoint *second) {
     return first->a == second->a && first->b == second->b &&
            memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
            memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
 }
 
-/* The points, two at most, of the surface that the problem's contact number `first` begins. */
+/* The number of contacts (1 or 2) of the pair and normal that begin at contact `first`. */
 static inline int contact_surface_points(const ContactProblem *problem, int first) {
     const ContactPoint *contact = &problem->contacts[first];
     return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
 }
 
-/* Adds impulse to b and takes it from a. */
+/* Applies impulse to b and its opposite to a. */
 static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
                                  const ProblemBody *bodies, Vec2 impulse) {
     const ProblemBody *body_a = &bodies[contact->a], *body_b = &bodies[contact->b];
@@ -38,7 +38,7 @@ static inline void contact_push(BodyVelocity *velocities, const ContactPoint *co
     contact_apply(&velocities[contact->a], &velocities[contact->b], contact, bodies, impulse);
 }
 
-/* Velocity of b's point as seen from a's. */
+/* Velocity of b's point relative to a's. */
 static inline Vec2 contact_relative_velocity(const BodyVelocity *a, const BodyVelocity *b,
                                              const ContactPoint *contact) {
     Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sequential impulses (projected Gauss-Seidel), as in Box2D-Lite.
 
-   For each contact in turn, `iterations` times over: the normal impulse that would bring the normal velocity to
-   its bias, clamped so that the sum over the step only pushes; then the tangent impulse that would stop the
-   sliding, clamped so that its sum stays in the friction cone |Pt| <= mu Pn:
+   Each sweep visits every contact in turn: first the normal impulse that brings the normal velocity to its bias,
+   clamped so that the accumulated impulse is not negative; then the tangent impulse that stops the sliding, clamped so
+   that the accumulated impulse stays in the friction cone |Pt| <= mu Pn:
 
        Pn' = max(Pn + mass_n (bias - vn), 0),   Pt' = contact_clamp(Pt - mass_t vt, -mu Pn', mu Pn')
 
-   The sums start from the last step's (warm start). Source: Catto, "Iterative Dynamics with Temporal Coherence"
-   (2005); "Fast and Simple Physics using Sequential Impulses" (GDC 2006). Fails slowly: an impulse travels one
-   contact a sweep against the order, so high stacks and heavy boxes on light ones stay soft.
+   Accumulated impulses start from the last step's (warm start). Source: Catto, "Iterative Dynamics with Temporal
+   Coherence" (2005); "Fast and Simple Physics using Sequential Impulses" (GDC 2006). Fails by slow convergence: against
+   the order of visits an impulse propagates by one contact per sweep, so high stacks and heavy boxes on light ones stay
+   soft.
 
-   Bit-exact: the order of every float operation is fixed. This is the plain text; with accumulation the engine runs
-   its fast equal, sweeps.h. */
+   Bit-exact: the order of all float operations is fixed. This is the scalar reference implementation; with accumulated
+   impulses the engine runs sweeps.h, which has the same bits. */
 #include "sweeps/sequential_impulses.h"
 
 #include "sweeps/contact_velocity.h"
@@ -27,7 +28,7 @@ static void warm_start(const ContactProblem *problem, bool warm, ContactSolution
     }
 }
 
-/* One contact, once: the normal impulse, then friction against what it left. */
+/* One visit of a contact: the normal impulse, then friction. */
 static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies, BodyVelocity *velocities,
                           ContactImpulse *sum, const SequentialOptions *options) {
     const bool accumulate = options->accumulate;

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plain text of sequential impulses, contact by contact: what the fast sweeps (sweeps.h) are held to. */
+/* The scalar reference implementation of sequential impulses. The vectorised sweeps (sweeps.h) must have its bits. */
 #pragma once
 #include "dynamics/contact_problem.h"
 
 #include <stdbool.h>
 
 typedef struct SequentialOptions {
-    bool accumulate;  /* clamp the sum of impulses, from the warm start on, not each one */
-    bool warm;        /* start from the problem's warm impulses, not from zero */
-    float relaxation; /* of every step; 1: none */
+    bool accumulate;  /* clamp accumulated impulses, not each impulse */
+    bool warm;        /* start from the problem's warm-start impulses, not from zero */
+    float relaxation; /* factor of every impulse; 1: none */
 } SequentialOptions;
 
-/* Velocities and impulses before the first sweep. */
+/* Sets velocities and impulses before the first sweep. */
 void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution);
 
-/* Once over the contacts from `first` on, `count` of them. */
+/* Visits `count` contacts, from `first` on. */
 void sequential_impulses_visit(const ContactProblem *problem, const SequentialOptions *options, int first, int count,
                                ContactSolution *solution);
 
-/* Once over all contacts. */
+/* One sweep. */
 void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution);
 
-/* `count` sweeps from the beginning. */
+/* Begins, then `count` sweeps. */
 void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
                                ContactSolution *solution);

@@ -9,9 +9,9 @@
 #include <string.h>
 
 enum {
-    COLOURED_AT_ONCE = 2,     /* sweeps in a schedule by colours: more would share few levels */
-    VISITS_AT_ONCE = 1 << 12, /* visits in one schedule: it should stay in the cache */
-    LEVEL_PAYS = 3            /* visits a level from which on lanes are faster than one by one */
+    COLOURED_AT_ONCE = 2,     /* sweeps in a coloured schedule: more would share few levels */
+    VISITS_AT_ONCE = 1 << 12, /* visits in one schedule, which should stay in the cache */
+    LEVEL_PAYS = 3            /* visits per level from which on lanes are faster */
 };
 
 void sweeps_free(Sweeps *sweeps) {
@@ -46,7 +46,7 @@ bool sweeps_can(SweepKernel kernel) {
 
 SweepKernel sweeps_best_kernel(void) { return sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE; }
 
-/* Makes both schedules, unless those of the step before are for the same pairs. turns: with extrapolation. */
+/* Makes both schedules, unless those of the last step are for the same pairs. turns: with momentum extrapolation. */
 static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     size_t size = (size_t)sweeps->pair_count * sizeof *sweeps->ends;
     if (sweeps->scheduled_count == sweeps->pair_count && memcmp(sweeps->scheduled, sweeps->ends, size) == 0 &&
@@ -64,8 +64,8 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     return true;
 }
 
-/* The number of sweeps in one schedule: equal parts of them all, if possible. With extrapolation an even one, where
-   it is run more than once: each run begins in the same half of the bodies and sums. */
+/* The number of sweeps in one schedule: an equal part of all sweeps, if possible. With momentum extrapolation an even
+   number if the schedule is run more than once: each run begins in the same half of the bodies and sums. */
 static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
     const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
     int most = VISITS_AT_ONCE / sweeps->pair_count;
@@ -76,7 +76,7 @@ static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
     return turns ? equal + equal % 2 : equal;
 }
 
-/* By lanes, where the processor has them and enough visits share a level. */
+/* True to use lanes: the processor has them and enough visits share a level. */
 static bool run(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
     int at_once = sweeps_at_once(sweeps, count, turns);
@@ -104,7 +104,7 @@ bool sweeps_run_blocks(Sweeps *sweeps, int count) {
 
 bool sweeps_run(Sweeps *sweeps, int count) { return sweeps->pair_count == 0 || run(sweeps, NULL, count); }
 
-/* Both halves alike: the first sweep has no change before it to go on by. */
+/* Both halves are equal: before the first sweep there is no change to extrapolate. */
 static bool begin_turns(Sweeps *sweeps) {
     size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
     if (!array_reserve((void **)&sweeps->sums, &sweeps->sums_capacity, 4 * half, sizeof *sweeps->sums) ||
@@ -125,7 +125,7 @@ static void swap_halves(Sweeps *sweeps) {
     }
 }
 
-/* The half that the last sweep worked in becomes the first; the sums of both stay where they are. */
+/* The bodies of the last sweep's half become the first half; the sums stay in place. */
 static void end_turns(Sweeps *sweeps, int count) {
     const size_t half = (size_t)sweeps->pair_count + 1, last = (size_t)(count + 1) % 2;
     if (last == 1) swap_halves(sweeps);

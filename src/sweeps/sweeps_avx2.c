@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight lanes: AVX2, without fused multiply-add, which would round once where the plain text rounds twice. */
+/* Eight lanes: AVX2, without fused multiply-add, which rounds once where the reference implementation rounds twice. */
 #include "sweeps/sweeps_kernels.h"
 
 #ifdef TWINBOX_AVX
@@ -15,7 +15,7 @@ TARGET static inline Lanes lanes_zero(void) { return _mm256_setzero_ps(); }
 TARGET static inline Lanes lanes_add(Lanes a, Lanes b) { return _mm256_add_ps(a, b); }
 TARGET static inline Lanes lanes_sub(Lanes a, Lanes b) { return _mm256_sub_ps(a, b); }
 TARGET static inline Lanes lanes_mul(Lanes a, Lanes b) { return _mm256_mul_ps(a, b); }
-/* a > b ? a : b and a < b ? a : b, zeros of either sign included. */
+/* a > b ? a : b and a < b ? a : b, also for zeros of either sign. */
 TARGET static inline Lanes lanes_max(Lanes a, Lanes b) { return _mm256_max_ps(a, b); }
 TARGET static inline Lanes lanes_min(Lanes a, Lanes b) { return _mm256_min_ps(a, b); }
 TARGET static inline Lanes lanes_negate(Lanes a) { return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f)); }

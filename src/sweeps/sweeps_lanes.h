@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sweep kernel over the lanes of a vector. Included once by the file of each instruction set, which defines
-   the vector type Lanes, LANES of them, TARGET and the operations used here.
+/* The sweep kernel over the lanes of a vector. Included once by the file of each instruction set, which defines the
+   vector type Lanes, LANES of them, TARGET and the operations used here.
 
-   Operation by operation the plain text of sequential_impulses.c, with three liberties that no finite number can
-   tell: x - y for x + -y, the tangent's components written out, and a velocity that a body without mass keeps. */
+   The operations of sequential_impulses.c, with three exceptions that have the same bits for finite numbers: x - y for
+   x + -y, the tangent's components written out, and no change of the velocity of a static body. */
 #include "sweeps/sweeps_kernels.h"
 
-/* Velocities of the bodies at one end of the pairs, one pair a lane. */
+/* Velocities of the bodies at one end of the pairs, one pair per lane. */
 typedef struct Side {
     Lanes x, y, spin, inv_mass, inv_inertia;
 } Side;
@@ -16,7 +16,7 @@ typedef struct LaneVec {
     Lanes x, y;
 } LaneVec;
 
-/* Velocity of b's point as seen from a's. */
+/* Velocity of b's point relative to a's. */
 TARGET static inline LaneVec relative_velocity(const Side *a, const Side *b, LaneVec arm_a, LaneVec arm_b) {
     Lanes x = lanes_add(lanes_sub(lanes_sub(b->x, lanes_mul(b->spin, arm_b.y)), a->x), lanes_mul(a->spin, arm_a.y));
     Lanes y = lanes_sub(lanes_sub(lanes_add(b->y, lanes_mul(b->spin, arm_b.x)), a->y), lanes_mul(a->spin, arm_a.x));
@@ -25,7 +25,7 @@ TARGET static inline LaneVec relative_velocity(const Side *a, const Side *b, Lan
 
 TARGET static inline Lanes cross(LaneVec a, LaneVec b) { return lanes_sub(lanes_mul(a.x, b.y), lanes_mul(a.y, b.x)); }
 
-/* Adds impulse to b and takes it from a. */
+/* Applies impulse to b and its opposite to a. */
 TARGET static inline void apply(Side *a, Side *b, LaneVec arm_a, LaneVec arm_b, LaneVec impulse) {
     a->x = lanes_sub(a->x, lanes_mul(a->inv_mass, impulse.x));
     a->y = lanes_sub(a->y, lanes_mul(a->inv_mass, impulse.y));
@@ -35,7 +35,7 @@ TARGET static inline void apply(Side *a, Side *b, LaneVec arm_a, LaneVec arm_b, 
     b->spin = lanes_add(b->spin, lanes_mul(b->inv_inertia, cross(arm_b, impulse)));
 }
 
-/* What both points of a pair share. */
+/* The data that both points of a pair share. */
 typedef struct Surface {
     LaneVec normal, tangent;
     Lanes friction;
@@ -73,18 +73,18 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
     solve_friction(a, b, surface, arms, masses, *sum_normal, sum_tangent);
 }
 
-/* `base` is a row of four floats in the first record, offsets tell how many floats behind it those of the lanes are;
-   out[k] gets the k-th float of each. */
+/* `base` is a row of four floats in the first record, `offsets` those of the lanes' rows, in floats; out[k] gets the
+   k-th float of each row. */
 TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
 TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
 /* A sweep's factor for extrapolation, for a whole row. */
 typedef float Factor[4];
 
-/* As load_rows, from now - (factor * (before - now) + 0). */
+/* As load_rows, of now - (factor * (before - now) + 0). */
 TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
                                             const Factor *factors, const int32_t *sweep);
-/* Replaces the row of two sweeps before. */
+/* Replaces the row of two sweeps ago. */
 TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors);
 
 TARGET static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
@@ -98,14 +98,14 @@ TARGET static inline void store_side(Sweeps *sweeps, const int32_t *offsets, con
     store_rows(&sweeps->bodies->x, offsets, rows);
 }
 
-/* The velocities that the pairs with a second point have after it, and the others have before. */
+/* Selects the velocities after the second point for pairs that have one, else those before. */
 TARGET static inline void keep_where_single(Side *after, const Side *before, Lanes second) {
     after->x = lanes_choose(before->x, after->x, second);
     after->y = lanes_choose(before->y, after->y, second);
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
 
-/* turns, factors: with extrapolation; else NULL. */
+/* turns, factors: NULL without momentum extrapolation. */
 TARGET static inline void solve_pairs(Sweeps *sweeps, const SweepLevel *level, const SweepTurns *turns, int lane,
                                       const Factor *factors) {
     SweepPair *records = sweeps->pairs;

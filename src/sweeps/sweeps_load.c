@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A contact problem into packed records: those of its bodies, and those of its pairs in the order of visits. */
+/* Packs a contact problem into records of bodies, and of pairs in the order of visits. */
 #include "common/array.h"
 #include "sweeps/contact_velocity.h"
 #include "sweeps/sweeps_kernels.h"
@@ -23,7 +23,7 @@ static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
 
 static bool is_negative_zero(float x) { return x == 0.0f && signbit(x); }
 
-/* Can an impulse change the velocity? Without mass only where it is -0, which may become 0. */
+/* True if an impulse can change the velocity. For a static body only if it is -0, which may become 0. */
 static bool moves(const ProblemBody *body) {
     return problem_body_moves(body) || is_negative_zero(body->velocity.x) || is_negative_zero(body->velocity.y) ||
            is_negative_zero(body->angular_velocity);
@@ -39,13 +39,13 @@ static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
     sweeps->bodies[problem->body_count] = (SweepBody){0};
 }
 
-/* Where neither moves, a counts as moving: the visits of one pair must not share a level. */
+/* If neither moves, a counts as moving: visits of one pair must not share a level. */
 static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
     bool moves_a = sweeps->moves[a] || !sweeps->moves[b];
     return (SweepEnds){moves_a ? a : ~a, sweeps->moves[b] ? b : ~b};
 }
 
-/* Member by member: a record is written once and not copied. */
+/* Member by member, so that a record is written once and not copied. */
 static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra, bool warm, float relaxation) {
     SweepPoint *point = &pair->points[k];
     pair->sums[k].normal = warm ? contact->warm_normal : 0.0f;
@@ -58,7 +58,7 @@ static void load_point(SweepPair *pair, int k, const ContactPoint *contact, floa
     point->extra = extra;
 }
 
-/* The pair that begins with the problem's contact number `first`; returns how many points it has. */
+/* Packs the pair that begins with contact `first` of the problem; returns its number of points. */
 static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, bool warm, float relaxation) {
     static const ContactPoint none = {0};
     const ContactPoint *contact = &problem->contacts[first], *next = contact + 1;
@@ -74,7 +74,7 @@ static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, b
     return points;
 }
 
-/* visits: the order of contacts, the two of a pair together; or NULL, as they are given. */
+/* visits: the order of contacts, with those of a pair adjacent; NULL for the problem's order. */
 static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int32_t *visits, bool warm,
                        float relaxation) {
     sweeps->pair_count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The packed records in the order of the plain text: for few contacts, and for every processor. */
+/* Sweeps over the packed records, pair by pair: for few contacts, and for every processor. */
 #include "sweeps/sweeps_kernels.h"
 
 #include <string.h>
@@ -69,7 +69,7 @@ static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const
     apply(a, b, pair, point, vec2_scale(tangent, direction));
 }
 
-/* Not 0 where the bits differ: 0 and -0 do. */
+/* Not 0 if the bits differ; those of 0 and -0 do. */
 static uint32_t difference(float x, float y) {
     uint32_t bits_x, bits_y;
     memcpy(&bits_x, &x, sizeof x);
@@ -77,7 +77,7 @@ static uint32_t difference(float x, float y) {
     return bits_x ^ bits_y;
 }
 
-/* Puts a body's velocity back; not 0 where it is another one. By components: the next visit reads them so. */
+/* Stores a body's velocity; returns not 0 if it has changed. By components, because the next visit reads components. */
 static uint32_t put_back(SweepBody *body, const SweepBody *after) {
     uint32_t changed =
         difference(body->x, after->x) | difference(body->y, after->y) | difference(body->spin, after->spin);
@@ -94,7 +94,7 @@ static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
     return changed;
 }
 
-/* Not 0 where the visit changed anything. */
+/* Not 0 if the visit changed anything. */
 static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums, SweepEnds ends) {
     SweepBody *body_a = &bodies[sweep_body_at(ends.a)], *body_b = &bodies[sweep_body_at(ends.b)];
     SweepBody a = *body_a, b = *body_b;
@@ -110,14 +110,14 @@ static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactIm
     return changed;
 }
 
-/* A pair whose last visit changed nothing rests until another visit changes one of its bodies. */
+/* True for a pair whose last visit changed nothing, if no visit has changed its bodies since: it is skipped. */
 static bool may_rest(const Sweeps *sweeps, int pair) {
     int64_t quiet = sweeps->quiet_since[pair];
     SweepEnds ends = sweeps->ends[pair];
     return quiet > sweeps->changed_at[sweep_body_at(ends.a)] && quiet > sweeps->changed_at[sweep_body_at(ends.b)];
 }
 
-/* Notes what visit number `now` did. */
+/* Records the changes by visit number `now`. */
 static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
     SweepEnds ends = sweeps->ends[pair];
     sweeps->quiet_since[pair] = changed ? 0 : now;
@@ -126,14 +126,14 @@ static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
     return changed;
 }
 
-/* Goes on from `now` by what changed since `before`; not 0 where that is not `now` itself. */
+/* Extrapolates `now` by the change since `before`; returns not 0 if the result differs from `now`. */
 static uint32_t extrapolate(float *before, float now, float factor) {
     float next = now - (factor * (*before - now) + 0.0f);
     *before = next;
     return difference(next, now);
 }
 
-/* Turns `to`, the velocities of two sweeps before, into those that the next sweep begins with. */
+/* Replaces `to`, the velocities of two sweeps ago, by those that the next sweep starts from. */
 static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *from, float factor, int64_t now) {
     bool any = false;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -154,8 +154,8 @@ static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from
     return changed;
 }
 
-/* One sweep in the half of bodies and sums whose turn it is; the other half is as the sweep before left it. True
-   where it changed anything. */
+/* One sweep in the current half of bodies and sums; the other half has the results of the previous sweep. True if it
+   changed anything. */
 static bool sweep_in_turn(Sweeps *sweeps, int half, float factor, int64_t *now) {
     SweepBody *halves[2] = {sweeps->bodies, sweeps->bodies + sweeps->body_count + 1};
     ContactImpulse *sums[2] = {sweeps->sums, sweeps->sums + 2 * (sweeps->pair_count + 1)};

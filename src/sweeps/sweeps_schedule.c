@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A list schedule: visit by visit in the order of the sweeps, each into the first level that comes after all that
-   it depends on and has a slot left. Visits of different sweeps share levels: a pair may be visited again as soon
-   as its own bodies allow. */
+/* List scheduling: assigns visits, in the order of the sweeps, to the first level that comes after all their
+   dependencies and has a free slot. Visits of different sweeps share levels. */
 #include "common/array.h"
 #include "sweeps/sweeps_kernels.h"
 
@@ -34,8 +33,7 @@ static bool add_level(SweepSchedule *schedule, const Sweeps *sweeps, bool turns)
     return true;
 }
 
-/* The first level from this one on that has room; paths are halved on the way, so that full levels are passed
-   over quickly. */
+/* The first level from this one on that has room. Path halving, as in union-find, skips full levels quickly. */
 static int32_t find_open(SweepSchedule *schedule, int32_t level) {
     int32_t *open = schedule->open;
     while (level < schedule->level_count && open[level] != level) {
@@ -45,7 +43,7 @@ static int32_t find_open(SweepSchedule *schedule, int32_t level) {
     return level;
 }
 
-/* Puts one visit into its level, and returns the slot; the level is *level. False when memory is short. */
+/* Assigns one visit to *level and returns its slot. False when memory is short. */
 static bool place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t a, int32_t b, bool turns,
                   int32_t *level, int32_t *slot) {
     *level = find_open(schedule, *level);
@@ -58,7 +56,7 @@ static bool place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, i
     return true;
 }
 
-/* Even sweeps work in the first half of the bodies and sums, odd ones in the second. */
+/* Even sweeps use the first half of the bodies and sums, odd ones the second. */
 static void place_turns(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t sweep, int32_t level,
                         int32_t slot) {
     int32_t half = (sweeps->pair_count + 1) * SUMS_FLOATS, body_half = (sweeps->body_count + 1) * BODY_FLOATS;
@@ -70,7 +68,7 @@ static void place_turns(SweepSchedule *schedule, const Sweeps *sweeps, int32_t p
     schedule->levels[level].b[slot] += sweep % 2 * body_half;
 }
 
-/* A body's turn comes as soon as the sweep before is done with it: by its first visit it has waited longest. */
+/* A body is extrapolated at its first visit in a sweep, when the previous sweep no longer changes it. */
 static bool add_body_turn(SweepSchedule *schedule, Sweeps *sweeps, int32_t body, int32_t sweep) {
     if (sweeps->seen[body] > sweep) return true;
     sweeps->seen[body] = sweep + 1;
@@ -83,7 +81,7 @@ static bool add_body_turn(SweepSchedule *schedule, Sweeps *sweeps, int32_t body,
     return true;
 }
 
-/* Sorts the bodies' turns by level, counting. */
+/* Counting sort of the bodies' turns by level. */
 static bool sort_body_turns(SweepSchedule *schedule) {
     size_t count = (size_t)schedule->body_turn_count, levels = (size_t)schedule->level_count;
     if (!array_reserve((void **)&schedule->body_turns, &schedule->body_turn_capacity, count,
@@ -99,7 +97,7 @@ static bool sort_body_turns(SweepSchedule *schedule) {
     return true;
 }
 
-/* One visit, after all that it depends on. */
+/* Schedules one visit after all its dependencies. */
 static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int32_t sweep, bool turns) {
     int32_t *ready = sweeps->ready;
     SweepEnds ends = sweeps->ends[pair];

@@ -19,7 +19,7 @@ static int order_keys(const TrajectoryContact *x, const TrajectoryContact *y) {
     return (x->feature > y->feature) - (x->feature < y->feature);
 }
 
-/* Contacts of one key keep the order of the file, which may hold anything. */
+/* Contacts with equal keys, which an untrusted file may hold, keep the order of the file. */
 static int order_contacts(const void *left, const void *right) {
     const TrajectoryContact *x = *(const TrajectoryContact *const *)left;
     const TrajectoryContact *y = *(const TrajectoryContact *const *)right;
@@ -75,7 +75,7 @@ static void merge(const ContactList *a, const ContactList *b, ContactDifference 
     }
 }
 
-/* Most steps, and in no need of sorting. */
+/* Most steps, without sorting. */
 static bool same_bytes(const Trajectory *a, const Trajectory *b, int step) {
     int64_t count = a->contact_start[step + 1] - a->contact_start[step];
     return count == b->contact_start[step + 1] - b->contact_start[step] &&

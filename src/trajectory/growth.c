@@ -9,7 +9,7 @@
 
 static const double LN_2 = 0.69314718055994530942;
 
-/* Sets all but the rate; logarithms and times [end - from] are filled in up to count. */
+/* Sets all members but the rate; fills `count` of logarithms and times [end - from]. */
 static void find_window(Growth *growth, const double *distance, int from, int end, double dt, double *times,
                         double *logarithms) {
     growth->end = end;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Bytes of all arrays in a file. No reader takes more than 2 GiB, so none is made. */
+/* Bytes of all arrays in a file. Readers accept at most 2 GiB, so no larger trajectory is made. */
 static const double MAX_BYTES = 2147483648.0;
 
 static double measure(double frames, double bodies, double contacts) {
@@ -17,7 +17,7 @@ static double measure(double frames, double bodies, double contacts) {
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
 
-/* calloc, but never NULL for no items. */
+/* calloc, but not NULL for 0 items. */
 static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count : 1, size); }
 
 static bool allocate(Trajectory *t) {
@@ -71,7 +71,7 @@ bool trajectory_has(const Trajectory *t, int frame, int body) {
     return isfinite(position.x) && isfinite(position.y);
 }
 
-/* The steps after the last one that has contacts, up to `step`, begin and end where it ends. */
+/* Sets contact_start of steps without contacts, from the last step with contacts up to `step`. */
 static void end_steps(Trajectory *t, int step, int64_t count) {
     for (int k = t->last_step + 1; k <= step; k++) t->contact_start[k + 1] = count;
     if (step > t->last_step) t->last_step = step;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contacts as the files hold them: one array for each of their quantities. Only trajectory_read.c and
-   trajectory_write.c include this. */
+/* Contacts as stored in files: one array per quantity. Only trajectory_read.c and trajectory_write.c include this. */
 #pragma once
 #include "trajectory/trajectory.h"
 

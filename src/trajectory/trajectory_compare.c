@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where two trajectories part. */
+/* Where two trajectories differ. */
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ static void describe_first(const Trajectory *a, const Trajectory *b, int frame, 
     d->body = body;
     StateDifference state = trajectory_state_difference(a, b, frame, body);
     if (!state.in_a || !state.in_b)
-        snprintf(d->what, sizeof d->what, "body %d is in frame %d of the %s only", body, frame,
+        snprintf(d->what, sizeof d->what, "body %d exists in frame %d of the %s only", body, frame,
                  state.in_a ? "first" : "second");
     d->distance = state.distance;
     d->angle = state.angle;

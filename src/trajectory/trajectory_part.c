@@ -8,7 +8,7 @@ static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body,
     return !by.in_a || !by.in_b || by.distance > tolerance;
 }
 
-/* The first frame from `frame` on in which a body is apart. */
+/* The first frame from `frame` on in which a body differs. */
 static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames, double tolerance) {
     PartedBody parted = {.frame = -1, .body = -1};
     for (; parted.frame < 0 && frame < frames; frame++)
@@ -21,7 +21,7 @@ static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int fram
     return parted;
 }
 
-/* The first step up to `last` with any contact that differs. */
+/* The first step up to `last` with a contact that differs. */
 static bool find_step(const Trajectory *a, const Trajectory *b, int last, TrajectoryParting *parting, Error *error) {
     parting->step = -1;
     for (int step = 1; parting->step < 0 && step <= last; step++) {
@@ -31,7 +31,7 @@ static bool find_step(const Trajectory *a, const Trajectory *b, int last, Trajec
     return true;
 }
 
-/* Every body that differs has just come. Before, the two were equal, so one run tells. */
+/* True if every body that differs has just been added. The previous frames are equal, so one run suffices. */
 static bool only_launched(const Trajectory *a, const Trajectory *b, int frame) {
     for (int body = 0; body < a->bodies; body++)
         if (trajectory_has(a, frame - 1, body) && !trajectory_same_state(a, b, frame, body)) return false;

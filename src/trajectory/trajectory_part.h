@@ -1,57 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why two trajectories part: the first frame in which any bit differs, and what the step that leads there did.
+/* Why two trajectories diverge: the first frame in which any bit differs, and the step that leads to it.
 
-   Contacts of step k come from the poses of frame k - 1. Where all states of frame k - 1 are equal, so are the contacts
-   unless collision detection differs, and what differs in frame k is the solver's work - or what no state shows: the
-   impulses that the step before hands on as a warm start. Those are recorded with the contacts. */
+   Contacts of step k follow from the poses of frame k - 1. If all states of frame k - 1 are equal, so are the contacts,
+   unless collision detection differs. A difference in frame k then comes from the solver, or from the warm start: the
+   impulses of the previous step, which are recorded with its contacts. */
 #pragma once
 #include "trajectory/trajectory_states.h"
 
-/* The contacts of one step of two runs; the same contact is one of the same bodies and feature. */
+/* The contacts of one step of two runs, matched by bodies and feature. */
 typedef struct ContactDifference {
     int count_a, count_b;
-    int only_a, only_b;                     /* which the other does not have */
-    int moved;                              /* the same, but with another point or normal */
-    int changed;                            /* the same, but with another impulse */
-    TrajectoryContact only;                 /* the first that one run only has, where there is one: */
+    int only_a, only_b;                     /* that the other does not have */
+    int moved;                              /* matched, with another point or normal */
+    int changed;                            /* matched, with another impulse */
+    TrajectoryContact only;                 /* the first that exists in one run only, if any: */
     bool only_first_a;                      /* a, or b */
-    TrajectoryContact largest_a, largest_b; /* whose impulses differ most, where any do; of equals the first */
+    TrajectoryContact largest_a, largest_b; /* with the largest difference of impulses, if any; the first of equals */
 } ContactDifference;
 
-/* Of those that touch the body (-1: of all). Contacts count in the order of bodies a, b and feature. False with error set
-   when memory is short. */
+/* Compares the contacts of a body (-1: all), in the order of bodies a, b and feature. False with error set when memory
+   is short. */
 bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int body, ContactDifference *difference,
                         Error *error);
 bool contacts_differ(const ContactDifference *difference);
 
-/* What made the first frame differ in which any bit does. */
+/* The cause of the first difference in any bit. */
 typedef enum PartCause {
     PART_NONE,     /* no state differs */
-    PART_START,    /* it is frame 0 */
-    PART_LAUNCH,   /* only bodies that were not there before */
-    PART_HIDDEN,   /* contacts of an earlier step differ, though no state does: `step` */
-    PART_CONTACTS, /* from equal states, other contacts: collision detection */
-    PART_SOLVER,   /* from equal states and contacts, other impulses */
-    PART_ELSEWHERE /* from equal states, equal contacts and impulses */
+    PART_START,    /* frame 0 differs */
+    PART_LAUNCH,   /* only bodies that did not exist before */
+    PART_HIDDEN,   /* contacts of an earlier step differ, but no state: `step` */
+    PART_CONTACTS, /* equal states, different contacts: collision detection */
+    PART_SOLVER,   /* equal states and contacts, different impulses */
+    PART_ELSEWHERE /* equal states, contacts and impulses */
 } PartCause;
 
 typedef struct PartedBody {
-    int frame, body; /* -1, -1: nowhere. Of the bodies of a frame the first */
-    int bodies;      /* how many part in that frame */
+    int frame, body; /* -1, -1: none. The first body of the frame */
+    int bodies;      /* number of bodies that differ in that frame */
     StateDifference by;
 } PartedBody;
 
 typedef struct TrajectoryParting {
     int frames;                        /* that both have */
     PartedBody first;                  /* any bit of pose or velocity */
-    PartedBody beyond;                 /* positions farther apart than the tolerance, or in one run only */
+    PartedBody beyond;                 /* distance above the tolerance, or in one run only */
     PartCause cause;                   /* of the first */
-    int step;                          /* the first whose contacts differ, -1: none up to the first frame */
+    int step;                          /* the first whose contacts differ; -1: none up to the first frame */
     ContactDifference contacts;        /* of that step */
-    ContactDifference beyond_contacts; /* of the step that leads beyond the tolerance, with that body */
+    ContactDifference beyond_contacts; /* of the step that exceeds the tolerance, with that body */
 } TrajectoryParting;
 
-/* tolerance in m; with 0 any bit counts, and beyond is first. The two are of worlds that do not differ. False with error
-   set when memory is short. */
+/* tolerance in m; with 0 any bit counts, and beyond is first. The two must be of the same world
+   (trajectory_different_worlds). False with error set when memory is short. */
 bool trajectory_part(const Trajectory *a, const Trajectory *b, double tolerance, TrajectoryParting *parting,
                      Error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trajectories from files, which may hold anything. */
+/* Reads trajectories from untrusted files. */
 #include "common/npz.h"
 #include "trajectory/trajectory_arrays.h"
 
@@ -9,10 +9,10 @@
 
 static bool read_version(NpzFile *file, const char *path, Error *error) {
     int32_t version = 0;
-    if (!npz_has(file, "version") || !npz_has(file, "position")) return error_input(error, path, "no trajectory");
+    if (!npz_has(file, "version") || !npz_has(file, "position")) return error_input(error, path, "not a trajectory");
     if (!npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
     return version == TRAJECTORY_VERSION ||
-           error_input(error, path, "trajectory version %d; this program reads %d", (int)version, TRAJECTORY_VERSION);
+           error_input(error, path, "trajectory of version %d; expected version %d", (int)version, TRAJECTORY_VERSION);
 }
 
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
@@ -39,7 +39,7 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
     frames = shape[0];
     bodies = shape[1];
     if (frames < 1 || frames >= INT_MAX || bodies >= INT_MAX)
-        return error_input(error, path, "%lld frames of %lld bodies; at least 1 and less than %d are needed",
+        return error_input(error, path, "%lld frames of %lld bodies; expected at least 1 and less than %d",
                            (long long)frames, (long long)bodies, INT_MAX);
     t->frames = (int)frames;
     t->bodies = (int)bodies;
@@ -85,7 +85,7 @@ static bool read_contacts(Trajectory *t, NpzFile *file, const char *path, Error 
     for (int step = 1; rising && step < t->frames; step++)
         rising = t->contact_start[step] <= t->contact_start[step + 1];
     if (!rising || t->contact_start[t->frames] != shape[0])
-        return error_input(error, path, "contact_start does not rise from 0, 0 to the number of contacts");
+        return error_input(error, path, "contact_start must rise from 0, 0 to the number of contacts");
     ContactArrays arrays = {0};
     bool done = read_contact_arrays(&arrays, file, shape[0], error) &&
                 (join_contacts(t, &arrays, (size_t)shape[0]) || error_memory(error, path));
@@ -119,18 +119,17 @@ static bool was_there(const Trajectory *t, int frame, int body) {
     return false;
 }
 
-/* Bodies may come and may go, but a static one stays (it is drawn once), and none comes back: a body is there over one
-   interval of frames. */
+/* A body exists in one interval of frames; a static body, which is drawn once, until the end. */
 static bool check_presence(const Trajectory *t, int frame, int body, const char *path, Error *error) {
     bool before = frame > 0 && trajectory_has(t, frame - 1, body), now = trajectory_has(t, frame, body);
     if (before && !now && t->fixed[body])
-        return error_input(error, path, "frame %d, body %d: it is static and vanishes", frame, body);
+        return error_input(error, path, "frame %d, body %d: a static body must not be removed", frame, body);
     if (!before && now && was_there(t, frame, body))
-        return error_input(error, path, "frame %d, body %d: it comes back", frame, body);
+        return error_input(error, path, "frame %d, body %d: a removed body must not reappear", frame, body);
     return true;
 }
 
-/* Six finite numbers where the body is there, six NaN where not. */
+/* Six finite numbers if the body exists, else six NaN. */
 static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
     size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
     const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
@@ -145,17 +144,17 @@ static bool check_pose(const Trajectory *t, int frame, int body, const char *pat
     return check_presence(t, frame, body, path, error);
 }
 
-/* A step finds its contacts where the bodies were before it. */
+/* A step's contacts are of bodies that existed before it. */
 
 static bool check_contact(const Trajectory *t, int step, int64_t index, const char *path, Error *error) {
     const TrajectoryContact *contact = &t->contacts[index];
     if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies ||
         !trajectory_has(t, step - 1, contact->a) || !trajectory_has(t, step - 1, contact->b))
-        return error_input(error, path, "step %d, contact %lld: no pair of bodies that are there (%d and %d)", step,
+        return error_input(error, path, "step %d, contact %lld: bodies %d and %d are not an existing pair", step,
                            (long long)index, (int)contact->a, (int)contact->b);
     if (!finite(contact->point) || !finite(contact->normal) || !isfinite(contact->normal_impulse) ||
         !isfinite(contact->tangent_impulse))
-        return error_input(error, path, "step %d, contact %lld: not finite", step, (long long)index);
+        return error_input(error, path, "step %d, contact %lld: a number is NaN or infinite", step, (long long)index);
     return true;
 }
 

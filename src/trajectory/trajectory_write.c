@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trajectories to files. */
+/* Writes trajectories to files. */
 #include "common/file.h"
 #include "common/npz.h"
 #include "trajectory/trajectory_arrays.h"

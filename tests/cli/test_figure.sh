@@ -125,7 +125,7 @@ run 0 figure strip bare.npz -o bare.png
 run 0 figure strip far.npz --at 0.5 -o far.png
 run 0 figure strobe far.npz -o far.svg
 run 0 figure divergence engine.npz far.npz -o far.pdf
-refused "wild.npz: error: step 4, contact 0: not finite" annotated wild.npz -o a.png
+refused "wild.npz: error: step 4, contact 0: a number is NaN or infinite" annotated wild.npz -o a.png
 
 mkdir folder.png
 run 3 figure strip engine.npz -o folder.png

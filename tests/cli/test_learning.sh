@@ -65,7 +65,7 @@ complains "the reference has none"
 run 2 dataset single.yaml -o none.npz --random 0
 complains "--random: error:"
 run 2 dataset single.yaml -o none.npz --random 4
-complains "4 launches a scene; at least 5"
+complains "4 launches per scene; expected at least 5"
 
 # Seen from the contact: impulses for its points, which the scene may name a network for.
 run 0 dataset single.yaml -o points.npz --bomb-x=-2:2:1 --inputs contact --target points
@@ -208,7 +208,7 @@ cmp -s schedule.hash again.hash || fail "a schedule is not repeatable"
 run 2 simulate single.yaml --method learned-momentum:k=7,network=schedule.npz
 complains "schedule.npz: error: has no factors for k=7; it has them for 5, 10, 20, 50"
 run 2 simulate single.yaml --method learned-momentum:network=net.npz
-complains "net.npz: error: holds no momentum-schedules"
+complains "net.npz: error: not a file of kind 'momentum-schedules'"
 run 2 train --kind magic single.yaml -o x.npz
 complains "--kind"
 run 2 train --kind momentum-schedule nowhere.yaml -o x.npz

@@ -98,7 +98,7 @@ complains "is not a method; known: engine, "
 run 2 simulate "$scenes/single.yaml" --method engine:sweeps=3
 complains "'sweeps' is not a setting"
 run 2 simulate "$scenes/single.yaml" --method engine:k=none
-complains "k: error: a whole number"
+complains "k: error: must be a whole number"
 for value in nan 1e9999 1/0 0 -1/60 60x; do
     run 2 simulate "$scenes/single.yaml" --dt=$value
     complains "--dt: error: '$value'"

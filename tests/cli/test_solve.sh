@@ -67,7 +67,7 @@ complains "is not a method; known: engine"
 run 2 solve impact.npz -m pair-net
 complains "network"
 run 2 solve run.npz -m engine
-complains "run.npz: error: holds no contact problem"
+complains "run.npz: error: not a file of kind 'contact problem'"
 head -c 1000 impact.npz >cut.npz
 run 2 solve cut.npz -m engine
 complains "cut.npz: error:"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files
-   are refused (test_npz_hostile.c: files made for harm). test_numpy.c asks NumPy itself. */
+/* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files are refused
+   (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -109,11 +109,11 @@ static void mismatches_name_found_and_wanted(void **state) {
     assert_null(npz_read(file, "no", NPZ_FLOAT32, 0, NULL, &missing));
     assert_error(missing, ERROR_INPUT, "mismatch.npz: error: has no array 'no'");
     assert_null(npz_read(file, "matrix", NPZ_FLOAT64, 2, (int64_t[]){3, 2}, &type));
-    assert_error(type, ERROR_INPUT, "array 'matrix' is float32 of 2 dimensions; float64 of 2 is needed");
+    assert_error(type, ERROR_INPUT, "array 'matrix' is float32 of 2 dimensions; expected float64 of 2");
     assert_false(npz_shape(file, "matrix", NPZ_FLOAT32, 3, found, &rank));
-    assert_error(rank, ERROR_INPUT, "float32 of 3 is needed");
+    assert_error(rank, ERROR_INPUT, "expected float32 of 3");
     assert_null(npz_read(file, "matrix", NPZ_FLOAT32, 2, (int64_t[]){3, 4}, &shape));
-    assert_error(shape, ERROR_INPUT, "array 'matrix' has shape (3, 2); (3, 4) is needed");
+    assert_error(shape, ERROR_INPUT, "array 'matrix' has shape (3, 2); expected (3, 4)");
     char small[13], exact[14];
     assert_false(npz_read_text(file, "name", small, sizeof small, &text));
     assert_error(text, ERROR_INPUT, "'name'");
@@ -226,13 +226,13 @@ static void kind_and_version_are_checked(void **state) {
     Error error;
     assert_true(is_table("table", 3, &error));
     assert_false(is_table("chair", 3, &error));
-    assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
+    assert_error(error, ERROR_INPUT, "kind.npz: error: not a file of kind 'table'");
     assert_false(is_table("tables", 3, &error));
-    assert_error(error, ERROR_INPUT, "kind.npz: error: holds no table");
+    assert_error(error, ERROR_INPUT, "kind.npz: error: not a file of kind 'table'");
     assert_false(is_table("table", 2, &error));
-    assert_error(error, ERROR_INPUT, "table of version 2; this program reads version 3");
+    assert_error(error, ERROR_INPUT, "table of version 2; expected version 3");
     assert_false(is_table("table", 4, &error));
-    assert_error(error, ERROR_INPUT, "kind.npz: error: table of version 4; this program reads version 3");
+    assert_error(error, ERROR_INPUT, "kind.npz: error: table of version 4; expected version 3");
 }
 
 static void scalars_and_names_are_read(void **state) {

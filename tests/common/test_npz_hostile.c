@@ -64,12 +64,13 @@ static void heads_are_read_strictly(void **state) {
     expect_head_refused(HEAD("<f4", "False", "()"), 4, NULL);
     expect_head_refused(HEAD("<U3", "False", "()"), 12, NULL);
     expect_head_refused(HEAD("<f4", "True", "(3, 2)"), 24, "'array' is in Fortran order");
-    expect_head_refused(HEAD(">f4", "False", "(3, 2)"), 24, "'array' is of type '>f4', which");
-    expect_head_refused(HEAD("<f2", "False", "(3, 2)"), 12, "of type '<f2'");
-    expect_head_refused(HEAD("|O", "False", "(3, 2)"), 24, "of type '|O'");
-    expect_head_refused(HEAD("\33[2J", "False", "(3, 2)"), 24, "of type '', which");
+    expect_head_refused(HEAD(">f4", "False", "(3, 2)"), 24, "'array' is of the unsupported type '>f4'");
+    expect_head_refused(HEAD("<f2", "False", "(3, 2)"), 12, "of the unsupported type '<f2'");
+    expect_head_refused(HEAD("|O", "False", "(3, 2)"), 24, "of the unsupported type '|O'");
+    expect_head_refused(HEAD("\33[2J", "False", "(3, 2)"), 24, "of the unsupported type ''");
     expect_head_refused(HEAD("<U2", "False", "(3,)"), 24, "an array of texts");
-    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12, "no plain array");
+    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12,
+                        "not a plain array");
     static const char *const damaged[] = {"(3)",     "(3,2)",   "(,)", "(3, )",           "(3, 2,)",
                                           "(-3, 2)", "(3, 2",   "3",   "(1, 1, 1, 1, 6)", "(99999999999999999999,)",
                                           "( 3, 2)", "(3, 2) x"};
@@ -97,17 +98,17 @@ static void other_files_are_refused(void **state) {
     expect_refused(temporary_path("missing.npz"), "cannot open: ");
     expect_refused("/dev/zero", "not a regular file");
     write_bytes(path, "no zip at all", 13);
-    expect_refused(path, "no .npz");
+    expect_refused(path, "not .npz");
     write_bytes(path, "PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 22);
     expect_refused(path, "");
     write_member(path, "a.txt", "text", 4, ZIP_CM_STORE);
-    expect_refused(path, "something else than named .npy arrays");
+    expect_refused(path, "a member that is not a named .npy array");
     write_member(path, "a\33[2J.npy", "text", 4, ZIP_CM_STORE);
-    expect_refused(path, "something else than named .npy arrays");
+    expect_refused(path, "a member that is not a named .npy array");
     write_member(path, ".npy", "text", 4, ZIP_CM_STORE);
-    expect_refused(path, "something else than named .npy arrays");
+    expect_refused(path, "a member that is not a named .npy array");
     write_member(path, "a.npy", "text", 4, ZIP_CM_STORE);
-    expect_refused(path, "'a' is no .npy array");
+    expect_refused(path, "'a' is not a .npy array");
     write_member(path, "a.npy", "\x93NUMPY\3\0      ", 14, ZIP_CM_STORE);
     expect_refused(path, "'a' is in version 3.0 of .npy");
     write_member(path, "a.npy", "\x93NUMPY\1\0\xff\xff     ", 15, ZIP_CM_STORE);
@@ -171,7 +172,7 @@ static void too_many_arrays_are_refused(void **state) {
     assert_ok(npz_write(path, many, 256, &error), error);
     npz_close(open_file(path));
     assert_ok(npz_write(path, many, 257, &error), error);
-    expect_refused(path, "holds 257 arrays; 1 to 256 are possible");
+    expect_refused(path, "holds 257 arrays; expected 1 to 256");
 }
 
 static void set_little_endian(char *at, uint32_t value) {

@@ -51,7 +51,7 @@ static void a_number_is_read_in_its_range(void **state) {
     assert_ok(settings_float(&settings, "warm", 1, 2, &value, &error), error);
     assert_true(value == 1.25f);
     assert_false(settings_float(&settings, "iterations", 0, 1, &value, &error));
-    assert_error(error, ERROR_INPUT, "iterations: error: a number of 0 to 1 is needed (got '1.25')");
+    assert_error(error, ERROR_INPUT, "iterations: error: must be a number from 0 to 1 (got '1.25')");
 }
 
 static void defaults_do_not_replace(void **state) {
@@ -76,11 +76,11 @@ static void refuse(const char *text, const SettingSpec *table, const char *reaso
 
 static void bad_settings_are_refused(void **state) {
     (void)state;
-    refuse("iterations", known, "'iterations' is no key=value");
-    refuse("iterations=", known, "'iterations=' is no key=value");
-    refuse("=3", known, "no key=value");
-    refuse("warm=on,", known, "no key=value");
-    refuse(",warm=on", known, "no key=value");
+    refuse("iterations", known, "'iterations' is not key=value");
+    refuse("iterations=", known, "'iterations=' is not key=value");
+    refuse("=3", known, "not key=value");
+    refuse("warm=on,", known, "not key=value");
+    refuse(",warm=on", known, "not key=value");
     refuse("warm=on,warm=off", known, "'warm' is given twice");
     refuse("colour=red", known, "'colour' is not a setting; known: iterations, network, warm");
     refuse("colour=red", none, "'colour' is not a setting; known: none");
@@ -116,10 +116,10 @@ static void bad_values_are_refused(void **state) {
     bool warm = true;
     Error error = {0}, other = {0};
     assert_false(settings_int(&settings, "iterations", 1, 10, &iterations, &error));
-    assert_error(error, ERROR_INPUT, "iterations: error: a whole number of 1 to 10 is needed (got '0')");
+    assert_error(error, ERROR_INPUT, "iterations: error: must be a whole number from 1 to 10 (got '0')");
     assert_int_equal(iterations, 5);
     assert_false(settings_bool(&settings, "warm", &warm, &other));
-    assert_error(other, ERROR_INPUT, "warm: error: 'on' or 'off' is needed (got 'yes')");
+    assert_error(other, ERROR_INPUT, "warm: error: must be on or off (got 'yes')");
     assert_true(warm);
 }
 

@@ -73,7 +73,7 @@ static void files_keep_every_bit(void **state) {
     dataset_destroy(read);
 }
 
-/* Rows are as wide as their view and their target say. */
+/* View and target define the width of rows. */
 static void widths_are_those_of_view_and_target(void **state) {
     (void)state;
     Error error = {0};
@@ -192,12 +192,12 @@ static void indices_out_of_range_are_refused(void **state) {
     (void)state;
     Dataset dataset = example();
     numbers.launch[3] = LAUNCHES;
-    assert_written_is_refused(&dataset, "launch: number 3 is 3; 0 to 2");
+    assert_written_is_refused(&dataset, "launch: number 3 is 3; expected 0 to 2");
     numbers.launch[3] = -1;
     assert_written_is_refused(&dataset, "launch: number 3 is -1");
     dataset = example();
     numbers.launch_scene[1] = 2;
-    assert_written_is_refused(&dataset, "launch_scene: number 1 is 2; 0 to 1");
+    assert_written_is_refused(&dataset, "launch_scene: number 1 is 2; expected 0 to 1");
     dataset = example();
     numbers.frame[0] = -1;
     assert_written_is_refused(&dataset, "frame: number 0");
@@ -291,8 +291,7 @@ static void shapes_that_do_not_fit_are_refused(void **state) {
 static void other_files_are_refused(void **state) {
     (void)state;
     const int32_t future = DATASET_VERSION + 1, past = 2;
-    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &past}),
-                   "version 2; this program reads version 3");
+    assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &past}), "version 2; expected version 3");
     assert_refused(write_with((NpzArray){"version", NPZ_INT32, 0, {0}, &future}), "version 3");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "sideways"}), "view: a word that is not known");
     assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, ""}), "target: a word");
@@ -300,8 +299,8 @@ static void other_files_are_refused(void **state) {
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "raw"}), "inputs");
     assert_refused(write_with((NpzArray){"view", NPZ_TEXT, 0, {0}, "contact"}), "inputs");
     assert_refused(write_with((NpzArray){"target", NPZ_TEXT, 0, {0}, "points"}), "changes");
-    assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "no dataset");
-    assert_refused(write_with((NpzArray){.name = "kind"}), "no dataset");
+    assert_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "not a file of kind 'dataset'");
+    assert_refused(write_with((NpzArray){.name = "kind"}), "not a file of kind 'dataset'");
     assert_refused(write_with((NpzArray){.name = "changes"}), "changes");
     assert_refused(temporary_path("missing.npz"), "error:");
     const char *path = write_with((NpzArray){.name = "none"});

@@ -95,7 +95,7 @@ static void net_is_pair_where_there_is_one_pair(void **state) {
     dataset_destroy(net);
 }
 
-/* At rest the engine has converged: the reference says the same; at impacts it does not. */
+/* At rest the engine has converged and equals the reference; at impacts it does not. */
 static void the_reference_labels_what_the_engine_met(void **state) {
     (void)state;
     Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});
@@ -233,7 +233,7 @@ static void refuse(DatasetOptions options, const char *text) {
 
 static void what_cannot_be_recorded_is_refused(void **state) {
     (void)state;
-    refuse((DatasetOptions){.random = 4}, "4 launches a scene; at least 5");
+    refuse((DatasetOptions){.random = 4}, "4 launches per scene; expected at least 5");
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
     refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
            "the reference has none");

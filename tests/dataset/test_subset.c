@@ -122,7 +122,7 @@ static void what_would_leave_nothing_is_refused(void **state) {
     for (int count = -1; count <= 16; count += count == 0 ? 16 : 1) {
         error = (Error){0};
         assert_null(dataset_draw_subset(dataset, count, 1, &error));
-        assert_error(error, ERROR_INPUT, "launches to train on asked for; 1 to 15 are possible");
+        assert_error(error, ERROR_INPUT, "training launches requested; expected 1 to 15");
     }
     dataset_destroy(dataset);
 }

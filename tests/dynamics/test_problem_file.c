@@ -114,7 +114,7 @@ static void bad_heads_are_refused(void **state) {
     REFUSE(problem.body_count, 0, "0 bodies");
     Example example;
     make_example(&example);
-    expect_refused(&example, 0, "stack", "frame is 0");
+    expect_refused(&example, 0, "stack", "frame must be at least 1 (got 0)");
     expect_refused(&example, 1, "st\033[2Jack", "control characters");
 }
 
@@ -134,11 +134,11 @@ static void bad_bodies_are_refused(void **state) {
 
 static void bad_contacts_are_refused(void **state) {
     (void)state;
-    REFUSE(contacts[0].a, -1, "contact 0: no pair of bodies (-1 and 1)");
-    REFUSE(contacts[0].a, 1, "contact 0: no pair of bodies (1 and 1)");
-    REFUSE(contacts[2].b, 3, "contact 2: no pair of bodies (0 and 3)");
-    REFUSE(contacts[0].b, 2, "contact 1: pairs do not rise");
-    REFUSE(contacts[1].a, INT32_MIN, "contact 1: no pair");
+    REFUSE(contacts[0].a, -1, "contact 0: bodies -1 and 1 are not a valid pair");
+    REFUSE(contacts[0].a, 1, "contact 0: bodies 1 and 1 are not a valid pair");
+    REFUSE(contacts[2].b, 3, "contact 2: bodies 0 and 3 are not a valid pair");
+    REFUSE(contacts[0].b, 2, "contact 1: pairs are not sorted");
+    REFUSE(contacts[1].a, INT32_MIN, "contact 1: bodies -2147483648 and 1 are not a valid pair");
     REFUSE(contacts[1].normal.x, 0.7f, "contact 1: its normal is not of unit length");
     REFUSE(contacts[1].normal.x, NAN, "contact_normal[1] is not finite");
     REFUSE(contacts[1].mass_normal, 0, "contact 1: its effective masses");

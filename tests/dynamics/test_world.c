@@ -132,14 +132,14 @@ static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
     fail_step(world, &(FakeSolver){.impulse = 99, .fails = true}, "told to fail");
-    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = INFINITY}, "body 1 left the finite numbers");
-    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "body 1 left the finite numbers");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = INFINITY}, "the state of body 1 is NaN or infinite");
+    fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "the state of body 1 is NaN or infinite");
     step(world, &fake);
     assert_near(world_problem(world)->contacts[0].warm_normal, 7, 0);
     world_destroy(world);
 }
 
-/* A copy goes on as the original does, impulses and all; a step begun and forgotten changes neither. */
+/* A copy continues as the original does, impulses included; a step that is begun and not ended changes neither. */
 static void a_copy_goes_on_as_the_original(void **state) {
     (void)state;
     Error error = {0};
@@ -162,7 +162,7 @@ static void a_copy_goes_on_as_the_original(void **state) {
     world_destroy(copy);
 }
 
-/* Where the method says, with the velocities of the solution. */
+/* Poses from the method, velocities from the solution. */
 static void a_step_can_end_at_poses_given(void **state) {
     (void)state;
     Error error = {0};
@@ -212,7 +212,7 @@ static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
     world_destroy(world);
 }
 
-/* One that comes in its place has neither its impulses nor its box; a copy made meanwhile goes on alike. */
+/* A body added in its place has neither its impulses nor its box; a copy made meanwhile continues alike. */
 static void a_body_in_the_place_of_one_taken_out_starts_anew(void **state) {
     (void)state;
     Error error = {0};

@@ -203,9 +203,9 @@ static void all_instruction_sets_give_the_same_bits(void **state) {
                   (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
     double expected[256] = {0};
     assert_true(made.count <= 256);
-    run_by(&kernels_plain, &made, expected);
+    run_by(&kernels_scalar, &made, expected);
     const double *y = made.block->values[1];
-    const double expected_dot = kernels_plain.dot(y, y + BLOCK_ROWS);
+    const double expected_dot = kernels_scalar.dot(y, y + BLOCK_ROWS);
     const Kernels *list[KERNELS_MAX + 1];
     kernels_list(list);
     for (int k = 0; list[k] != NULL; k++) {

@@ -54,7 +54,7 @@ static void hostile_files_are_refused(void **state) {
     const float fine[] = {0, 0.5f, 0.6f, 0.7f, 0, 0.5f};
     const int32_t two[] = {2, 4};
     assert_refused(write_file(2, kind, 2, two, 6, fine), "version 2");
-    assert_refused(write_file(1, "network", 2, two, 6, fine), "holds no momentum-schedules");
+    assert_refused(write_file(1, "network", 2, two, 6, fine), "not a file of kind 'momentum-schedules'");
     assert_refused(write_file(1, kind, 2, two, 5, fine), "factors");
     assert_refused(write_file(1, kind, 0, two, 0, fine), "0 schedules");
     assert_refused(write_file(1, kind, 2, (const int32_t[]){4, 2}, 6, fine), "sweeps[1] is 2");

@@ -5,7 +5,7 @@
 
 enum { BODIES = 5, STATE = SLOT_BODY_NUMBERS * (BODIES - 1), INPUTS = ROW_LANES + 16 + 32 + 48, HIDDEN = 64 };
 
-/* A view with the numbers that it points to; of all slots, until a test says otherwise. */
+/* A view with its arrays; of all slots, unless a test changes it. */
 typedef struct Scene {
     float bomb[SLOT_BODY_NUMBERS], state[STATE], ones[FIVE_SLOTS], warm[2 * FIVE_SLOTS];
     int32_t slots[FIVE_SLOTS], impulses[2 * FIVE_SLOTS];
@@ -114,7 +114,7 @@ static void what_lies_at_the_centre_projects_to_zero(void **state) {
     float inputs[INPUTS];
     slot_network_look(network, &scene.view, inputs);
     for (int i = 0; i < INPUTS; i++) assert_true(inputs[i] == 0);
-    scene.warm[5] += 1; /* and what lies elsewhere does not */
+    scene.warm[5] += 1; /* and other slots do not */
     slot_network_look(network, &scene.view, inputs);
     bool moved = false;
     for (int i = INPUTS - 48; i < INPUTS; i++) moved |= inputs[i] != 0;

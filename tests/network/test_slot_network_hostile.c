@@ -84,16 +84,18 @@ static void every_array_is_needed(void **state) {
         size_t count = 0;
         for (size_t i = 0; i < VALID_COUNT; i++)
             if (i != left) arrays[count++] = valid[i];
-        assert_slot_network_refused(write_arrays(arrays, count),
-                                    strcmp(valid[left].name, "kind") == 0 ? "holds no scene-net" : valid[left].name);
+        assert_slot_network_refused(write_arrays(arrays, count), strcmp(valid[left].name, "kind") == 0
+                                                                     ? "not a file of kind 'scene-net'"
+                                                                     : valid[left].name);
     }
 }
 
 static void another_kind_or_version_is_refused(void **state) {
     (void)state;
-    assert_slot_network_refused(write_int("version", 0), "scene-net of version 0; this program reads version 2");
-    assert_slot_network_refused(write_int("version", 1), "scene-net of version 1; this program reads version 2");
-    assert_slot_network_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}), "holds no scene-net");
+    assert_slot_network_refused(write_int("version", 0), "scene-net of version 0; expected version 2");
+    assert_slot_network_refused(write_int("version", 1), "scene-net of version 1; expected version 2");
+    assert_slot_network_refused(write_with((NpzArray){"kind", NPZ_TEXT, 0, {0}, "network"}),
+                                "not a file of kind 'scene-net'");
     char endless[600];
     memset(endless, 'x', sizeof endless - 1);
     endless[sizeof endless - 1] = '\0';
@@ -142,7 +144,7 @@ static void bodies_and_slots_out_of_bounds_are_refused(void **state) {
     assert_slot_network_refused(write_int("bomb", 2), "2 bodies, of which 2 is the bomb");
     assert_slot_network_refused(write_int("bomb", -1), "of which -1 is the bomb");
     assert_slot_network_refused(write_int("body_count", 3),
-                                "array 'state_rows' has shape (6, 16); (12, up to 1024) is needed");
+                                "array 'state_rows' has shape (6, 16); expected (12, up to 1024)");
     assert_slot_network_refused(write_int("body_count", INT32_MIN), "state_rows");
     assert_slot_network_refused(write_int("body_count", INT32_MAX), "state_rows");
     assert_slot_network_refused(write_with((NpzArray){"slot_a", NPZ_INT32, 1, {2}, itself}), "slot 0");
@@ -183,7 +185,7 @@ static void absurd_sizes_are_refused(void **state) {
     assert_slot_network_refused(write_shapes(no_slots, 6), "0 slots");
     assert_slot_network_refused(write_shapes(&(Change){"slot_a", {many}}, 1), "20001 slots");
     assert_slot_network_refused(write_shapes(&(Change){"slot_a", {SLOTS_MAX}}, 1),
-                                "array 'present_rows' has shape (2, 16); (20000, up to 1024) is needed");
+                                "array 'present_rows' has shape (2, 16); expected (20000, up to 1024)");
     assert_slot_network_refused(write_shapes(&(Change){"state_rows", {6, wide}}, 1),
                                 "array 'state_rows' has shape (6, 1040)");
     assert_slot_network_refused(write_shapes(&(Change){"last_rows", {4, wide}}, 1), "array 'last_rows'");
@@ -196,10 +198,10 @@ static void absurd_sizes_are_refused(void **state) {
 
 static void numbers_of_sweeps_out_of_bounds_are_refused(void **state) {
     (void)state;
-    assert_slot_network_refused(write_int("sweeps", -1), "sweeps is -1; 0 to 64 are possible");
-    assert_slot_network_refused(write_int("sweeps", 65), "sweeps is 65; 0 to 64 are possible");
+    assert_slot_network_refused(write_int("sweeps", -1), "sweeps is -1; expected 0 to 64");
+    assert_slot_network_refused(write_int("sweeps", 65), "sweeps is 65; expected 0 to 64");
     assert_slot_network_refused(write_int("sweeps", INT32_MAX), "sweeps is 2147483647");
-    assert_slot_network_refused(write_int("sweeps", 2), "array 'factors' has shape (0); (2) is needed");
+    assert_slot_network_refused(write_int("sweeps", 2), "array 'factors' has shape (0); expected (2)");
 }
 
 /* Cut off anywhere, or with a byte flipped inside the last matrix. */

@@ -76,7 +76,7 @@ static Vec2 velocity_after(const Example *example, int i, ContactImpulse *push) 
     moment.impulses += i;
     moment.alone = push;
     moment.pushes = pushes;
-    pair_moment_look(&moment, &alone);
+    pair_moment_jacobi(&moment, &alone);
     const int bodies[2] = {contact->a, contact->b};
     for (int k = 0; k < 2; k++) {
         const BodyVelocity *before = &moment.velocities[bodies[k]], *change = &pushes[bodies[k]];
@@ -97,7 +97,7 @@ static void a_contact_alone_comes_to_its_bias(void **state) {
             example.contacts[i].friction = 0;
             example.moment.impulses[i].tangent = 0;
         }
-        pair_moment_look(&example.moment, &example.problem);
+        pair_moment_jacobi(&example.moment, &example.problem);
         for (int i = 0; i < example.problem.contact_count; i++) {
             ContactImpulse push;
             const float approach = velocity_after(&example, i, &push).x, bias = example.contacts[i].bias;
@@ -123,7 +123,7 @@ static void pushes_keep_the_cone(void **state) {
     for (uint32_t seed = 1; seed <= 20; seed++) {
         static Example example;
         make_example(&example, seed, -1);
-        pair_moment_look(&example.moment, &example.problem);
+        pair_moment_jacobi(&example.moment, &example.problem);
         for (int i = 0; i < example.problem.contact_count; i++) {
             const ContactPoint *contact = &example.contacts[i];
             const ContactImpulse before = example.moment.impulses[i], push = example.moment.alone[i];
@@ -150,10 +150,10 @@ static void others_are_all_without_the_own(void **state) {
     for (uint32_t seed = 1; seed <= 20; seed++) {
         static Example all, without;
         make_example(&all, seed, -1);
-        pair_moment_look(&all.moment, &all.problem);
+        pair_moment_jacobi(&all.moment, &all.problem);
         for (int first = 0, pair = 0; first < all.problem.contact_count; pair++, pairs++) {
             make_example(&without, seed, pair);
-            pair_moment_look(&without.moment, &without.problem);
+            pair_moment_jacobi(&without.moment, &without.problem);
             const int bodies[2] = {all.contacts[first].a, all.contacts[first].b};
             for (int k = 0; k < 2; k++) {
                 const BodyVelocity others = pair_moment_others(&all.moment, &all.problem, first, bodies[k]);

@@ -114,7 +114,7 @@ static void what_cannot_be_run_is_refused(void **state) {
     Error error = {0};
     TransferStudy study = {.transfer = true, .seed = 1, .launches = 5, .iterations = 3};
     assert_false(transfer_study_run(&data, &study, &result, NULL, &error));
-    assert_error(error, ERROR_INPUT, "5 launches to train on asked for; 1 to 4 are possible");
+    assert_error(error, ERROR_INPUT, "5 training launches requested; expected 1 to 4");
     error = (Error){0};
     study.launches = 1;
     assert_false(transfer_study_run(&data, &study, &result, &progress, &error));

@@ -31,7 +31,7 @@ static inline Scene *good_scene(const char *text) {
     return scene;
 }
 
-/* What an error says behind "path:". */
+/* The part of an error behind "path:". */
 static inline const char *behind_path(const Error *error) {
     const char *path = temporary_path("scene.yaml");
     if (strncmp(error->message, path, strlen(path)) != 0 || error->message[strlen(path)] != ':')

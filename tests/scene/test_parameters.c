@@ -156,15 +156,15 @@ static const Refused chains[] = {
     {SCENE("$height/0"), "6:44: error: mass is divided by 0 (got $height/0 with height = 10)"},
     {SCENE("1/0*$height"), "6:44: error: mass is divided by 0 (got 1/0*$height with height = 10)"},
     {SCENE("1/1e-400"), "6:44: error: mass is divided by 0 (got 1/1e-400)"},
-    {SCENE("$"), "6:44: error: mass: the name of a parameter must follow the '$' (got $)"},
-    {SCENE("2*$"), "6:44: error: mass: the name of a parameter must follow the '$' (got 2*$)"},
-    {SCENE("$*2"), "6:44: error: mass: the name of a parameter must follow the '$' (got $*2)"},
-    {SCENE("$Height"), "6:44: error: mass: the name of a parameter must follow the '$' (got $Height)"},
-    {SCENE("2*$hieght"), "6:44: error: mass: unknown parameter '$hieght'; did you mean 'height'?"},
-    {SCENE("$speed"), "6:44: error: mass: unknown parameter '$speed'; known: height, ratio"},
-    {MASS("$speed"), "6:44: error: mass: unknown parameter '$speed'; known: none"},
+    {SCENE("$"), "6:44: error: mass: a parameter's name must follow the '$' (got $)"},
+    {SCENE("2*$"), "6:44: error: mass: a parameter's name must follow the '$' (got 2*$)"},
+    {SCENE("$*2"), "6:44: error: mass: a parameter's name must follow the '$' (got $*2)"},
+    {SCENE("$Height"), "6:44: error: mass: a parameter's name must follow the '$' (got $Height)"},
+    {SCENE("2*$hieght"), "6:44: error: mass: '$hieght' is not a parameter; did you mean 'height'?"},
+    {SCENE("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: height, ratio"},
+    {MASS("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: none"},
     {MASS("$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"),
-     "6:44: error: mass: unknown parameter '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa'; known: none"},
+     "6:44: error: mass: '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa' is not a parameter; known: none"},
     {SCENE("2*"), "6:44: error: mass " CHAIN " (got 2*)"},
     {SCENE("'*2'"), "6:45: error: mass " CHAIN " (got *2)"},
     {SCENE("2**3"), "6:44: error: mass " CHAIN " (got 2**3)"},
@@ -177,14 +177,14 @@ static const Refused chains[] = {
     {SCENE("(2*$height)"), "6:44: error: mass " CHAIN " (got (2*$height))"},
     {SCENE("2*inf"), "6:44: error: mass " CHAIN " (got 2*inf)"},
     {SCENE("1e308*1e308"), "6:44: error: mass " CHAIN " (got 1e308*1e308)"},
-    {SCENE(EIGHT("1e38*") "1e38"), "6:44: error: mass leaves the finite numbers on the way (got "
+    {SCENE(EIGHT("1e38*") "1e38"), "6:44: error: mass has an intermediate result that is infinite (got "
                                    "1e38*1e38*1e38*1e38*1e38*1e38*1e38*1e38*1...)"},
     {SCENE(EIGHT("1*1*") "1"),
-     "6:44: error: mass: a chain may have at most 16 numbers (got 1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1)"},
+     "6:44: error: mass: a chain must have at most 16 numbers (got 1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1)"},
     {SCENE(EIGHT(EIGHT(EIGHT("2*3*"))) "1"),
-     "6:44: error: mass: a chain may have at most 16 numbers (got 2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2...)"},
+     "6:44: error: mass: a chain must have at most 16 numbers (got 2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2...)"},
     {BODY("size: [1, $height], mass: 1, position: [0, 0]"),
-     "6:16: error: size: unknown parameter '$height'; known: none"},
+     "6:16: error: size: '$height' is not a parameter; known: none"},
 };
 
 /* The value of a key of the scene, and a parameter half. */
@@ -203,7 +203,7 @@ static const Refused whole_numbers[] = {
      "2:13: error: iterations must be a whole number from 1 to 1000000 (got 1e+24, from $big*$big*$big*$big with big = "
      "1000000)"},
     {WHOLE("iterations: 1/0"), "2:13: error: iterations is divided by 0 (got 1/0)"},
-    {WHOLE("iterations: 2*$haf"), "2:13: error: iterations: unknown parameter '$haf'; did you mean 'half'?"},
+    {WHOLE("iterations: 2*$haf"), "2:13: error: iterations: '$haf' is not a parameter; did you mean 'half'?"},
     {WHOLE("dt: $half*$half*$half"), "1:1: error: a scene needs the key 'iterations'"},
 };
 
@@ -212,17 +212,17 @@ static const Refused whole_numbers[] = {
 #define NAME_32 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
 static const Refused parameters[] = {
-    {BASE GROUND "parameters: 3\n", "7:13: error: parameters is a mapping of names to values (got 3)"},
-    {BASE GROUND "parameters:\n", "7:1: error: parameters is a mapping of names to values (got nothing)"},
-    {BASE GROUND "parameters: {}\nparameters: {}\n", "8:1: error: key 'parameters' is there twice"},
+    {BASE GROUND "parameters: 3\n", "7:13: error: parameters must be a mapping of names to values (got 3)"},
+    {BASE GROUND "parameters:\n", "7:1: error: parameters must be a mapping of names to values (got nothing)"},
+    {BASE GROUND "parameters: {}\nparameters: {}\n", "8:1: error: key 'parameters' is given twice"},
     {BASE GROUND "parameters: {}\n", NULL},
-    {PARAMETERS("a: 3"), "8:6: error: a parameter is a mapping of keys to values (got 3)"},
+    {PARAMETERS("a: 3"), "8:6: error: a parameter must be a mapping of keys to values (got 3)"},
     {PARAMETERS("A: {value: 1, from: 0, to: 2}"),
-     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got A)"},
+     "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got A)"},
     {PARAMETERS("[a]: {value: 1, from: 0, to: 2}"),
-     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got a list)"},
+     "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got a list)"},
     {PARAMETERS(NAME_32 ": {value: 1, from: 0, to: 2}"),
-     "8:3: error: a parameter's name is made of a-z, 0-9 and _, at most 31 of them (got " NAME_32 ")"},
+     "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got " NAME_32 ")"},
     {ONE("value: 1, from: 0"), "8:6: error: a parameter needs the key 'to'"},
     {ONE("value: 1, form: 0"), "8:17: error: 'form' is not a key of a parameter; did you mean 'from'?"},
     {ONE("value: 1, from: 2, to: 3"), "8:14: error: value must be from 2 to 3 (got 1)"},
@@ -232,19 +232,20 @@ static const Refused parameters[] = {
     {ONE("value: [1], from: 3, to: 0"), "8:14: error: value must be a number (got a list)"},
     {ONE("value: .nan, from: 3, to: 0"), "8:14: error: value must be a number (got .nan)"},
     {ONE("value: 1e999, from: 3, to: 0"), "8:14: error: value must be a number (got 1e999)"},
-    {ONE("value: 1, from: $a, to: 3"), "8:23: error: from may not be made of parameters itself (got $a)"},
+    {ONE("value: 1, from: $a, to: 3"), "8:23: error: from must not contain parameters (got $a)"},
     {ONE("value: 1.5, from: 1, to: 2, whole: on"),
-     "8:14: error: value must be a whole number, as whole is on (got 1.5)"},
-    {ONE("value: 1, from: 1, to: 2.5, whole: on"), "8:30: error: to must be a whole number, as whole is on (got 2.5)"},
+     "8:14: error: value must be a whole number, because whole is on (got 1.5)"},
+    {ONE("value: 1, from: 1, to: 2.5, whole: on"),
+     "8:30: error: to must be a whole number, because whole is on (got 2.5)"},
     {ONE("value: 1, from: 1, to: 2, unit: [m]"), "8:39: error: unit must be a text of at most 24 bytes (got a list)"},
     {ONE("value: 1, from: 1, to: 2, unit: " NAME_32),
      "8:39: error: unit must be a text of at most 24 bytes (got " NAME_32 ")"},
-    {ONE("value: 1, from: 0, to: 2"), "8:3: error: no number of the scene has the parameter '$a'"},
+    {ONE("value: 1, from: 0, to: 2"), "8:3: error: no number of the scene uses the parameter '$a'"},
     {PARAMETERS("a: {value: 1, from: 0, to: 2}\n  a: {value: 1, from: 0, to: 2}"),
-     "9:3: error: key 'a' is there twice"},
+     "9:3: error: key 'a' is given twice"},
     {BASE GROUND "parameters: {a: {value: 1, from: 0, to: 2}, b: {value: 1, from: 0, to: 2}, c: {value: 1, from: 0, "
                  "to: 2},\n d: {value: 1, from: 0, to: 2}, e: {value: 1, from: 0, to: 2}}\n",
-     "8:33: error: a scene may have at most 4 parameters"},
+     "8:33: error: a scene must have at most 4 parameters"},
 };
 
 static void bad_chains_are_refused(void **state) { (void)state, CHECK_TABLE(chains); }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scene file may not say, and the message that each mistake gets. */
+/* Invalid scene files, and the message for each mistake. */
 #include "scene_text.h"
 
 #include "scene/source.h"
@@ -10,8 +10,8 @@
 static const Refused keys[] = {
     {BASE, "1:1: error: a scene needs the key 'bodies'"},
     {GROUND, "1:1: error: a scene needs the key 'gravity'"},
-    {"hello\n", "1:1: error: a scene is a mapping of keys to values (got hello)"},
-    {"- 1\n", "1:1: error: a scene is a mapping of keys to values (got a list)"},
+    {"hello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)"},
+    {"- 1\n", "1:1: error: a scene must be a mapping of keys to values (got a list)"},
     {BASE GROUND "gravty: 1\n", "7:1: error: 'gravty' is not a key of a scene; did you mean 'gravity'?"},
     {BASE GROUND "colour: red\n", "7:1: error: 'colour' is not a key of a scene; known: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
@@ -19,18 +19,18 @@ static const Refused keys[] = {
     {BASE GROUND "\"a\\eb\": red\n", "7:2: error: 'a?b' is not a key of a scene; known: gravity, dt, iterations, "
                                      "warm_starting, accumulate_impulses, "
                                      "position_correction, frames, camera, bodies, bomb, networks, parameters"},
-    {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is there twice"},
+    {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is given twice"},
     {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: a key must be a word"},
     {BODY("massa: 1"), "6:6: error: 'massa' is not a key of a body; did you mean 'mass'?"},
     {BODY("frictoin: 1"), "6:6: error: 'frictoin' is not a key of a body; did you mean 'friction'?"},
-    {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is there twice"},
+    {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is given twice"},
     {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
     {BODY("size: [1, 1], mass: 1"), "6:5: error: a body needs the key 'position'"},
-    {BASE "bodies:\n  - box\n", "6:5: error: a body is a mapping of keys to values (got box)"},
-    {BASE "bodies:\n", "5:1: error: bodies must be a list of one body or more (got nothing)"},
-    {BASE "bodies: []\n", "5:9: error: bodies must be a list of one body or more (got none)"},
-    {BASE "bodies: {}\n", "5:9: error: bodies must be a list of one body or more (got a mapping)"},
+    {BASE "bodies:\n  - box\n", "6:5: error: a body must be a mapping of keys to values (got box)"},
+    {BASE "bodies:\n", "5:1: error: bodies must be a list of at least one body (got nothing)"},
+    {BASE "bodies: []\n", "5:9: error: bodies must be a list of at least one body (got none)"},
+    {BASE "bodies: {}\n", "5:9: error: bodies must be a list of at least one body (got a mapping)"},
 };
 
 static const Refused numbers[] = {
@@ -81,10 +81,11 @@ static const Refused bodies[] = {
     {BODY("friction: 11"), "6:16: error: friction must be from 0 to 10 (got 11)"},
     {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
     {BODY("size: [1, 1], position: [0, 0], static: off"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
-    {BODY(BOX ", static: true"), "6:26: error: a static body has no mass"},
+    {BODY(BOX ", static: true"), "6:26: error: a static body must not have a mass"},
     {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
-     "6:60: error: a static body has no velocity"},
-    {BODY("static: on, size: [1, 1], position: [0, 0], spin: 1"), "6:56: error: a static body has no spin"},
+     "6:60: error: a static body must not have the key 'velocity'"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], spin: 1"),
+     "6:56: error: a static body must not have the key 'spin'"},
     {BODY(BOX ", pattern: heap"), "6:56: error: pattern must be row, stack or pyramid (got heap)"},
     {BODY(BOX ", pattern: [row]"), "6:56: error: pattern must be row, stack or pyramid (got a list)"},
     {BODY(BOX ", pattern: row, count: 3"), "6:5: error: a pattern needs the key 'spacing'"},
@@ -94,33 +95,33 @@ static const Refused bodies[] = {
     {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
     {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
     {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
-     "6:68: error: body 3 of the pattern would lie at (0, 1.5e+06), beyond 1e+06 m"},
+     "6:68: error: body 3 of the pattern is at (0, 1.5e+06), beyond 1e+06 m"},
 };
 
 static const Refused untils[] = {
     {BODY(BOX ", until: 300"), NULL},
     {BODY(BOX ", until: 0"), "6:54: error: until must be a whole number from 1 to 1000000 (got 0)"},
-    {BODY(BOX ", until: 301"), "6:54: error: the body would go after step 301, after the last (frames: 300)"},
+    {BODY(BOX ", until: 301"), "6:54: error: until 301 is after the last frame (frames: 300)"},
     {BODY(BOX ", until: 3}\n  - {" BOX), "6:54: error: only the last body may have an until"},
     {BODY(BOX ", until: 3") "bomb: {x: 1, y: 15, size: [1, 1], mass: 50}\n",
-     "6:54: error: until does not go with a bomb"},
+     "6:54: error: until cannot be combined with a bomb"},
     {BODY(BOX ", until: 3, pattern: row, count: 1, spacing: [1, 1]"),
-     "6:54: error: until is for a single body and not for a pattern"},
-    {BODY("static: on, size: [1, 1], position: [0, 0], until: 1"), "6:57: error: a static body has no until"},
+     "6:54: error: until is only for a single body, not for a pattern"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], until: 1"),
+     "6:57: error: a static body must not have the key 'until'"},
 };
 
 #define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
 
 static const Refused bombs[] = {
-    {BASE GROUND "bomb: 5\n", "7:7: error: a bomb is a mapping of keys to values (got 5)"},
+    {BASE GROUND "bomb: 5\n", "7:7: error: a bomb must be a mapping of keys to values (got 5)"},
     {BASE GROUND "bomb: {y: 1}\n", "7:7: error: a bomb needs the key 'x'"},
     {BASE GROUND "bomb: {" BOMB ", angle: 1}\n", "7:45: error: 'angle' is not a key of a bomb; known: x, y, size, "
                                                  "mass, friction, rotation, spin, frame, velocity, impact_frames"},
     {BASE GROUND "bomb: {" BOMB ", frame: -1}\n",
      "7:52: error: frame must be a whole number from 0 to 1000000 (got -1)"},
     {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
-    {BASE GROUND "bomb: {" BOMB ", frame: 301}\n",
-     "7:7: error: the bomb would come in frame 301, after the last (frames: 300)"},
+    {BASE GROUND "bomb: {" BOMB ", frame: 301}\n", "7:7: error: the bomb's frame 301 is after the last (frames: 300)"},
     {BASE GROUND "bomb: {" BOMB ", impact_frames: 0}\n",
      "7:60: error: impact_frames must be a whole number from 1 to 1000000 (got 0)"},
     {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n", "7:55: error: velocity must be a list of two numbers (got 3)"},
@@ -128,22 +129,23 @@ static const Refused bombs[] = {
     {BASE GROUND "bomb: {" BOMB ", velocity: {times: 3}}\n",
      "7:56: error: 'times' is not a key of a velocity law; known: times_position"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
-     "7:55: error: the bomb would start with (1000, 15000) m/s, above 10000"},
+     "7:55: error: the bomb's start velocity is (1000, 15000) m/s; the largest allowed component is 10000"},
 };
 
 static const Refused networks[] = {
-    {BASE GROUND "networks: x.npz\n", "7:11: error: networks is a mapping of methods to files (got x.npz)"},
-    {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name is made of a-z, 0-9 and - (got Pair)"},
-    {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network is the path of a file (got a list)"},
-    {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network is the path of a file (got nothing)"},
-    {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network is the path of a file (got b?c)"},
-    {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is there twice"},
+    {BASE GROUND "networks: x.npz\n", "7:11: error: networks must be a mapping of methods to files (got x.npz)"},
+    {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name must consist of a-z, 0-9 and - (got Pair)"},
+    {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network must be the path of a file (got a list)"},
+    {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network must be the path of a file (got nothing)"},
+    {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network must be the path of a file (got b?c)"},
+    {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is given twice"},
     {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, i: b}\n",
-     "7:60: error: a scene may name at most 8 networks"},
+     "7:60: error: a scene must have at most 8 networks"},
     {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
-     "7:15: error: the path of a network may have at most 511 bytes"},
-    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n", "7:12: error: a method's name is made of a-z, 0-9 and - (got "
-                                                         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+     "7:15: error: the path of a network must have at most 511 bytes"},
+    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",
+     "7:12: error: a method's name must consist of a-z, 0-9 and - (got "
+     "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused yaml[] = {
@@ -155,19 +157,19 @@ static const Refused yaml[] = {
                                   "warm_starting, accumulate_impulses, "
                                   "position_correction, frames, camera, bodies, bomb, networks, parameters"},
     {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed in a scene"},
-    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a scene file holds one document only"},
-    {"a: \"\\0\"\n", "1:5: error: a text may not contain the character \\0"},
-    {"a: \x01\n", "1:4: error: control character 0x01 in a text file"},
-    {"a: b\n\xc3\xa4\xff\n", "2:2: error: this is not UTF-8 text"},
-    {"a: \xc0\x80\n", "1:4: error: this is not UTF-8 text"},
-    {"a: \xed\xa0\x80\n", "1:4: error: this is not UTF-8 text"},
-    {"a: \xf4\x90\x80\x80\n", "1:4: error: this is not UTF-8 text"},
-    {"a: \xe2\x82", "1:4: error: this is not UTF-8 text"},
+    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a scene file must hold one document only"},
+    {"a: \"\\0\"\n", "1:5: error: a text must not contain the character \\0"},
+    {"a: \x01\n", "1:4: error: control character 0x01 in a scene file"},
+    {"a: b\n\xc3\xa4\xff\n", "2:2: error: not UTF-8 text"},
+    {"a: \xc0\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xed\xa0\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xf4\x90\x80\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xe2\x82", "1:4: error: not UTF-8 text"},
     {"\xff\xfe"
      "a",
-     "1:1: error: this is not UTF-8 text"},
-    {"", "1:1: error: there is no scene in this file"},
-    {"# nothing\n", "1:1: error: there is no scene in this file"},
+     "1:1: error: not UTF-8 text"},
+    {"", "1:1: error: the file holds no scene"},
+    {"# nothing\n", "1:1: error: the file holds no scene"},
 };
 
 static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
@@ -182,7 +184,7 @@ static void nul_bytes_are_refused(void **state) {
     (void)state;
     static const char text[] = "dt: 1\0\niterations: 10\n";
     expect_refused_bytes(text, sizeof text - 1,
-                         "1:6: error: control character 0x00 in a text file\n"
+                         "1:6: error: control character 0x00 in a scene file\n"
                          "    1 | dt: 1?\n"
                          "      |      ^");
 }
@@ -221,14 +223,14 @@ static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
-    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07 in a text file\n"
+    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07 in a scene file\n"
                                               "    1 | {\"\xc3\xa4\": 1?}\n"
                                               "      |        ^");
 }
 
 static void byte_order_mark_is_no_character(void **state) {
     (void)state;
-    expect_refused("\xef\xbb\xbfhello\n", "1:1: error: a scene is a mapping of keys to values (got hello)\n"
+    expect_refused("\xef\xbb\xbfhello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)\n"
                                           "    1 | hello\n"
                                           "      | ^");
 }

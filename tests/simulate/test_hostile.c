@@ -113,7 +113,7 @@ static bool run_scene(const Scene *scene, int number, const Method *method) {
         if (ok)
             assert_finite(world, method->text, number, step);
         else
-            assert_error(error, ERROR_INPUT, "left the finite numbers");
+            assert_error(error, ERROR_INPUT, "is NaN or infinite");
     }
     stepper_destroy(stepper);
     world_destroy(world);

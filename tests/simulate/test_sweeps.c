@@ -32,7 +32,7 @@ static void run_scene(const char *name, float bomb_x) {
     scene->bomb.body.position.x = bomb_x;
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
-    Kernels kernels = {.reference = {.plain = {.plain = true}}};
+    Kernels kernels = {.reference = {.plain = {.scalar = true}}};
     assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, &kernels}, &error), error);
     free_kernels(kernels.engine);
     free_kernels(kernels.momentum);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every sweep kernel that this processor has beside the plain text. */
+/* Every sweep kernel of this processor against the scalar reference implementation. */
 #pragma once
 #include "testing.h"
 
@@ -27,8 +27,8 @@ static inline void free_solution(ContactSolution *solution) {
     free(solution->impulses);
 }
 
-/* What rounding makes of the fastest velocity of a problem, m/s and rad/s: the unit of what two solvers may differ by that
-   do the same in another order. */
+/* The rounding error of the largest velocity of a problem, m/s and rad/s: the unit of differences between solvers that
+   perform the same operations in another order. */
 static inline double rounding_of(const ContactProblem *problem) {
     float most = 1;
     for (int i = 0; i < problem->body_count; i++) {
@@ -45,8 +45,8 @@ static inline void assert_same_bits(const ContactProblem *problem, const Contact
         fail_msg("%s, %d bodies, %d contacts: other bits", what, problem->body_count, problem->contact_count);
 }
 
-/* Fails where any kernel gives another bit than the plain text. `sweeps` is used again from call to call, so that
-   stale schedules are met too. */
+/* Fails if the bits of any kernel differ from the scalar reference implementation. `sweeps` is reused from call to
+   call, to test stale schedules. */
 static inline void assert_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const ContactProblem *problem,
                                         const SequentialOptions *options, int iterations) {
     ContactSolution plain = make_solution(problem), fast = make_solution(problem);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference by the vectors of this processor, beside its plain text. */
+/* The reference's vectorised sweeps against the scalar ones. */
 #pragma once
 #include "testing.h"
 
 #include "reference/reference.h"
 
-/* Used again from call to call, so that what a problem before left behind is met too. plain.plain is to be set. */
+/* Reused from call to call, to test data that earlier problems leave. plain.scalar must be set. */
 typedef struct ReferenceKernels {
     Reference lanes, plain;
 } ReferenceKernels;
@@ -21,7 +21,7 @@ static inline void assert_reference_kernels_agree(ReferenceKernels *kernels, con
     Error error = {0};
     int visits = sweeps * problem->contact_count;
     Reference *lanes = &kernels->lanes, *plain = &kernels->plain;
-    assert_true(plain->plain && !lanes->plain);
+    assert_true(plain->scalar && !lanes->scalar);
     assert_ok(reference_solve(lanes, problem, 0, visits, NULL, &error), error);
     assert_ok(reference_solve(plain, problem, 0, visits, NULL, &error), error);
     assert_int_equal(lanes->sweeps, plain->sweeps);

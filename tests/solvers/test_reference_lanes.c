@@ -7,7 +7,7 @@
 static void random_problems_have_the_bits_of_the_plain_text(void **state) {
     (void)state;
     static RandomProblem random;
-    ReferenceKernels kernels = {.plain = {.plain = true}};
+    ReferenceKernels kernels = {.plain = {.scalar = true}};
     uint32_t seed = 3;
     const int sweeps[] = {2, 3, 10, 17, 40};
     for (int i = 0; i < 600; i++) {
@@ -24,7 +24,7 @@ static void random_problems_have_the_bits_of_the_plain_text(void **state) {
 static void a_body_with_very_many_contacts_has_the_bits_of_the_plain_text(void **state) {
     (void)state;
     static RandomProblem random;
-    ReferenceKernels kernels = {.plain = {.plain = true}};
+    ReferenceKernels kernels = {.plain = {.scalar = true}};
     uint32_t seed = 5;
     make_random(&random, &seed, BODIES_MAX, 0, 1);
     for (int i = 0; i < BODIES_MAX; i++) random.bodies[i].inv_mass = random.bodies[i].inv_inertia = 1;

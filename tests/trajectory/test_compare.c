@@ -90,7 +90,7 @@ static void a_body_in_one_only(void **state) {
     TrajectoryDifference d = compared();
     assert_false(d.equal);
     assert_true(d.frame == 1 && d.body == 2 && d.distance == 0 && d.max_distance == 0);
-    assert_string_equal(d.what, "body 2 is in frame 1 of the second only");
+    assert_string_equal(d.what, "body 2 exists in frame 1 of the second only");
 }
 
 static void other_worlds_are_told_apart(void **state) {

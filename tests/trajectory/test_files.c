@@ -125,11 +125,11 @@ static void a_body_is_there_over_one_interval_of_frames(void **state) {
 
     t = example_trajectory();
     example_pose(t, 0, 2, (float[6]){0});
-    expect_refused(t, "frame 2, body 2: it comes back");
+    expect_refused(t, "frame 2, body 2: a removed body must not reappear");
     trajectory_destroy(t);
     t = example_trajectory();
     leave(t, 3, 0);
-    expect_refused(t, "frame 3, body 0: it is static and vanishes");
+    expect_refused(t, "frame 3, body 0: a static body must not be removed");
     trajectory_destroy(t);
 }
 
@@ -147,28 +147,28 @@ static void contacts_are_of_the_bodies_before_the_step(void **state) {
     assert_int_equal(r->contact_start[EXAMPLE_FRAMES], 2);
     trajectory_destroy(r);
     leave(t, 1, 1);
-    expect_refused(t, "step 2, contact 0: no pair of bodies that are there (0 and 1)");
+    expect_refused(t, "step 2, contact 0: bodies 0 and 1 are not an existing pair");
     trajectory_destroy(t);
 }
 
 static void bad_contacts_are_refused(void **state) {
     (void)state;
-    REFUSE(contacts[1].a, -1, "step 2, contact 1: no pair of bodies that are there (-1 and 1)");
-    REFUSE(contacts[1].a, 1, "(1 and 1)");
-    REFUSE(contacts[1].b, 3, "(0 and 3)");
-    REFUSE(contacts[0].point.x, NAN, "step 2, contact 0: not finite");
-    REFUSE(contacts[0].normal.y, INFINITY, "not finite");
-    REFUSE(contacts[0].normal_impulse, NAN, "not finite");
-    REFUSE(contacts[0].tangent_impulse, NAN, "not finite");
-    REFUSE(contact_start[0], 1, "contact_start does not rise");
-    REFUSE(contact_start[1], 1, "contact_start does not rise");
-    REFUSE(contact_start[2], -1, "contact_start does not rise");
-    REFUSE(contact_start[3], 3, "contact_start does not rise");
-    REFUSE(contact_start[3], INT64_MAX, "contact_start does not rise");
+    REFUSE(contacts[1].a, -1, "step 2, contact 1: bodies -1 and 1 are not an existing pair");
+    REFUSE(contacts[1].a, 1, "bodies 1 and 1 are not an existing pair");
+    REFUSE(contacts[1].b, 3, "bodies 0 and 3 are not an existing pair");
+    REFUSE(contacts[0].point.x, NAN, "step 2, contact 0: a number is NaN or infinite");
+    REFUSE(contacts[0].normal.y, INFINITY, "a number is NaN or infinite");
+    REFUSE(contacts[0].normal_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contacts[0].tangent_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contact_start[0], 1, "contact_start must rise");
+    REFUSE(contact_start[1], 1, "contact_start must rise");
+    REFUSE(contact_start[2], -1, "contact_start must rise");
+    REFUSE(contact_start[3], 3, "contact_start must rise");
+    REFUSE(contact_start[3], INT64_MAX, "contact_start must rise");
     /* Rising, but with a contact in step 0. */
     Trajectory *t = example_trajectory();
     t->contact_start[1] = t->contact_start[2] = 1;
-    expect_refused(t, "contact_start does not rise");
+    expect_refused(t, "contact_start must rise");
     trajectory_destroy(t);
 }
 
@@ -183,7 +183,7 @@ static void a_contact_of_an_absent_body_is_refused(void **state) {
     TrajectoryContact contact = {.a = 0, .b = 1};
     assert_ok(trajectory_add_contact(t, 1, &contact, &error), error);
     trajectory_end_contacts(t);
-    expect_refused(t, "step 1, contact 0: no pair of bodies that are there (0 and 1)");
+    expect_refused(t, "step 1, contact 0: bodies 0 and 1 are not an existing pair");
     trajectory_destroy(t);
 }
 

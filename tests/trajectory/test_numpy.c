@@ -87,15 +87,16 @@ static void expect_refused(const char *change, const char *reason) {
 
 static void what_does_not_fit_is_refused(void **state) {
     (void)state;
-    expect_refused("arrays['version'] = np.int32(2)", "run.npz: error: trajectory version 2; this program reads 1");
-    expect_refused("del arrays['version']", "no trajectory");
+    expect_refused("arrays['version'] = np.int32(2)", "run.npz: error: trajectory of version 2; expected version 1");
+    expect_refused("del arrays['version']", "not a trajectory");
     expect_refused("del arrays['angle']", "has no array 'angle'");
-    expect_refused("arrays['angle'] = n((3, 2), 'f4')", "array 'angle' has shape (3, 2); (3, 1) is needed");
-    expect_refused("arrays['size'] = n((1, 2))", "array 'size' is float64 of 2 dimensions; float32 of 2 is needed");
-    expect_refused("arrays['position'] = n((3, 1, 3), 'f4')", "array 'position' has shape (3, 1, 3); (3, 1, 2)");
+    expect_refused("arrays['angle'] = n((3, 2), 'f4')", "array 'angle' has shape (3, 2); expected (3, 1)");
+    expect_refused("arrays['size'] = n((1, 2))", "array 'size' is float64 of 2 dimensions; expected float32 of 2");
+    expect_refused("arrays['position'] = n((3, 1, 3), 'f4')",
+                   "array 'position' has shape (3, 1, 3); expected (3, 1, 2)");
     expect_refused("arrays['position'] = n((0, 1, 2), 'f4')", "0 frames of 1 bodies");
     expect_refused("arrays['contact_feature'] = n(1, 'u4')", "array 'contact_feature' has shape (1)");
-    expect_refused("arrays['contact_start'][3] = 1", "contact_start does not rise from 0, 0 to the number of contacts");
+    expect_refused("arrays['contact_start'][3] = 1", "contact_start must rise from 0, 0 to the number of contacts");
     expect_refused("arrays['scene'] = 'x' * 128", "text 'scene' is");
     expect_refused("arrays['scene'] = '\\u00e4' * 64", "text 'scene' is");
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The trajectory in memory: who is there, contacts by step, the hash of a frame. */
+/* The trajectory in memory: existing bodies, contacts by step, the hash of a frame. */
 #include "testing.h"
 
 #include "example.h"
