@@ -60,8 +60,7 @@ RegressionText frame_words(const RegressionFrame *frame) {
     }
     if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
-        add(&words, ", ",
-            "states are equal in this frame, but differ elsewhere in the run, which affects camera and scales");
+        add(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
     return words;
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 #include "common/error.h"
 
-/* Reads folder/stability.csv and folder/maps.csv (stability/stability_table.h) and draws, as .png, .svg (chart/gnuplot.h)
-   and a caption .txt of one line,
+/* Reads folder/stability.csv and folder/maps.csv (stability/stability_table.h) and draws, as .png, .svg
+   (chart/gnuplot.h) and a caption .txt of one line,
      map-NAME   one per map: a panel per method, a tile per cell (stability/stability_map.h); in the .svg, tiles link to
                 the cells' clips, whether these exist or not
      borders    how far each method holds in each study (stability/stability_borders.h)

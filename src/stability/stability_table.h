@@ -60,8 +60,8 @@ typedef struct BorderTable {
 } BorderTable;
 
 /* Reads folder/maps.csv; without rows there are no cells. Refused, as "path:line:column: error: reason": what
-   csv_table_read() refuses, a map whose name is not a file name, maps (or methods of a map) whose rows are not together,
-   and more than STABILITY_MAX_PANELS methods of maps. */
+   csv_table_read() refuses, a map whose name is not a file name, maps (or methods of a map) whose rows are not
+   together, and more than STABILITY_MAX_PANELS methods of maps. */
 bool map_table_read(MapTable *table, const char *folder, Error *error);
 void map_table_free(MapTable *table);
 

@@ -40,7 +40,7 @@ typedef struct ChartTable {
     const ChartRow *rows; /* [count] */
 } ChartTable;
 
-/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact), and a
-   median time outside its quartiles. On failure nothing needs to be freed. */
+/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact),
+   and a median time outside its quartiles. On failure nothing is to be freed. */
 bool chart_csv_read(ChartTable *table, const char *path, Error *error);
 void chart_csv_free(ChartTable *table);

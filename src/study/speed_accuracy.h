@@ -31,7 +31,7 @@ typedef struct SpeedAccuracyScene {
     NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
     double frozen_residual;   /* m/s: largest residual of the reference solves of frozen steps */
     int solves, unconverged;  /* reference solves in closed loop since the study was started or resumed; those
-                                       with a residual above SOLVE_CONVERGED (rollout.h) */
+                                 with a residual above SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 
 /* Writes folder/chart.csv and fills scenes[scene_count]. Finished rows are saved in folder/chart-KEY.part.csv: an

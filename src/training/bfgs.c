@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* BFGS: quasi-Newton steps, with curvature estimated from changes of the gradient, and a line search that evaluates the
-   loss several times per step. Source: Fletcher, "Practical Methods of Optimization" (1987), section 2.6; implemented by
-   GSL's vector_bfgs2. Stops if the line search finds no lower loss within rounding. */
+   loss several times per step. Source: Fletcher, "Practical Methods of Optimization" (1987), section 2.6; implemented
+   by GSL's vector_bfgs2. Stops if the line search finds no lower loss within rounding. */
 #include "training/optimizer.h"
 
 #include <gsl/gsl_errno.h>

@@ -3,5 +3,6 @@
 #pragma once
 #include "training/training.h"
 
-/* ERROR_INPUT: layer widths, laws or a start network that do not match the dataset; no training rows or no test rows. */
+/* ERROR_INPUT: layer widths, laws or a start network that do not match the dataset; no training rows or no test
+   rows. */
 bool training_check(const Dataset *dataset, const TrainingOptions *options, Error *error);

@@ -5,8 +5,9 @@
        momentum  |ma dva + mb dvb|, N s: net momentum change; 0 if a body is static
        energy    increase of the pair's kinetic energy, J
        approach  approach velocity along the normal that remains at the mean contact point, m/s
-       cone      distance of the pair's impulse J from Coulomb's friction cone, N s: max(0, |J.t| - mu max(J.n, 0)) along
-                 the tangent plus max(0, -J.n) for pulling. J is the impulse on b, or if b is static minus that on a */
+       cone      distance of the pair's impulse J from Coulomb's friction cone, N s: max(0, |J.t| - mu max(J.n, 0))
+                 along the tangent plus max(0, -J.n) for pulling. J is the impulse on b, or if b is static minus that
+                 on a */
 #pragma once
 #include "pair/pair.h"
 #include "pair/pair_context.h"

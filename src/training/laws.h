@@ -4,9 +4,10 @@
 
        w * mean(excess^2) / scale
 
-   to the loss, where excess = max(0, violation by the prediction - violation by the label): the label violates laws too,
-   where position correction adds energy or other pairs push back. The scale is measured on the labels of the training
-   rows. With w = 1, a violation as large as the label itself costs as much as predicting 0 for a standardised output:
+   to the loss, where excess = max(0, violation by the prediction - violation by the label): the label violates laws
+   too, where position correction adds energy or other pairs push back. The scale is measured on the labels of the
+   training rows. With w = 1, a violation as large as the label itself costs as much as predicting 0 for a standardised
+   output:
 
        momentum, cone  mean |J|^2, J the pair's impulse
        energy          mean square of the change of the pair's kinetic energy

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums over all rows in parallel. Own loops instead of BLAS: the same bits on any machine, and as fast for layers of ten
-   units (products of 10^6 rows of 10-10-2: 0.033 s; OpenBLAS: 0.043 s). */
+/* Sums over all rows in parallel. Own loops instead of BLAS: the same bits on any machine, and as fast for layers of
+   ten units (products of 10^6 rows of 10-10-2: 0.033 s; OpenBLAS: 0.043 s). */
 #include "training/loss.h"
 
 #include <math.h>
@@ -24,8 +24,8 @@ struct Loss {
     Chunk chunks[MAX_CHUNKS];
 };
 
-/* Returns the loss of one error and replaces the error by half the loss's slope: the error, clamped to the threshold. An
-   infinite threshold gives exactly the square and the error. */
+/* Returns the loss of one error and replaces the error by half the loss's slope: the error, clamped to the threshold.
+   An infinite threshold gives exactly the square and the error. */
 static double error_loss(double *error, double threshold) {
     double size = fabs(*error), inner = size < threshold ? size : threshold;
     *error = copysign(inner, *error);

@@ -32,7 +32,8 @@ double loss_gradient(Loss *loss, const Samples *samples, const Laws *laws, const
 /* The loss of predicting constant[outputs] for every row. */
 double loss_of_constant(const Loss *loss, const Samples *samples, const double *constant);
 
-/* For mse only: residuals[blocks, outputs, BLOCK_ROWS] = prediction - target, 0 in the padding rows of the last block. */
+/* For mse only: residuals[blocks, outputs, BLOCK_ROWS] = prediction - target, 0 in the padding rows of the last
+   block. */
 void loss_residuals(Loss *loss, const Samples *samples, const double *parameters, double *residuals);
 
 /* Forward pass on block b of the samples. */

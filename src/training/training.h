@@ -32,9 +32,9 @@ typedef struct TrainingOptions {
     const Network *start; /* continue from its weights, activations and normalisation; or NULL */
 } TrainingOptions;
 
-/* Networks with two outputs learn the change of b's velocity relative to a; the defaults are min-max scaling and sigmoids
-   in all layers (paper, 3.2). Networks with six outputs learn pair_changes(), by default standardised with a linear last
-   layer (3.1). Inputs are standardised. All normalisations come from the training rows.
+/* Networks with two outputs learn the change of b's velocity relative to a; the defaults are min-max scaling and
+   sigmoids in all layers (paper, 3.2). Networks with six outputs learn pair_changes(), by default standardised with a
+   linear last layer (3.1). Inputs are standardised. All normalisations come from the training rows.
 
    Returns the network with the lowest train loss, also if progress stops the training early or the optimiser cannot
    lower the loss further. `command` is left empty. Same bits for any number of threads.

@@ -63,8 +63,8 @@ static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_
     context[CONTEXT_FRICTION] = 0.4f + 0.3f * context[CONTEXT_FRICTION];
 }
 
-/* Six changes and a context; the inputs contain its normal and velocities. The impulses are equal and opposite and within
-   the friction cone; changes of spin are random. */
+/* Six changes and a context; the inputs contain its normal and velocities. The impulses are equal and opposite and
+   within the friction cone; changes of spin are random. */
 static inline Dataset *make_pushed_dataset(int rows) {
     Dataset *dataset = make_dataset(rows);
     dataset->context = calloc((size_t)rows * PAIR_CONTEXT, sizeof(float));

@@ -35,7 +35,8 @@ static void violations_of_known_collisions(void **state) {
     check(&pair, (const double[]){-4, 0, 0, 2, 0, 0}, (const double[]){0, 0, 0, 0});
     /* Three times the impulse: 9 J of the bomb become 9 J of the bomb and 18 J of the box. */
     check(&pair, (const double[]){-6, 0, 0, 3, 0, 0}, (const double[]){0, 18, 0, 0});
-    /* Only the box changes: 4 N s too much; the bomb keeps its 9 J and the box gains 2 J; still approaching at 2 m/s. */
+    /* Only the box changes: 4 N s too much; the bomb keeps its 9 J and the box gains 2 J; still approaching at 2
+       m/s. */
     check(&pair, (const double[]){0, 0, 0, 1, 0, 0}, (const double[]){4, 2, 2, 0});
     /* Pulled by 4 N s: 25 J of the bomb and 2 J of the box; 4 N s of pulling, nothing across. */
     check(&pair, (const double[]){2, 0, 0, -1, 0, 0}, (const double[]){0, 18, 6, 4});

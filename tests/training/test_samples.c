@@ -14,7 +14,8 @@ static Network *make_network(int outputs, Activation last) {
     return network;
 }
 
-/* Five rows: 0 to 3 are training rows, row 4 is the test row. Changes of a's x velocity -0, -1, -2, -3, -6; of b's 0. */
+/* Five rows: 0 to 3 are training rows, row 4 is the test row. Changes of a's x velocity -0, -1, -2, -3, -6; of b's
+   0. */
 static Dataset *small_dataset(void) {
     Dataset *dataset = make_dataset(5);
     for (int r = 0; r < 5; r++) {
@@ -144,8 +145,8 @@ static void the_constant_predictor_has_the_variance(void **state) {
     dataset_destroy(dataset);
 }
 
-/* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the errors of the constant are 0.1, 0.9, 1.9, 2.9 m/s. Up to 0.3 m/s the loss
-   is the square, beyond it 0.6 |e| - 0.09; in the network's units a ninth of that. */
+/* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the errors of the constant are 0.1, 0.9, 1.9, 2.9 m/s. Up to 0.3 m/s the
+   loss is the square, beyond it 0.6 |e| - 0.09; in the network's units a ninth of that. */
 static void the_smooth_loss_is_linear_beyond_its_threshold(void **state) {
     (void)state;
     Error error = {0};

@@ -123,8 +123,8 @@ static bool same_numbers(const Network *a, const Network *b) {
     return memcmp(a->weights[0], b->weights[0], (size_t)network_parameter_count(a) * sizeof(float)) == 0;
 }
 
-/* No hidden layer, weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias for each of the six outputs, so a
-   step at rate 1/2 leaves 5/6 of it. */
+/* No hidden layer, weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias for each of the six outputs, so
+   a step at rate 1/2 leaves 5/6 of it. */
 static void gradient_descent_steps_at_its_rate(void **state) {
     (void)state;
     Dataset *dataset = make_dataset(1000);
