@@ -30,7 +30,7 @@ static bool text_end(Text *text, Error *error) {
 static bool write_markdown(Text *markdown, const char *folder, Error *error) {
     if (!text_begin(markdown, error)) return false;
     const bool filled =
-        template_fill((const char *)paper_report_md, folder, "findings/summary.csv", markdown->out, error);
+        template_fill((const char *)paper_report_md_in, folder, "findings/summary.csv", markdown->out, error);
     return text_end(markdown, error) && filled;
 }
 

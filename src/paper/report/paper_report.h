@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report of the paper's study (Avatavului, Ifrim, Voncila 2023): report.md of this folder, filled (template.h). */
+/* The report of the paper's study (Avatavului, Ifrim, Voncila 2023): report.md.in of this folder, filled in
+   (template.h). */
 #pragma once
 #include "common/error.h"
 
