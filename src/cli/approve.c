@@ -53,7 +53,7 @@ int command_approve(int argc, char **argv, Error *error) {
     if (!approve(options.report, options.only, print_change, &approval, error)) return STATUS_DIFFERENT;
     printf("%d replaced, %d added, %d removed", approval.replaced, approval.added, approval.removed);
     if (approval.already > 0) printf(", %d already accepted", approval.already);
-    if (approval.not_asked > 0) printf(", %d not selected", approval.not_asked);
+    if (approval.not_selected > 0) printf(", %d not selected", approval.not_selected);
     if (approval.not_shown > 0) printf(", %d not shown: compare again with a larger --report-size", approval.not_shown);
     printf("\n");
     return approval.not_shown > 0 ? STATUS_DIFFERENT : STATUS_SAME;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
@@ -34,11 +35,11 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     switch (key) {
     case 'o': options->study.folder = value; break;
     case METHODS: options->study.methods = value; break;
-    case LAUNCHES: options->study.launches = value; break;
+    case LAUNCHES: options->study.launches = installed_path(value); break;
     case QUICK: options->study.quick = true; break;
     case ARGP_KEY_ARG:
         if (options->study.scene_count == STUDY_MAX_SCENES) argp_error(state, "at most %d scenes", STUDY_MAX_SCENES);
-        options->scenes[options->study.scene_count++] = value;
+        options->scenes[options->study.scene_count++] = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->study.scene_count == 0) argp_error(state, "a scene file is needed");

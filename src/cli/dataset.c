@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/names.h"
@@ -53,7 +54,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case ARGP_KEY_ARG:
         if (options->dataset.scene_count == DATASET_MAX_SCENES)
             argp_error(state, "at most %d scenes", DATASET_MAX_SCENES);
-        options->scenes[options->dataset.scene_count++] = value;
+        options->scenes[options->dataset.scene_count++] = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->dataset.scene_count == 0) argp_error(state, "a scene file is needed");

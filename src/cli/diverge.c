@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/diverge_print.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 
@@ -32,7 +33,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     Options *options = state->input;
     switch (key) {
     case TOLERANCE: options->tolerance = value; break;
-    case SCENE: options->scene = value; break;
+    case SCENE: options->scene = installed_path(value); break;
     case CSV: options->csv = value; break;
     case ARGP_KEY_ARG:
         if (options->count == 2) argp_error(state, "only two runs can be compared (third: '%s')", value);

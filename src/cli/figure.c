@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "figure/figure.h"
@@ -34,7 +35,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case 'o': options->output = value; break;
     case AT: options->at = value; break;
     case MOMENTS: options->moments = value; break;
-    case SCENE: options->scene = value; break;
+    case SCENE: options->scene = installed_path(value); break;
     case BODIES: options->bodies = value; break;
     case WIDTH: options->width = value; break;
     case DPI: options->dpi = value; break;
@@ -46,7 +47,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
             break;
         }
         if (options->input_count == FIGURE_RUNS_MAX) argp_error(state, "at most %d runs", FIGURE_RUNS_MAX);
-        options->inputs[options->input_count++] = value;
+        options->inputs[options->input_count++] = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->kind == NULL) argp_error(state, "a kind of figure is needed");

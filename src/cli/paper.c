@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
@@ -15,7 +16,9 @@ enum { SCENES = 256, QUICK, SEED };
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder for tables, figures, networks and the report", 0},
     {"scenes", SCENES, "DIR", 0,
-     "Folder with single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes)", 0},
+     "Folder with single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes, or the installed "
+     "scenes)",
+     0},
     {"quick", QUICK, NULL, 0, "Fewer networks, launches and iterations: under a minute", 0},
     {"seed", SEED, "N", 0, "Seed of launches, splits and initial weights (default: 1)", 0},
     {0}};
@@ -68,7 +71,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 }
 
 int command_paper(int argc, char **argv, Error *error) {
-    Options options = {.study = {.scenes = "scenes"}, .seed = "1"};
+    Options options = {.study = {.scenes = installed_path("scenes")}, .seed = "1"};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     if (!option_seed("--seed", options.seed, &options.study.seed, error)) return STATUS_DIFFERENT;
     ProgressBar bar;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "dynamics/problem_file.h"
 #include "simulate/simulate.h"
@@ -28,7 +29,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case BOMB_X: options->bomb_x = value; break;
     case ARGP_KEY_ARG:
         if (options->scene != NULL) argp_error(state, "only one scene can be given (second: '%s')", value);
-        options->scene = value;
+        options->scene = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->scene == NULL) argp_error(state, "a scene file is needed");

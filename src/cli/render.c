@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/render_look.h"
 #include "common/file.h"
@@ -62,7 +63,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case SET: options_add_set(&options->set, value); break;
     case ARGP_KEY_ARG:
         if (options->input_count == RENDER_PANELS_MAX) argp_error(state, "at most %d panels", RENDER_PANELS_MAX);
-        options->inputs[options->input_count++] = value;
+        options->inputs[options->input_count++] = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->input_count == 0) argp_error(state, "a run (.npz) or a scene (.yaml) is needed");

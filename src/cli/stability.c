@@ -2,6 +2,7 @@
 #include "stability/stability.h"
 
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
@@ -28,7 +29,8 @@ static const struct argp_option option_table[] = {
      "does not report as left out)",
      0},
     {"study", STUDY, "NAME", 0, "Only this study or map (may be repeated; default: all)", 0},
-    {"scenes", SCENES, "DIR", 0, "Folder whose subfolder stability/ has the scenes (default: scenes)", 0},
+    {"scenes", SCENES, "DIR", 0,
+     "Folder whose subfolder stability/ has the scenes (default: scenes, or the installed scenes)", 0},
     {"quick", QUICK, NULL, 0, "Few studies, small maps: under two minutes", 0},
     {"clip", CLIP, "CELL", 0,
      "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map", 0},
@@ -100,7 +102,7 @@ static bool study(const StabilityOptions *options, Error *error) {
 }
 
 int command_stability(int argc, char **argv, Error *error) {
-    Options options = {.study.scenes = "scenes"};
+    Options options = {.study.scenes = installed_path("scenes")};
     if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
     bool ok = options.clip != NULL ? make_clip(&options, error) : study(&options.study, error);
     return ok ? STATUS_SAME : STATUS_DIFFERENT;

@@ -2,6 +2,7 @@
 #include "cli/train.h"
 
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "common/names.h"
 
@@ -47,7 +48,7 @@ static error_t parse(int key, char *value, struct argp_state *state) {
     case KIND: options->kind = value; break;
     case ARGP_KEY_ARG:
         if (options->input != NULL) argp_error(state, "one file at a time ('%s' is a second)", value);
-        options->input = value;
+        options->input = installed_path(value);
         break;
     case ARGP_KEY_END:
         if (options->input == NULL) argp_error(state, "a dataset (or scene) is needed");

@@ -89,8 +89,8 @@ bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayou
 bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...)
     PRINTF_LIKE(5, 6);
 
-/* Writes the file as a whole: its name shows either the old table or the new one. Refused, as they could not be read
-   again: control characters in a text, infinite numbers, NAN where the column is not optional. */
+/* Writes the file atomically. Refused, since they could not be read back: control characters in a text, infinite numbers,
+   and NAN in a column that is not optional. */
 bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows, int count, Error *error);
 
 /* A header line; a row's line. The latter fails where csv_table_write() would, and writes nothing then. */

@@ -2,7 +2,7 @@
 #include "common/hash.h"
 
 /* The same values by the widest vectors that the machine has, in half the time. */
-#if defined(__x86_64__)
+#ifdef TWINBOX_AVX
 #include <xxh_x86dispatch.h>
 #else
 #include <xxhash.h>

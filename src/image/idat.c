@@ -86,7 +86,7 @@ static void compare_rows_baseline(Idat *idat, const uint8_t *row, const uint8_t 
     find_edges(idat->edges, idat->differences, idat->width);
 }
 
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 __attribute__((target("avx2"), flatten)) static void compare_rows_avx2(Idat *idat, const uint8_t *row,
                                                                        const uint8_t *above) {
     subtract((uint8_t *)idat->differences, row, above, idat->width);
@@ -96,7 +96,7 @@ __attribute__((target("avx2"), flatten)) static void compare_rows_avx2(Idat *ida
 
 static void compare_rows(Idat *idat, const uint8_t *row, const uint8_t *above) {
     idat->edges[idat->width] = 1; /* the last run ends with the row */
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
     if (__builtin_cpu_supports("avx2")) {
         compare_rows_avx2(idat, row, above);
         return;

@@ -3,7 +3,7 @@
 
 void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
     int count = 0;
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
     if (__builtin_cpu_supports("avx512f")) list[count++] = &kernels_avx512;
     if (__builtin_cpu_supports("avx2")) list[count++] = &kernels_avx2;
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kernels for AVX2. */
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 #define KERNELS kernels_avx2
 #define KERNELS_NAME "avx2"
 #define VECTOR_BYTES 32

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kernels for AVX-512. */
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 #define KERNELS kernels_avx512
 #define KERNELS_NAME "avx512"
 #define VECTOR_BYTES 64

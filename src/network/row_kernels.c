@@ -5,7 +5,7 @@
 
 void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
     int count = 0;
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
     if (__builtin_cpu_supports("avx512f")) list[count++] = &row_kernels_avx512;
     if (__builtin_cpu_supports("avx2")) list[count++] = &row_kernels_avx2;
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The row kernels for AVX2. */
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 #define ROW_KERNELS row_kernels_avx2
 #define ROW_KERNELS_NAME "avx2"
 #define VECTOR_BYTES 32

@@ -3,7 +3,7 @@
    multiply-add, which would round once where that text rounds twice. */
 #include "reference/reference_units.h"
 
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 
 #include <immintrin.h>
 

@@ -11,7 +11,7 @@
 
 enum { MAX_SIZE = 1 << 25 };
 
-/* The members that are needed. Others (verdict, fuzzy, masks) are skipped. */
+/* The required members. Others (verdict, fuzzy, masks) are skipped. */
 enum { FORMAT, EXPECTED, ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
 static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
 
@@ -21,7 +21,7 @@ static bool is_plain_name(const char *name) {
            (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
 }
 
-/* A string of 1 to `max` bytes, else NULL with error set; valid as long as the value is. */
+/* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */
 static const char *read_text(const JsonReader *json, const json_t *value, const char *key, size_t max, Error *error) {
     const char *text = json_string_value(value);
     size_t length = json_string_length(value);
@@ -46,10 +46,10 @@ static bool read_file(const JsonReader *json, const json_t *item, const char *ke
     file->name = read_text(json, json_object_get(value, "name"), "name", NAME_MAX, error);
     if (file->name == NULL) return false;
     if (!is_plain_name(file->name))
-        return json_read_error(json, error, "a name must be that of a .png or .npz file, without a folder");
+        return json_read_error(json, error, "a name must end with .png or .npz and have no folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
-        return json_read_error(json, error, "a hash has 16 digits from 0 to f");
+        return json_read_error(json, error, "a hash must have 16 digits from 0 to f");
     file->hash = strtoull(digits, NULL, 16);
     return true;
 }
@@ -62,7 +62,7 @@ static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem 
         !read_file(json, value, "actual", &item->actual, error))
         return false;
     return item->expected.name[0] != '\0' || item->actual.name[0] != '\0' ||
-           json_read_error(json, error, "neither an expected nor an actual file");
+           json_read_error(json, error, "an expected or an actual file is required");
 }
 
 static void free_names(const ApprovalItem *item) {
@@ -103,7 +103,7 @@ static bool read_member(JsonReader *json, int member, ApprovalList *list, Error 
     if (text == NULL) return false;
     if (member == FORMAT)
         return strcmp(text, "twinbox compare 1") == 0 ||
-               json_read_error(json, error, "this is no report of twinbox compare");
+               json_read_error(json, error, "not a report of twinbox compare");
     strcpy(member == EXPECTED ? list->expected : list->actual, text);
     return true;
 }
@@ -122,7 +122,7 @@ static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *e
 
 static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     bool seen[MEMBERS] = {false};
-    if (!json_read_char(json, '{')) return json_read_error(json, error, "this is no report of twinbox compare");
+    if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
     for (bool more = true; more;) {
         int member = MEMBERS;
         if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
@@ -132,7 +132,7 @@ static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     if (!json_read_end(json, error)) return false;
     for (int i = 0; i < MEMBERS; i++)
         if (!seen[i])
-            return error_input(error, json->path, "'%s' is missing: this is no report of twinbox compare", members[i]);
+            return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
     return true;
 }
 

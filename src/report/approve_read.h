@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The failures that results.json lists. Only approve.c includes this. */
+/* Reads the failures from results.json. Only approve.c includes this. */
 #pragma once
 #include "common/error.h"
 
@@ -19,11 +19,11 @@ typedef struct ApprovalItem {
 
 typedef struct ApprovalList {
     char expected[PATH_MAX], actual[PATH_MAX]; /* folders */
-    ApprovalItem *items;                       /* those that failed */
+    ApprovalItem *items;                       /* failures only */
     size_t count, capacity;
 } ApprovalList;
 
-/* ERROR_INPUT, with path:line:column, for what compare would not have written: above all a name with a folder in it, a
-   hidden one, or one of neither .png nor .npz. On failure nothing is to be freed. */
+/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names with a folder, hidden
+   names and names that do not end with .png or .npz. On failure nothing needs to be freed. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

@@ -28,7 +28,7 @@ static void *memory_take(size_t size) {
     return block;
 }
 
-/* All is freed at once, before the next value. */
+/* The memory is freed as a whole, before the next value. */
 static void memory_keep(void *block) { (void)block; }
 
 /* json_loadb(); false when the memory is full. */
@@ -77,9 +77,9 @@ static void skip_space(JsonReader *reader) {
     reader->value_column = reader->column;
 }
 
-/* What jansson found, which counts lines and characters from the value's first. */
-static void refuse(JsonReader *reader, json_error_t *failure, Error *error) {
-    /* An excerpt of the file may hold what a terminal takes as a command. */
+/* Sets jansson's error; its lines and columns are relative to the start of the value. */
+static void set_error(JsonReader *reader, json_error_t *failure, Error *error) {
+    /* Omits the excerpt of the file: it may contain terminal escape sequences. */
     char *excerpt = strstr(failure->text, " near '");
     if (excerpt != NULL) *excerpt = '\0';
     int column = failure->column > 0 ? failure->column : 1;
@@ -102,7 +102,7 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
     else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */
         json_read_error(reader, error, "a value must have at most %d bytes", JSON_VALUE_SIZE);
     else
-        refuse(reader, &failure, error);
+        set_error(reader, &failure, error);
     return value;
 }
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a JSON file (RFC 8259) that others may have written, one value at a time, with jansson. The caller walks the outer
-   containers; jansson parses each value inside them.
+/* Reads a JSON file (RFC 8259) that others may have written, one value at a time, with jansson. The caller walks the
+   outer containers; jansson parses each value inside them.
 
-   A whole file of {} would take jansson 77 times its size in memory. Value by value it takes the file's size and a
-   fixed block, and each value has a line and a column, which jansson does not keep.
+   Parsed at once, a file of {} takes 77 times its size in memory. Value by value it takes its size and a fixed block,
+   and each value has a line and a column, which jansson does not store.
 
    Refused, with path:line:column: invalid JSON and UTF-8, duplicate keys inside a value, \u0000, numbers beyond double
    or int64, more than 2048 levels, values that exceed the limits below.
 
-   Not for two threads at once: jansson has one allocator for the process. */
+   Not thread-safe: jansson has one allocator per process. */
 #pragma once
 #include "common/error.h"
 
@@ -21,18 +21,18 @@ enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20 };
 typedef struct JsonReader {
     const char *path; /* as given; not owned */
     char *text;
-    const char *at, *end;         /* what has not been read */
+    const char *at, *end;         /* unread text */
     int line, column;             /* of `at`, from 1; columns in characters */
     int value_line, value_column; /* where the last value begins */
     struct JsonMemory *memory;    /* of the last value */
 } JsonReader;
 
-/* Opens a file of at most max_size bytes. On failure nothing is to be freed. */
+/* Opens a file of at most max_size bytes. On failure nothing needs to be freed. */
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error);
 void json_read_close(JsonReader *reader);
 
-/* The next value, of any kind; NULL with error set when there is none. The reader owns it (no json_decref); it is valid until
-   the next one is read. */
+/* The next value, of any kind; NULL with error set if there is no valid one. The reader owns it (no json_decref); it is
+   valid until the next call. */
 const json_t *json_read_value(JsonReader *reader, Error *error);
 
 /* Reads `c` if it is the next character after white space; otherwise false, and nothing is read. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fixed parts of a comparison's page (src/report/page), put into the binary by tools/embed.cmake. */
+/* The fixed parts of report.html (src/report/page), embedded in the binary by common/tools/embed.cmake. */
 #pragma once
 
 extern const char report_page_css[], report_page_js[], report_page_html[], report_help_html[];

@@ -46,7 +46,7 @@ static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *
     return ok;
 }
 
-/* A frame that has no partner is decoded, so that a damaged one is told. */
+/* A missing or extra frame is decoded too, to detect damaged files. */
 static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame, RegressionSide side,
                         const uint8_t *data, Error *error) {
     RegressionFile *file = &frame->files[side];
@@ -71,33 +71,33 @@ static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t 
     return true;
 }
 
-/* A frame that cannot be read does not stop the others: which error comes first must not depend on the threads. */
+/* If a frame cannot be read, the others are still compared: the reported error must not depend on the threads. */
 static bool compare_frame(void *context, int i, Error *error) {
     const Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
-    Error refusal = {0};
+    Error read_error = {0};
     uint8_t *data[SIDES] = {NULL, NULL};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         if (frame->at[side] == NULL) continue;
         RegressionFile *file = &frame->files[side];
-        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, &refusal)) != NULL;
+        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, &read_error)) != NULL;
         if (ok) file->hash = hash_xxh3(data[side], file->size);
     }
-    ok = ok && judge(regression, frame, data, &refusal);
+    ok = ok && judge(regression, frame, data, &read_error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
-    if (!ok && refusal.kind == ERROR_INPUT && (frame->refusal = strdup(refusal.message)) != NULL) return true;
-    if (!ok) *error = refusal;
+    if (!ok && read_error.kind == ERROR_INPUT && (frame->read_error = strdup(read_error.message)) != NULL) return true;
+    if (!ok) *error = read_error;
     return ok;
 }
 
-static bool tell_refusals(const Regression *regression, Error *error) {
+static bool report_read_errors(const Regression *regression, Error *error) {
     int first = -1, count = 0;
     for (int i = regression->count - 1; i >= 0; i--)
-        if (regression->frames[i].refusal != NULL) first = i, count++;
+        if (regression->frames[i].read_error != NULL) first = i, count++;
     if (first < 0) return true;
     error->kind = ERROR_INPUT;
-    snprintf(error->message, sizeof error->message, "%s", regression->frames[first].refusal);
+    snprintf(error->message, sizeof error->message, "%s", regression->frames[first].read_error);
     size_t used = strlen(error->message);
     if (count > 1)
         snprintf(error->message + used, sizeof error->message - used, "\n(further frames that cannot be compared: %d)",
@@ -130,8 +130,8 @@ static bool same_sequence(const RegressionFrame *a, const RegressionFrame *b) {
     return x->stem == y->stem && memcmp(x->name, y->name, (size_t)x->stem) == 0;
 }
 
-/* See StateVerdict. The frames of one sequence, [count]. */
-static void settle_sequence(RegressionFrame *const *frames, int count) {
+/* Sets STATES_DIFFER_ELSEWHERE (see StateVerdict) in the frames of one sequence. */
+static void judge_sequence(RegressionFrame *const *frames, int count) {
     bool physics = false, same_framing = false;
     for (int i = 0; i < count; i++) {
         physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
@@ -141,8 +141,8 @@ static void settle_sequence(RegressionFrame *const *frames, int count) {
         if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;
 }
 
-/* Frames without a partner say nothing, and their names may be of another stem. */
-static bool settle(Regression *regression, Error *error) {
+/* Ignores missing and extra frames; their names may have another stem. */
+static bool judge_sequences(Regression *regression, Error *error) {
     RegressionFrame **paired = malloc(((size_t)regression->count + 1) * sizeof *paired);
     if (paired == NULL) return error_memory(error, "frames");
     int count = 0;
@@ -150,7 +150,7 @@ static bool settle(Regression *regression, Error *error) {
         if (regression->frames[i].pixels < PIXELS_MISSING) paired[count++] = &regression->frames[i];
     for (int first = 0, end = 0; first < count; first = end) {
         while (end < count && same_sequence(paired[first], paired[end])) end++;
-        settle_sequence(paired + first, end - first);
+        judge_sequence(paired + first, end - first);
     }
     free(paired);
     return true;
@@ -169,7 +169,7 @@ static void count(Regression *regression) {
     }
 }
 
-static bool take_pairs(Regression *regression, Error *error) {
+static bool pair_frames(Regression *regression, Error *error) {
     SequencePair *pairs =
         image_sequence_pair(regression->sequences[EXPECTED], regression->sequences[ACTUAL], &regression->count, error);
     if (pairs == NULL) return false;
@@ -180,7 +180,7 @@ static bool take_pairs(Regression *regression, Error *error) {
     return regression->frames != NULL || error_memory(error, "frames");
 }
 
-/* A folder with nothing in it is a mistake rather than a difference. */
+/* An empty folder is an error, not a difference. */
 static bool refuse_empty(const Regression *regression, Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
@@ -196,9 +196,9 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
-              take_pairs(regression, error) && regression_find_runs(regression, error) &&
+              pair_frames(regression, error) && regression_find_runs(regression, error) &&
               refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
-              tell_refusals(regression, error) && settle(regression, error);
+              report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok)
         count(regression);
     else
@@ -211,7 +211,7 @@ void regression_free(Regression *regression) {
         free(regression->runs[i].name);
         free(regression->runs[i].differs);
     }
-    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].refusal);
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].read_error);
     free(regression->frames);
     free(regression->runs);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);

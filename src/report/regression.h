@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expected pictures against actual ones, frame by frame, and why they differ: the renderer changed where pixels differ
-   and the states of the bodies do not, the physics where states differ. States are told by trajectories beside the
-   frames, those of the same name in both folders, and by the texts "State" of our pictures; where there are neither, it is
-   only known that pictures differ. */
+/* Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
+   the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same
+   name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
 #pragma once
 #include "common/progress.h"
 #include "image/mask.h"
@@ -10,54 +9,55 @@
 #include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
-    int max_difference; /* of a channel, 0..255, and */
-    double max_share;   /* of the pixels that are not masked, 0..1: frames that keep to both pass */
+    int max_difference; /* of a channel, 0..255 */
+    double max_share;   /* of the unmasked pixels, 0..1; a frame passes if it is within both limits */
     const Mask *mask;
-    int64_t max_pixels; /* of a picture; larger ones are refused before anything is inflated */
+    int64_t max_pixels; /* of a picture; larger ones are refused before decompression */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
 
 typedef enum PixelVerdict {
     PIXELS_EQUAL,
-    PIXELS_WITHIN, /* other ones, within the options */
+    PIXELS_WITHIN, /* within tolerance */
     PIXELS_DIFFER,
     PIXELS_RESIZED,
-    PIXELS_MISSING, /* there is no actual picture */
-    PIXELS_EXTRA    /* there is no expected one */
+    PIXELS_MISSING, /* no actual picture */
+    PIXELS_EXTRA    /* no expected picture */
 } PixelVerdict;
 
-/* What is drawn of one frame may hang on the whole run: the camera, a scale. So where the run differs elsewhere, and no
-   frame of the sequence has equal states and equal pixels, the renderer is not blamed for a frame of equal states. */
+/* A frame's picture may depend on the whole run, through the camera or a scale. STATES_DIFFER_ELSEWHERE: states are
+   equal in this frame but not in the whole run, and no frame of the sequence has equal states and equal pixels; a
+   difference of pixels is then not attributed to the renderer. */
 typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
 
-/* What a file was when it was read. */
+/* A file as it was when compared. */
 typedef struct RegressionFile {
     uint64_t hash; /* XXH3 of its bytes */
     size_t size;
-    int width, height; /* of a picture, where it was decoded: files equal byte by byte are not */
+    int width, height; /* of a picture; 0 if not decoded (identical files) */
 } RegressionFile;
 
 typedef struct RegressionFrame {
-    const SequenceFrame *at[SIDES]; /* one is NULL for a frame that is missing or extra */
+    const SequenceFrame *at[SIDES]; /* NULL on one side for a missing or extra frame */
     RegressionFile files[SIDES];
     PixelVerdict pixels;
     StateVerdict states;
-    int panel; /* the first whose text "State" differs, from 1; else 0 */
+    int panel; /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;
-    double flip;      /* measured by the report (image/flip.h); else NAN */
-    bool run_differs; /* a trajectory of its scene does, in whatever frame */
+    double flip;      /* image/flip.h, measured by the report; else NaN */
+    bool run_differs; /* a trajectory of its scene differs in any frame */
     bool shown;       /* in the report */
-    char *refusal;    /* why a picture could not be read; ends the whole */
+    char *read_error; /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
-/* A trajectory that lies in both folders. */
+/* A trajectory that is in both folders. */
 typedef struct RegressionRun {
     char *name;
     RegressionFile files[SIDES];
     TrajectoryDifference difference;
     char scene[TRAJECTORY_NAME_SIZE];
-    int frames;    /* of both together; 0 where nothing differs */
+    int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
 } RegressionRun;
 
@@ -69,13 +69,13 @@ typedef struct Regression {
     RegressionRun *runs;                      /* by name */
     int failed;                               /* frames */
     int by_verdict[6];                        /* frames, by PixelVerdict */
-    int renderer, physics, unknown;           /* frames in which this changed, or it is not known what */
-    int first_renderer, first_physics, first; /* the first such frames, and of all that failed; -1: none */
-    int run_failed, first_run; /* trajectories that differ, and that which does so in the earliest frame; -1 */
+    int renderer, physics, unknown;           /* frames by cause of the difference */
+    int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
+    int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
 } Regression;
 
-/* Compares two folders, or two files, by all threads. Files that are equal byte by byte are not decoded. False with error
-   set (the first, by the order of frames) where a file cannot be read or progress asks to stop; then nothing is to be
+/* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file
+   cannot be read (the first by the order of frames) or progress stops the comparison; then nothing needs to be
    freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error);
@@ -83,18 +83,18 @@ void regression_free(Regression *regression);
 
 bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
-const char *frame_name(const RegressionFrame *frame); /* of the expected file, or of the extra one */
+const char *frame_name(const RegressionFrame *frame); /* of the expected file; of an extra frame, the actual one */
 
 /* "equal", "within tolerance", "renderer changed", "physics changed", "pictures differ", "missing", "extra" */
 const char *frame_verdict(const RegressionFrame *frame);
 
-/* The figures of a frame, or how a run differs, in words. */
+/* One line of text: how a frame or a run differs. */
 typedef struct RegressionText {
     char text[512];
 } RegressionText;
 RegressionText frame_words(const RegressionFrame *frame);
 RegressionText run_words(const RegressionRun *run);
 
-/* The verdict of the whole: "equal", or what changed and what is missing; and where it begins, one line each. */
+/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);

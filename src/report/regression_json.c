@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* results.json: also within the page, which reads it. */
+/* results.json; also embedded in report.html for its script. */
 #include "common/json_write.h"
 #include "report/regression_parts.h"
 
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void put_file(JsonWriter *json, const char *key, const char *name, const RegressionFile *data) {
+static void write_file(JsonWriter *json, const char *key, const char *name, const RegressionFile *data) {
     if (name == NULL) {
         json_put_text(json, key, NULL);
         return;
@@ -19,7 +19,7 @@ static void put_file(JsonWriter *json, const char *key, const char *name, const 
     json_end(json);
 }
 
-static void put_box(JsonWriter *json, const ImageDifference *difference) {
+static void write_box(JsonWriter *json, const ImageDifference *difference) {
     if (difference->pixels == 0) {
         json_put_text(json, "box", NULL);
         return;
@@ -30,14 +30,14 @@ static void put_box(JsonWriter *json, const ImageDifference *difference) {
     json_end(json);
 }
 
-/* Four digits: the last bits of a power depend on the machine. */
+/* Four digits: the last bits of pow() depend on the machine. */
 static double rounded(double flip) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", flip);
     return isfinite(flip) ? strtod(text, NULL) : NAN;
 }
 
-static void put_frame(JsonWriter *json, const RegressionFrame *frame) {
+static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     const char *names[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
@@ -50,26 +50,26 @@ static void put_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_int(json, "differing", frame->difference.pixels);
     json_put_int(json, "counted", frame->difference.counted);
     json_put_int(json, "largest", frame->difference.largest);
-    put_box(json, &frame->difference);
+    write_box(json, &frame->difference);
     json_put_number(json, "flip", rounded(frame->flip));
-    put_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
-    put_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
+    write_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
+    write_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
     json_end(json);
 }
 
-static void put_run(JsonWriter *json, const RegressionRun *run) {
+static void write_run(JsonWriter *json, const RegressionRun *run) {
     json_begin_object(json, NULL, JSON_ONE_LINE);
     json_put_text(json, "name", run->name);
     json_put_text(json, "verdict", run->difference.equal ? "equal" : "physics changed");
     json_put_bool(json, "failed", !run->difference.equal);
     json_put_bool(json, "shown", true);
     json_put_text(json, "words", run_words(run).text);
-    put_file(json, "expected", run->name, &run->files[EXPECTED]);
-    put_file(json, "actual", run->name, &run->files[ACTUAL]);
+    write_file(json, "expected", run->name, &run->files[EXPECTED]);
+    write_file(json, "actual", run->name, &run->files[ACTUAL]);
     json_end(json);
 }
 
-void report_put_json(FILE *file, const void *context) {
+void report_write_json(FILE *file, const void *context) {
     const Report *report = context;
     const Regression *regression = report->regression;
     JsonWriter json = {.out = file};
@@ -84,10 +84,10 @@ void report_put_json(FILE *file, const void *context) {
     json_end(&json);
     json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
     json_begin_array(&json, "frames", JSON_LINES);
-    for (int i = 0; i < regression->count; i++) put_frame(&json, &regression->frames[i]);
+    for (int i = 0; i < regression->count; i++) write_frame(&json, &regression->frames[i]);
     json_end(&json);
     json_begin_array(&json, "trajectories", JSON_LINES);
-    for (int i = 0; i < regression->run_count; i++) put_run(&json, &regression->runs[i]);
+    for (int i = 0; i < regression->run_count; i++) write_run(&json, &regression->runs[i]);
     json_end(&json);
     json_end(&json);
 }

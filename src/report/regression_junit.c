@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* junit.xml, as CI systems read it: a test case for each frame and trajectory. No times: the same comparison gives the same
-   bytes. XML and HTML escape alike. */
+/* junit.xml for CI systems: a test case per frame and trajectory. Without times, so that the same comparison gives the
+   same bytes. html_put() also escapes for XML. */
 #include "common/html_text.h"
 #include "report/regression_parts.h"
 
-static void put_case(FILE *file, const char *kind, const char *name, const char *verdict, const char *words) {
+static void write_case(FILE *file, const char *kind, const char *name, const char *verdict, const char *words) {
     fprintf(file, "  <testcase classname=\"%s\" name=\"", kind);
     html_put(file, name);
     fputc('"', file);
@@ -21,20 +21,20 @@ static void put_case(FILE *file, const char *kind, const char *name, const char 
     fputs("\"/></testcase>\n", file);
 }
 
-void report_put_junit(FILE *file, const void *context) {
+void report_write_junit(FILE *file, const void *context) {
     const Regression *regression = ((const Report *)context)->regression;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", file);
     fprintf(file, "<testsuite name=\"twinbox compare\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\">\n",
             regression->count + regression->run_count, regression->failed + regression->run_failed);
     for (int i = 0; i < regression->count; i++) {
         const RegressionFrame *frame = &regression->frames[i];
-        put_case(file, "frames", frame_name(frame), frame_failed(frame) ? frame_verdict(frame) : NULL,
-                 frame_words(frame).text);
+        write_case(file, "frames", frame_name(frame), frame_failed(frame) ? frame_verdict(frame) : NULL,
+                   frame_words(frame).text);
     }
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
-        put_case(file, "trajectories", run->name, run->difference.equal ? NULL : "physics changed",
-                 run_words(run).text);
+        write_case(file, "trajectories", run->name, run->difference.equal ? NULL : "physics changed",
+                   run_words(run).text);
     }
     fputs("</testsuite>\n", file);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pictures of a report, in memory. */
+/* Makes the pictures of a report. */
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "image/difference_picture.h"
@@ -13,13 +13,13 @@
 const char report_kind_letters[REPORT_KINDS + 1] = "eadf";
 enum { DIFFERENCE = SIDES, HEAT };
 
-/* The file as it was compared, not what has come in its place since. */
+/* Loads a file and checks that it has not changed since the comparison. */
 static bool load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
     const char *path = frame->at[side]->path;
     picture->data = image_load_png(path, &picture->size, error);
     if (picture->data == NULL) return false;
     return hash_xxh3(picture->data, picture->size) == frame->files[side].hash ||
-           error_input(error, path, "has changed since it was compared");
+           error_input(error, path, "has changed since the comparison");
 }
 
 static bool encode(const Image *image, ReportPicture *picture, Error *error) {
@@ -32,7 +32,7 @@ static bool encode(const Image *image, ReportPicture *picture, Error *error) {
     return ok;
 }
 
-/* Measures FLIP; its picture only where there is room for it. */
+/* Measures FLIP; draws its picture only if picture != NULL. */
 static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
                     Error *error) {
     float *map = NULL;
@@ -49,7 +49,7 @@ static bool measure(const Image *expected, const Image *actual, RegressionFrame 
     return ok;
 }
 
-/* Without room, pictures is only what was read. */
+/* Measures FLIP and, if there is room, draws the difference pictures. */
 static bool draw(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                  ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
     uint8_t *masked = NULL;
@@ -66,7 +66,7 @@ static bool draw(const Regression *regression, RegressionFrame *frame, const Ima
     return ok;
 }
 
-/* Those of frames whose pixels differ in pictures of one size. */
+/* Only for frames with different pixels and equal sizes. */
 static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
                              bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
@@ -89,7 +89,7 @@ static void drop(ReportPicture pictures[REPORT_KINDS]) {
 
 enum { BATCH = 16 };
 
-/* Frames whose pictures are made at once, by all threads. */
+/* Frames whose pictures are made in parallel. */
 typedef struct Batch {
     ReportPictures *pictures;
     Regression *regression;
@@ -107,7 +107,7 @@ static bool make_frame(void *context, int i, Error *error) {
     return draw_differences(batch->regression, frame, made, batch->room, error);
 }
 
-/* Keeps a frame's pictures if they fit; *left is 0 once some did not. */
+/* Keeps a frame's pictures if they fit into *left bytes of base64. Once some do not fit, *left is 0. */
 static void keep_frame(ReportPictures *pictures, RegressionFrame *frame, int i, size_t *left) {
     ReportPicture *made = pictures->frames[i];
     size_t size = 0;
@@ -131,7 +131,7 @@ static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Err
     return true;
 }
 
-/* Failures first, then what is within tolerance. */
+/* First failures, then frames within tolerance. */
 static bool is_wanted(const RegressionFrame *frame, bool failed) {
     return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
 }

@@ -6,11 +6,12 @@
 
 #include <limits.h>
 
-/* results.json comes last: where it is, all is. */
+/* results.json is last: if it exists, the report is complete. */
 static const struct {
     const char *name;
-    void (*put)(FILE *file, const void *report);
-} parts[] = {{"report.html", report_put_page}, {"junit.xml", report_put_junit}, {"results.json", report_put_json}};
+    void (*write)(FILE *file, const void *report);
+} parts[] = {
+    {"report.html", report_write_page}, {"junit.xml", report_write_junit}, {"results.json", report_write_json}};
 
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error) {
@@ -23,7 +24,7 @@ bool regression_report_write(Regression *regression, const char *folder, size_t 
     bool ok = true;
     for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
         ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
-             file_write_text(path, parts[i].put, &report, error);
+             file_write_text(path, parts[i].write, &report, error);
     }
     report_pictures_free(&pictures);
     return ok;

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* As large as a trajectory's file may be. */
+/* The limit of a trajectory file. */
 static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
 static bool run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX],
@@ -59,7 +59,7 @@ static bool list_runs(Regression *regression, Error *error) {
     return ok;
 }
 
-/* Which frames differ; where one run has ended, its last. */
+/* Marks the frames that differ; frames beyond the end of the shorter run do. */
 static bool mark_frames(RegressionRun *run, const Trajectory *a, const Trajectory *b, Error *error) {
     int common = a->frames < b->frames ? a->frames : b->frames;
     char what[sizeof run->difference.what];
@@ -126,7 +126,7 @@ bool regression_find_runs(Regression *regression, Error *error) {
     return ok;
 }
 
-/* What a picture tells of itself. */
+/* The texts of a picture. */
 typedef struct Texts {
     char scene[TRAJECTORY_NAME_SIZE], frame[32], state[512];
 } Texts;
@@ -137,14 +137,15 @@ static void read_texts(Texts *texts, const uint8_t *data, size_t size) {
     image_find_text(data, size, "State", texts->state, sizeof texts->state);
 }
 
-/* "a1 | b2" and "a1 | c3": 2. */
+/* The first differing panel: "a1 | b2" and "a1 | c3" give 2. */
 static int first_panel(const char *a, const char *b) {
     int panel = 1;
     for (; *a != '\0' && *a == *b; a++, b++) panel += *a == '|';
     return panel;
 }
 
-/* Any run of the picture's scene; of any scene where the picture does not tell. *somewhere: in whatever frame. */
+/* Whether a run of the picture's scene (of any scene if the picture names none) differs in this frame. *somewhere: in
+   any frame. */
 static bool runs_differ(const Regression *regression, const Texts *texts, int64_t frame, bool *somewhere) {
     bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
@@ -162,13 +163,13 @@ void regression_judge_states(const Regression *regression, RegressionFrame *fram
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         read_texts(&texts[side], data[side], frame->files[side].size);
     const char *a = texts[EXPECTED].state, *b = texts[ACTUAL].state;
-    bool told = a[0] != '\0' && b[0] != '\0', other = told && strcmp(a, b) != 0;
-    if (other) frame->panel = first_panel(a, b);
+    bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
+    if (texts_differ) frame->panel = first_panel(a, b);
     const char *number = texts[EXPECTED].frame;
     int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->at[EXPECTED]->number;
     bool differs = runs_differ(regression, &texts[EXPECTED], at, &frame->run_differs);
-    if (other || differs)
+    if (texts_differ || differs)
         frame->states = STATES_DIFFER;
     else
-        frame->states = told || regression->run_count > 0 ? STATES_EQUAL : STATES_UNKNOWN;
+        frame->states = have_texts || regression->run_count > 0 ? STATES_EQUAL : STATES_UNKNOWN;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether the states behind two pictures differ. Only regression.c includes this. */
+/* Compares the states behind the pictures. Only regression.c includes this. */
 #pragma once
 #include "report/regression.h"
 
-/* The trajectories that both folders have, compared. A file that is a trajectory in neither folder is passed over; one that
-   is in one of them only is ERROR_INPUT. */
+/* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
+   folder; ERROR_INPUT if only one of the two is a trajectory. */
 bool regression_find_runs(Regression *regression, Error *error);
 
-/* Of two pictures in memory, with their texts. */
+/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. */
 void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]);

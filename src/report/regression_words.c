@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a comparison found, in words. */
+/* The results of a comparison as text. */
 #include "report/regression.h"
 
 #include <inttypes.h>
@@ -45,20 +45,23 @@ RegressionText frame_words(const RegressionFrame *frame) {
     const ImageDifference *difference = &frame->difference;
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     switch (frame->pixels) {
-    case PIXELS_MISSING: add(&words, "", "there is no actual picture"); break;
-    case PIXELS_EXTRA: add(&words, "", "there is no expected picture"); break;
-    case PIXELS_RESIZED: add(&words, "", "%d x %d and %d x %d pixels", a->width, a->height, b->width, b->height); break;
+    case PIXELS_MISSING: add(&words, "", "no actual picture"); break;
+    case PIXELS_EXTRA: add(&words, "", "no expected picture"); break;
+    case PIXELS_RESIZED:
+        add(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        break;
     case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
     case PIXELS_DIFFER:
-        add(&words, "", "%" PRId64 " %s (%.3g%%), the largest by %d, the first at (%d, %d)", difference->pixels,
-            difference->pixels == 1 ? "pixel" : "pixels",
+        add(&words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
+            difference->pixels == 1 ? "pixel differs" : "pixels differ",
             100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
             difference->first_y);
     }
-    if (frame->panel > 0) add(&words, ", ", "other states in panel %d", frame->panel);
+    if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
-        add(&words, ", ", "equal states here, but not in the whole run, which sets camera and scales");
+        add(&words, ", ",
+            "states are equal in this frame, but differ elsewhere in the run, which affects camera and scales");
     return words;
 }
 
@@ -68,8 +71,8 @@ RegressionText run_words(const RegressionRun *run) {
     if (d->equal) add(&words, "", "equal states");
     if (d->what[0] != '\0') add(&words, "", "%s", d->what);
     if (d->frame >= 0)
-        add(&words, "; ", "from frame %d, body %d on: %g m apart, %g rad, %g m/s there; at most %g m", d->frame,
-            d->body, d->distance, d->angle, d->speed, d->max_distance);
+        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s; at most %g m", d->frame, d->body,
+            d->distance, d->angle, d->speed, d->max_distance);
     return words;
 }
 
@@ -85,7 +88,7 @@ RegressionText regression_verdict(const Regression *regression) {
             physics && renderer ? "physics and renderer changed"
             : physics           ? "physics changed"
                                 : "renderer changed");
-    if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (no states tell why)");
+    if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (cause unknown: no states)");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
     if (verdict.text[0] == '\0') add(&verdict, "", "equal");

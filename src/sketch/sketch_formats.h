@@ -2,10 +2,10 @@
 /* Shared by the writers of the three formats. Each returns a malloc'ed block, or NULL with error set.
 
    Why our own writers: a figure has the same bytes on Debian 12 and 13. Tests compare bytes with stored hashes:
-   test_sketch_files.c for the writers alone, test_figure.sh and test_paper.sh for figures. cairo's bytes depend on its
-   version: with a fixed creation date, cairo 1.16.0 (Debian 12) and 1.18.4 (Debian 13) write different PDF and SVG files,
-   and different pixels where there is text. zlib compresses our PNG files and PDF streams: its versions 1.2.13 and 1.3.1
-   give the same bytes. */
+   test_sketch_files.c for the writers, test_figure.sh and test_paper.sh for figures. cairo's bytes depend on its
+   version: with a fixed creation date, cairo 1.16.0 (Debian 12) and 1.18.4 (Debian 13) write different PDF and
+   SVG files, and different pixels of text. zlib, which compresses our PNG files and PDF streams, gives the same
+   bytes in versions 1.2.13 and 1.3.1. */
 #pragma once
 #include "sketch/sketch_files.h"
 

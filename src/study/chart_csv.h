@@ -11,10 +11,10 @@ typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
 
 enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
 
-/* NAN where a protocol does not have the figure. Errors are RMS velocities of bodies against the reference solve; mean,
-   median and p95 are over all steps scored, whatever their launch. error_worst is the largest of the launches' own mean
-   errors in the phase, each over the scored steps of its run in closed loop, up to a NaN or infinite state; a launch
-   without such a step does not count. It is NAN in frozen rows: their steps do not belong to a run of the method. */
+/* NaN if a protocol does not have the value. Errors are RMS velocity errors against the reference; mean, median and p95
+   are over all scored steps of all launches. error_worst (closed loop only) is the largest mean error of a launch in
+   the phase, over its scored steps (up to where its state became NaN or infinite); launches without scored steps are
+   ignored. */
 typedef struct ChartRow {
     const char *scene, *method; /* less than CHART_NAME_SIZE bytes */
     const char *setting;        /* "k=20,warm=off"; less than CHART_SETTING_SIZE */
@@ -41,6 +41,6 @@ typedef struct ChartTable {
 } ChartTable;
 
 /* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact), and a
-   median time outside its quartiles. On failure nothing is to be freed. */
+   median time outside its quartiles. On failure nothing needs to be freed. */
 bool chart_csv_read(ChartTable *table, const char *path, Error *error);
 void chart_csv_free(ChartTable *table);

@@ -5,7 +5,7 @@
 #include "study/rollout.h"
 #include "study/timing.h"
 
-/* A row with names and no figures; the names stay those of the caller. */
+/* A row with names but without results. The names must outlive the row. */
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
 
 /* Sets mean, quantiles and share over all steps of the row's phase; sorts the scores. */

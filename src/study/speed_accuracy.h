@@ -29,8 +29,8 @@ typedef struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
     NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
-    double frozen_residual;         /* m/s: largest residual of the reference solves of frozen steps */
-    int solves, unconverged;        /* reference solves in closed loop since the study was started or resumed; those
+    double frozen_residual;   /* m/s: largest residual of the reference solves of frozen steps */
+    int solves, unconverged;  /* reference solves in closed loop since the study was started or resumed; those
                                        with a residual above SOLVE_CONVERGED (rollout.h) */
 } SpeedAccuracyScene;
 

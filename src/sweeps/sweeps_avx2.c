@@ -2,7 +2,7 @@
 /* Eight lanes: AVX2, without fused multiply-add, which would round once where the plain text rounds twice. */
 #include "sweeps/sweeps_kernels.h"
 
-#ifdef __x86_64__
+#ifdef TWINBOX_AVX
 
 #include <immintrin.h>
 

@@ -62,13 +62,13 @@ touched() {
 }
 restart
 cp expected/frame_000003.png expected/frame_000004.png
-touched "expected/frame_000004.png: error: is no longer what the report has shown"
+touched "expected/frame_000004.png: error: has changed since the report was written; compare again"
 restart
 cp -r actual actual.kept
 cp actual/frame_000003.png actual/frame_000004.png
-touched "actual/frame_000004.png: error: is no longer what the report has shown"
+touched "actual/frame_000004.png: error: has changed since the report was written; compare again"
 rm actual/frame_000004.png
-touched "actual/frame_000004.png: error: is no longer"
+touched "actual/frame_000004.png: error: has changed"
 ln -s "$PWD/actual.kept/frame_000004.png" actual/frame_000004.png
 touched "is a link"
 rm -r actual
@@ -77,10 +77,10 @@ restart
 echo >secret.png
 rm expected/frame_000002.png
 ln -s ../secret.png expected/frame_000002.png
-touched "expected/frame_000002.png: error: is a link"
+touched "expected/frame_000002.png: error: must be a regular file (is a link)"
 restart
 echo >expected/frame_000005.png
-touched "expected/frame_000005.png: error: is no longer"
+touched "expected/frame_000005.png: error: has changed"
 rm -r report/results.json
 run 2 approve report
 complains "report/results.json"
@@ -96,9 +96,9 @@ for name in ../secret.png /etc/secret.png a/../../secret.png .hidden.png .. . ""
     complains "error:"
 done
 sed 's/"xxh3": "/"xxh3": "z/' good.json >report/results.json
-touched "a hash has 16 digits"
+touched "a hash must have 16 digits"
 sed 's/twinbox compare 1/twinbox compare 2/' good.json >report/results.json
-touched "this is no report of twinbox compare"
+touched "not a report of twinbox compare"
 head -c 500 good.json >report/results.json
 touched "error:"
 [ "$(wc -c <secret.png)" -eq 1 ] || fail "a file outside was written"
@@ -123,7 +123,7 @@ says "0 replaced, 0 added, 0 removed"
 equal "frames within tolerance stay" "$(sums large.a)" "$before"
 run 1 compare large.a large.b --report report --report-size 2
 [ "$(wc -c <report/report.html)" -lt 2200000 ] || fail "the report is larger than --report-size"
-grep -q "The pictures of 2 frames are left out" report/report.html || fail "the page does not say what it leaves out"
+grep -q "The pictures of 2 frames exceed" report/report.html || fail "the page does not state which pictures it omits"
 run 1 approve report
 says "1 replaced, 0 added, 0 removed, 2 not shown"
 run 1 compare large.a large.b --report report

@@ -35,7 +35,7 @@ says "equal: 5 frames"
 run 1 compare one three
 says "first difference: frame_000000.png:"
 says "5 of 5 frames differ"
-says "physics changed first in stack-engine.npz: from frame 0, body 11 on:"
+says "physics changed first in stack-engine.npz: from frame 0, body 11: "
 says "verdict: physics changed"
 mv two/frame_000003.png two/frame_000007.png
 run 1 compare one two
@@ -71,8 +71,8 @@ png theirs/shot-2.png 20 10 "9 9 9 255"
 png ours/frame_0001.png 20 10 "9 9 9 255"
 png ours/frame_0002.png 20 10 "9 9 9 255" 3 4 "9 12 9 255" 5 4 "9 9 8 255"
 run 1 compare theirs ours
-says "first difference: shot-2.png: 2 pixels (1%), the largest by 3, the first at (3, 4)"
-says "verdict: pictures differ (no states tell why)"
+says "first difference: shot-2.png: 2 pixels differ (1%) by at most 3, first at (3, 4)"
+says "verdict: pictures differ (cause unknown: no states)"
 run 1 compare theirs/shot-2.png ours/frame_0002.png
 png ours/frame_0002.png 20 11 "9 9 9 255"
 run 1 compare theirs ours
@@ -92,13 +92,13 @@ done
 
 # Masks: each hides one of the two pixels.
 run 1 compare theirs ours --mask 3,4,1,1
-says "1 pixel (0.503%), the largest by 1, the first at (5, 4)"
+says "1 pixel differs (0.503%) by at most 1, first at (5, 4)"
 run 0 compare theirs ours --mask 3,4,1,1 --mask 5,4,1,1
 run 0 compare theirs ours --mask 0,4,1000,1
 run 1 compare theirs ours --mask 0,5,1000,1
 png mask.png 20 10 "255 255 255 0" 3 4 "255 255 255 255" 5 4 "0 0 0 255"
 run 1 compare theirs ours --mask mask.png
-says "the first at (5, 4)"
+says "first at (5, 4)"
 png mask.png 20 10 "0 0 0 255" 3 4 "1 0 0 1" 5 4 "0 0 9 255"
 run 0 compare theirs ours --mask mask.png
 png mask.png 20 11 "0 0 0 255"

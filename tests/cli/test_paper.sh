@@ -47,6 +47,10 @@ for row in rows["networks"]:
     assert first["iteration"] == "0" and float(row["train"]) < float(first["train"]), row
     assert abs(float(row["ratio"]) - float(row["test"]) / float(row["constant"])) < 1e-5 * float(row["ratio"]), row
 assert {row["seed"] for row in rows["transfer"]} == {"1", "2", "3"}
+# Counts of the report are those of the tables.
+findings = dict(csv.reader(open("quick/findings/summary.csv")))
+assert int(findings["runs"]) == len(rows["closed_loop"]) and int(findings["gate_networks"]) == len(rows["networks"])
+assert int(findings["rates"]) == sum(row["rate"] != "" and row["constant"] != "" for row in rows["rates"])
 html = open("quick/report.html").read()
 assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/)', html)
 PYTHON

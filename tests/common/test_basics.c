@@ -71,7 +71,7 @@ static void known_names_are_listed_once_and_whole(void **state) {
     assert_false(error_unknown(&error, "--kind", "nett", "a kind", &known));
     assert_string_equal(error.message, "--kind: error: 'nett' is not a kind; known: pair-net, net, scene");
     for (int i = 0; i < 1000; i++) {
-        char name[16];
+        char name[24]; /* room for any int, for gcc */
         snprintf(name, sizeof name, "number-%03d", i);
         name_list_add(&known, name);
     }

@@ -20,7 +20,7 @@ static const char *const colours[] = {"red", "green", "blue", NULL};
 
 static const CsvColumn columns[] = {
     {"text", CSV_TEXT, .offset = offsetof(Row, text), .maximum = 12, .key = true},
-    {"name", CSV_NAME, .offset = offsetof(Row, name)},
+    {"name", CSV_NAME, .offset = offsetof(Row, name), .quoted = true},
     {"word", CSV_WORD, .offset = offsetof(Row, word), .words = colours, .key = true},
     {"integer", CSV_INTEGER, .offset = offsetof(Row, integer), .minimum = -5, .maximum = 1e6},
     {"single", CSV_FLOAT, .offset = offsetof(Row, single), -1e6, 1e6},
@@ -187,12 +187,12 @@ static void expect_text(const char *path, const char *expected) {
 static const Row written[] = {{"k=20,b=\"c\"", "x [m]", GREEN, -5, 0.1f, 1234567.8912, -0.12345678},
                               {"", "", RED, 0, -3, 0, NAN}};
 
-static void what_is_written_is_read_again(void **state) {
+static void written_tables_are_read_back(void **state) {
     (void)state;
     Error error = {0};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &exact, written, 2, &error), error);
-    expect_text(path, HEADER "\"k=20,b=\"\"c\"\"\",x [m],green,-5,0.1,1234567.89,-0.123457\n,,red,0,-3,0,\n");
+    expect_text(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
     CsvTable table;
     assert_ok(csv_table_read(&table, path, &exact, &error), error);
     const Row *rows = table.rows;
@@ -204,7 +204,7 @@ static void what_is_written_is_read_again(void **state) {
     csv_table_free(&table);
 }
 
-static void what_could_not_be_read_is_not_written(void **state) {
+static void unreadable_values_are_not_written(void **state) {
     (void)state;
     Row rows[4] = {written[0], written[0], written[0], written[0]};
     static const char *const messages[] = {"text: a control character in 'a?b'", "number: inf cannot be written",
@@ -241,8 +241,8 @@ int main(void) {
         cmocka_unit_test(rows_are_limited_in_number),
         cmocka_unit_test(keys_are_not_repeated),
         cmocka_unit_test(errors_point_at_a_field),
-        cmocka_unit_test(what_is_written_is_read_again),
-        cmocka_unit_test(what_could_not_be_read_is_not_written),
+        cmocka_unit_test(written_tables_are_read_back),
+        cmocka_unit_test(unreadable_values_are_not_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,7 +32,7 @@ static void values_are_filled_in(void **state) {
     expect_filled("{{share number}} {{share percent}} {{share score}} {{big number}} {{big score}}",
                   "0.125 12.5% 0.125000 123456 123456");
     expect_filled("{{runs/share number}} {{runs/5 number}} {{5/runs percent}}", "96 2.4 41.7%");
-    /* Not numbers; a division by a number that is not positive. */
+    /* Not numbers; a division by 0. */
     expect_filled("{{none number}} {{scene percent}} {{runs/none number}} {{runs/0 number}}", "– – – –");
 }
 

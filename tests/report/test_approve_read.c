@@ -14,7 +14,7 @@ static const char *store(const char *text) {
     return path;
 }
 
-static void failures_are_read_whatever_the_order_of_members(void **state) {
+static void failures_are_read_in_any_order_of_members(void **state) {
     (void)state;
     Error error = {0};
     ApprovalList list;
@@ -37,14 +37,14 @@ static void failures_are_read_whatever_the_order_of_members(void **state) {
     approval_free(&list);
 }
 
-static void what_compare_does_not_write_is_refused_at_its_place(void **state) {
+static void invalid_results_are_refused_with_their_place(void **state) {
     (void)state;
     static const struct {
         const char *text, *why;
     } cases[] = {
-        {"[]", "results.json:1:1: error: this is no report of twinbox compare"},
+        {"[]", "results.json:1:1: error: not a report of twinbox compare"},
         {"{}", "results.json:1:2: error: unexpected token"},
-        {"{\"format\": \"twinbox compare 2\"", "1:12: error: this is no report"},
+        {"{\"format\": \"twinbox compare 2\"", "1:12: error: not a report"},
         {"{\"format\": 1", "1:12: error: 'format' must be a string of 1 to "},
         {"{\"expected\": \"\"", "1:14: error: 'expected' must be a string of 1 to "},
         {HEAD "}", "results.json: error: 'frames' is missing"},
@@ -56,7 +56,7 @@ static void what_compare_does_not_write_is_refused_at_its_place(void **state) {
         {HEAD ",\n\"frames\": [\n  {\"failed\": 1}]}", "3:3: error: 'failed' must be true or false"},
         {HEAD ",\n\"frames\": [\n  {\"failed\": true}]}", "3:3: error: 'shown' must be true or false"},
         {HEAD ",\n\"frames\": [\n{\"failed\": true, \"shown\": true}]}",
-         "3:1: error: neither an expected nor an actual"},
+         "3:1: error: an expected or an actual file is required"},
         {HEAD ",\n\"frames\": [\n{\"failed\": true, \"shown\": true, \"actual\": 1}]}",
          "3:1: error: 'actual' must be null or a file"},
         {HEAD ",\n\"frames\": [{\"failed\": true, \"shown\": true, \"actual\": " FILE_0 "}, {}]}",
@@ -73,8 +73,8 @@ static void what_compare_does_not_write_is_refused_at_its_place(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failures_are_read_whatever_the_order_of_members),
-        cmocka_unit_test(what_compare_does_not_write_is_refused_at_its_place),
+        cmocka_unit_test(failures_are_read_in_any_order_of_members),
+        cmocka_unit_test(invalid_results_are_refused_with_their_place),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

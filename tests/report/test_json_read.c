@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the reader adds to jansson: places, limits, and that it walks containers without reading beyond the file. */
+/* What the reader adds to jansson: places, limits, and walking containers without reading beyond the file. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -39,7 +39,7 @@ static void assert_refused(const char *text, size_t size, const char *why) {
     json_read_close(&reader);
 }
 
-static void values_come_one_by_one_with_their_places(void **state) {
+static void values_are_read_one_by_one_with_their_places(void **state) {
     (void)state;
     static const char text[] = " [ -0.5E+1 ,\r\n\t\"\xc3\xa4\\u00e4\",  {\n \"a\": [1,\n2]} ,\n7] ";
     Error error = {0};
@@ -65,7 +65,7 @@ static void values_come_one_by_one_with_their_places(void **state) {
     json_read_close(&reader);
 }
 
-static void what_is_no_json_is_refused_at_its_place(void **state) {
+static void invalid_json_is_refused_with_its_place(void **state) {
     (void)state;
     static const struct {
         const char *text, *why;
@@ -90,8 +90,8 @@ static void what_is_no_json_is_refused_at_its_place(void **state) {
     assert_refused("[1,\0]", 5, "invalid token");
 }
 
-/* Escape sequences of a terminal do not reach it. */
-static void a_message_holds_nothing_of_the_file(void **state) {
+/* Terminal escape sequences in a file must not reach the terminal. */
+static void messages_contain_nothing_of_the_file(void **state) {
     (void)state;
     Error error = {0};
     JsonReader reader = open_text("[\x1b[31m]", 7);
@@ -102,8 +102,8 @@ static void a_message_holds_nothing_of_the_file(void **state) {
     json_read_close(&reader);
 }
 
-/* No cut of a file is read beyond its end, or taken for the whole. */
-static void every_cut_is_refused(void **state) {
+/* A truncated file is never read beyond its end or accepted. */
+static void every_truncated_file_is_refused(void **state) {
     (void)state;
     static const char whole[] = "[{\"a\": [1, \"\\u00e4\xc3\xa4\", {\"b\": null}], \"c\": -1.5e3}, true, 12]";
     for (size_t size = 0; size < sizeof whole - 1; size++) assert_refused(whole, size, "values.json:1:");
@@ -140,10 +140,10 @@ static void size_depth_and_memory_of_a_value_are_limited(void **state) {
     free(text);
 }
 
-static void a_value_gives_its_memory_back(void **state) {
+static void the_memory_of_a_value_is_reused(void **state) {
     (void)state;
     char *text = malloc(MAX_SIZE + 1);
-    const size_t items = 10000; /* 2 MB, were all kept */
+    const size_t items = 10000; /* 2 MB if all were kept */
     int count;
     Error error = {0};
     JsonReader reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
@@ -163,12 +163,12 @@ static void a_large_file_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_come_one_by_one_with_their_places),
-        cmocka_unit_test(what_is_no_json_is_refused_at_its_place),
-        cmocka_unit_test(a_message_holds_nothing_of_the_file),
-        cmocka_unit_test(every_cut_is_refused),
+        cmocka_unit_test(values_are_read_one_by_one_with_their_places),
+        cmocka_unit_test(invalid_json_is_refused_with_its_place),
+        cmocka_unit_test(messages_contain_nothing_of_the_file),
+        cmocka_unit_test(every_truncated_file_is_refused),
         cmocka_unit_test(size_depth_and_memory_of_a_value_are_limited),
-        cmocka_unit_test(a_value_gives_its_memory_back),
+        cmocka_unit_test(the_memory_of_a_value_is_reused),
         cmocka_unit_test(a_large_file_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

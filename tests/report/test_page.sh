@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The page of a comparison in a browser: keys are pressed, and what is then on the page is looked at.
+# The page of a comparison in a browser: presses keys and checks what the page shows.
 . "$(dirname "$0")/../cli/checks.sh"
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
@@ -11,11 +11,11 @@ cp "expected</script>/frame_000003.png" actual/frame_000003.png
 rm actual/*.npz
 run 1 compare "expected</script>" actual --report report
 
-# Nothing in the page leads out of it.
+# The page has no external references.
 [ "$(grep -cE '(src|href)="?(https?:|//|file:)|@import|url\(' report/report.html)" -eq 0 ] || fail "the page fetches something"
 [ "$(ls report)" = "$(printf 'junit.xml\nreport.html\nresults.json')" ] || fail "the report needs other files"
 
-# Appended to the page: presses keys, and writes what it then sees into #seen, a line for each step.
+# Appended to the page: presses keys and writes what it sees into #seen, one line per step.
 cat >probe.html <<'PROBE'
 <pre id="seen"></pre>
 <script>
@@ -107,7 +107,7 @@ if command -v chromium >/dev/null; then
     says "swipe: inset(0px 0px 0px 50%)"
     says "swipe more: inset(0px 0px 0px 55%) | 55"
     says "onion: mode-onion | 0.55"
-    says "blink: mode-blink | Now: expected | Go on"
+    says "blink: mode-blink | Now: expected | Continue"
     says "blinked: Now: actual | 0 | 1"
     says "key 1: mode-expected | expected:80"
     says "key 2: mode-actual | actual:80"
@@ -119,7 +119,7 @@ if command -v chromium >/dev/null; then
     says "cannot: true | true"
     says "beyond: frame_000005.png | extra | 5 of 5"
     says "all: 6 | true | frame_000000.png | missing | 1 of 6"
-    says "scrubbed: frame_000003.png | equal | 4 of 6 | false | Equal pictures are not kept in this report."
+    says "scrubbed: frame_000003.png | equal | 4 of 6 | false | Equal pictures are not included in this report."
     says "own keys: 4 of 6"
     says "failures: 5 | frame_000004.png | physics changed | 4 of 5"
     says "plot: frame_000002.png | physics changed | 3 of 5 | 525"
@@ -129,7 +129,7 @@ if command -v chromium >/dev/null; then
     says "fetched: 0"
     ! grep '^error:' out || fail "the page's script failed"
 
-    # A comparison that passes has a page, too.
+    # A comparison that passes has a page too.
     run 0 compare actual actual --report report
     browse
     says "title: twinbox compare: equal"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The smallest changes there can be, each with its verdict: who changed, and where first. */
+/* The smallest possible changes, each with its verdict: the cause and the first frame. */
 #include "testing.h"
 
 #include "common/file.h"
@@ -32,7 +32,7 @@ static const char *frame_path(const char *folder, int frame) {
     return in(folder, name);
 }
 
-/* The frames of the run as it now is, and the run itself. */
+/* Writes the frames of the current run, and the run. */
 static void render_into(const char *folder) {
     Error error = {0};
     const Trajectory *const panels[] = {run};
@@ -48,7 +48,7 @@ static Trajectory *make_run(void) {
     return made;
 }
 
-/* Drawn once, copied for each test. */
+/* Rendered once, copied for each test. */
 static int draw_expected(void **state) {
     (void)state;
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
@@ -85,7 +85,7 @@ static Regression compared(void) {
     return regression;
 }
 
-/* One verdict for each frame, a letter each: (e)qual, (r)enderer, (p)hysics; and that of the whole. */
+/* One letter per frame: (e)qual, (r)enderer, (p)hysics; and the overall verdict. */
 static void assert_verdicts(const Regression *regression, const char *letters, const char *whole) {
     char found[FRAMES + 1] = "";
     for (int i = 0; i < FRAMES; i++) found[i] = frame_verdict(&regression->frames[i])[0];
@@ -99,7 +99,7 @@ static void remove_runs(void) {
     assert_int_equal(remove(in(actual, "two.npz")), 0);
 }
 
-/* A picture of another renderer: its pixels, but the texts that the frame had. */
+/* A picture as from another renderer: new pixels, but the frame's original texts. */
 static void replace_pixels(int frame, const Image *image) {
     static const char *const keys[] = {"Scene", "Frame", "State"};
     char values[3][512];
@@ -154,7 +154,7 @@ static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
     assert_int_equal(regression.runs[0].difference.frame, 3);
     assert_int_equal(regression.runs[0].difference.body, FIRST_BOX);
     regression_free(&regression);
-    /* The pictures alone know the frame, and the panel. */
+    /* Without runs, the pictures' texts give the frame and the panel. */
     remove_runs();
     regression = compared();
     assert_verdicts(&regression, "eeepee", "physics changed");
@@ -162,7 +162,7 @@ static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
     regression_free(&regression);
 }
 
-/* One channel of one pixel of the caption, by one. */
+/* One channel of one pixel of the caption differs by one. */
 static void one_pixel_of_a_label(void **state) {
     (void)state;
     Image *image = drawn(4);
@@ -190,7 +190,7 @@ static void two_frames_swapped(void **state) {
     regression_free(&regression);
 }
 
-/* No pixel shows it; the run beside the frames does. */
+/* Not visible in any pixel; detected by the run. */
 static void the_last_bit_of_one_body(void **state) {
     (void)state;
     Error error = {0};
@@ -205,7 +205,7 @@ static void the_last_bit_of_one_body(void **state) {
     assert_non_null(
         strstr(regression_begin(&regression).text, "physics changed first in two.npz: from frame 4, body 2"));
     regression_free(&regression);
-    /* Frames that were drawn of it tell the same by themselves. */
+    /* The texts of its frames show it too. */
     render_into(actual);
     remove_runs();
     regression = compared();
@@ -228,7 +228,7 @@ static void both_at_once(void **state) {
     regression_free(&regression);
 }
 
-/* A run of another length, and of other bodies: from where the one ends, and everywhere. */
+/* A run of another length differs from its end on, a run of other bodies everywhere. */
 static void other_runs_beside_the_frames(void **state) {
     (void)state;
     Error error = {0};
@@ -245,7 +245,7 @@ static void other_runs_beside_the_frames(void **state) {
     regression_free(&regression);
 }
 
-/* What a run does later moves the camera of its first frames, without any fault of the renderer. */
+/* Later motion in a run moves the camera of its first frames; the renderer has not changed. */
 static void a_camera_that_follows_the_run(void **state) {
     (void)state;
     run->camera_size = vec2(0, 0);

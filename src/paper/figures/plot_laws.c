@@ -106,13 +106,13 @@ static void draw_panel(const LawsFigure *laws, int panel) {
     GnuplotBox box = {left, right_bottom, error_width, height - right_bottom - top};
     if (panel != LAW_SET_ALL)
         box = (GnuplotBox){small_left + (panel % 2) * (small_width + small_gap),
-                          right_bottom + (panel < 2) * (small + row_gap), small_width, small};
+                           right_bottom + (panel < 2) * (small + row_gap), small_width, small};
     gnuplot_panel_begin(page, box, panel == LAW_SET_ALL ? "Error" : titles[panel]);
     gnuplot_log_axis(page, 'x', &laws->x, panel == LAW_SET_ALL || panel >= 2 ? "Weight in the loss" : NULL);
     gnuplot_log_axis(page, 'y', &y,
-               panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
-               : panel % 2 == 0     ? "Mean violation"
-                                    : "");
+                     panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
+                     : panel % 2 == 0     ? "Mean violation"
+                                          : "");
     draw_dashed(laws, panel, &y);
     draw_lines(laws, panel, &y);
     gnuplot_panel_end(page);

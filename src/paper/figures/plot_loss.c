@@ -61,7 +61,8 @@ static void choose_axes(Loss *loss) {
 }
 
 static void draw_point(Loss *loss, double iteration, double error) {
-    gnuplot_point(loss->page, gnuplot_axis_clamp(loss->page, &loss->x, iteration), gnuplot_axis_clamp(loss->page, &loss->y, error));
+    gnuplot_point(loss->page, gnuplot_axis_clamp(loss->page, &loss->x, iteration),
+                  gnuplot_axis_clamp(loss->page, &loss->y, error));
 }
 
 static void draw_constant(Loss *loss, int target) {
@@ -109,7 +110,7 @@ static void draw_panel(Loss *loss, int target) {
     GnuplotPage *page = loss->page;
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (PANELS - 1)) / PANELS;
     gnuplot_panel_begin(page, (GnuplotBox){left + target * (width + gap), bottom, width, height - top - bottom},
-                 titles[target]);
+                        titles[target]);
     gnuplot_log_axis(page, 'x', &loss->x, "Training iteration");
     gnuplot_log_axis(page, 'y', &loss->y, target == 0 ? "Mean squared error" : NULL);
     draw_constant(loss, target);

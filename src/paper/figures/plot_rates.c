@@ -123,13 +123,13 @@ static void draw_panel(const Rates *rates, int definition, int phase) {
     double width = (FIGURE_PAGE_WIDTH - left - right - gap * (DEFINITIONS - 1)) / DEFINITIONS;
     double up = bottom + (SHOWN_PHASES - 1 - phase) * (panel_height + row_gap);
     gnuplot_panel_begin(page, (GnuplotBox){left + definition * (width + gap), up, width, panel_height},
-                 phase == 0 ? titles[definition] : "");
+                        phase == 0 ? titles[definition] : "");
     gnuplot_linear_axis(page, 'x', -0.5, PAPER_SCENES - 0.5,
-                  phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
-                             : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
-                  NULL);
+                        phase == 0 ? "('' 0, '' 1, '' 2, '' 3)"
+                                   : "('single' 0, 'stack' 1, 'pyramid' 2, \"pyramid,\\nsettled\" 3)",
+                        NULL);
     gnuplot_linear_axis(page, 'y', -3, 104, definition == 0 ? "0,20,100" : "format '' 0,20,100",
-                  definition == 0 ? labels[phase] : NULL);
+                        definition == 0 ? labels[phase] : NULL);
     draw_band(rates);
     for (int i = 0; i < NETWORKS; i++) draw_network(rates, i, definition, phase);
     draw_constants(rates, definition, phase);

@@ -91,8 +91,7 @@ static bool fill_number(const Filling *filling, char *name, const char *format, 
         if (!find_number(filling, scope, slash + 1, &divisor)) return false;
     }
     if (!find_number(filling, scope, name, &value)) return false;
-    return template_write_number(filling->out, divisor > 0 ? value / divisor : NAN, format) ||
-           fail(filling, "unknown format", format);
+    return template_write_number(filling->out, value / divisor, format) || fail(filling, "unknown format", format);
 }
 
 static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scope) {

@@ -11,7 +11,7 @@
                          directly after {{each ...}} or {{end}} is left out.
 
    NAME is a column of the innermost row that has it; outside of all rows, a key of the values file (key, value). Empty
-   fields and NaN are shown as a dash. No character of a value has a meaning to Markdown. */
+   fields and NaN or infinite numbers are shown as a dash. No character of a value has a meaning to Markdown. */
 #pragma once
 #include "common/error.h"
 

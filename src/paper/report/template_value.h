@@ -8,7 +8,7 @@
 /* A field of a CSV file: cut to a name's length, a dash if it is empty. */
 void template_write_text(FILE *out, const char *text);
 
-/* format: "number", "percent", "score" (template.h); false for any other. A dash for NAN. */
+/* format: "number", "percent", "score" (template.h); false for any other. A dash for NaN and infinite values. */
 bool template_write_number(FILE *out, double value, const char *format);
 
 /* The text of a file. ERROR_INPUT if it is not one line of UTF-8 without control characters. */

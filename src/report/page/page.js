@@ -24,7 +24,7 @@
     const image = new Image();
     image.alt = {e: "expected", a: "actual", d: "difference", f: "FLIP"}[kind] + " picture of " + frame().name;
     image.draggable = false;
-    image.decoding = "sync"; /* or a new picture would flash up empty */
+    image.decoding = "sync"; /* prevents an empty flash before a new picture */
     image.loaded = new Promise(done => { image.onload = image.onerror = done; });
     image.src = "data:image/png;base64," + stored(listed[at], kind).textContent;
     return image;
@@ -37,7 +37,7 @@
     const images = !ready ? [] : (KINDS[mode] ? [KINDS[mode]] : ["e", "a"]).map(picture);
     get("stage").setAttribute("aria-busy", "true");
     await Promise.all(images.map(image => image.loaded));
-    if (turn !== turns) return; /* another picture was asked for meanwhile */
+    if (turn !== turns) return; /* another picture was requested meanwhile */
     const split = document.createElement("div"), circle = document.createElement("div");
     split.id = "split";
     circle.id = "ring";
@@ -52,7 +52,7 @@
     return most > 1 ? Math.floor(most) : most;
   }
 
-  /* Sizes and styles of what is on the stage; centres on what differs when asked to. */
+  /* Sets sizes and styles of the elements on the stage; centre: scrolls to the difference. */
   function lay_out(centre) {
     const sheet = get("sheet"), stage = get("stage"), images = [...sheet.querySelectorAll("img")];
     if (images.length === 0) return;
@@ -75,7 +75,7 @@
     const split = get("split"), circle = get("ring");
     split.hidden = mode !== "swipe";
     split.style.left = blend + "%";
-    /* A ring around nearly everything points at nothing. */
+    /* A ring around most of the picture would be useless. */
     circle.hidden = !ring || !box || (box[2] - box[0]) * (box[3] - box[1]) > 0.5 * width * height;
     if (!box) return;
     const margin = 6, left = box[0] * scale - margin, above = box[1] * scale - margin;
@@ -98,10 +98,10 @@
     const blends = mode === "swipe" || mode === "onion";
     get("blend-row").hidden = !blends;
     get("blend").value = blend;
-    get("blend-label").textContent = mode === "swipe" ? "Expected to the left of, actual to the right of" : "Share of the actual picture";
+    get("blend-label").textContent = mode === "swipe" ? "Split (expected left, actual right)" : "Opacity of the actual picture";
     get("blend-value").textContent = blend + " %";
     get("blink-row").hidden = mode !== "blink";
-    get("pause").textContent = running ? "Pause" : "Go on";
+    get("pause").textContent = running ? "Pause" : "Continue";
     get("blink-what").textContent = "Now: " + (second ? "actual" : "expected");
     get("difference-row").hidden = mode !== "difference";
     get("flip-row").hidden = mode !== "flip";
@@ -156,8 +156,8 @@
     }
     mode = usable(wanted) ? wanted : MODES.find(usable) || wanted;
     say(MODES.some(usable) ? "" : f.failed || f.verdict === "within tolerance"
-      ? "The pictures of this frame are not in this report, which would have become too large."
-      : "Equal pictures are not kept in this report.");
+      ? "The pictures of this frame exceed the report's size limit."
+      : "Equal pictures are not included in this report.");
     mark_row(true);
     controls();
     show();
@@ -184,7 +184,7 @@
     if (listed.length > 0) go(nearest < 0 ? listed.length - 1 : nearest);
     else {
       get("name").textContent = get("frame-verdict").textContent = get("figures").textContent = get("place").textContent = "";
-      say("No frame failed. Show all frames to see the others.");
+      say("No frame failed. Select \"Show all frames\" to see the others.");
       turns++;
       get("sheet").replaceChildren();
       get("stage").setAttribute("aria-busy", "false");

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/installed.h"
+
+#include "common/file.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+/* What was found; a list, because callers keep the paths. */
+typedef struct Found {
+    struct Found *next;
+    char path[PATH_SIZE];
+} Found;
+
+static Found *all_found;
+
+/* The path below TWINBOX_DATA, which is relative to the program's folder: an installed prefix can be moved. */
+static bool find(char found[PATH_SIZE], const char *path) {
+    char program[PATH_SIZE];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return false;
+    program[length] = '\0';
+    Error ignored = {0};
+    return file_path(found, PATH_SIZE, &ignored, "%.*s%s/%s", (int)file_folder_length(program), program, TWINBOX_DATA,
+                     path) &&
+           access(found, R_OK) == 0;
+}
+
+const char *installed_path(const char *path) {
+    if (path[0] == '/' || access(path, F_OK) == 0) return path;
+    Found *found = malloc(sizeof *found);
+    if (found == NULL || !find(found->path, path)) {
+        free(found);
+        return path;
+    }
+    found->next = all_found;
+    all_found = found;
+    return found->path;
+}

@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the scenes that `cmake --install` put beside the program. */
+#pragma once
+
+/* A file or folder given on the command line: the path itself; but if it is relative and there is nothing under it in the
+   working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
+   "scenes/stack.yaml". Valid until the program ends. */
+const char *installed_path(const char *path);

@@ -1,0 +1,52 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# `cmake --install` into an empty prefix, which then moves: the installed program finds its scenes and their networks.
+. "$(dirname "$0")/checks.sh"
+
+build=$(dirname "$twinbox")
+built=$twinbox
+"$built" simulate "$scenes/stack.yaml" --method pair-net --hash built.hash >/dev/null
+run 2 simulate scenes/stack.yaml
+complains "scenes/stack.yaml: error:"
+run 2 paper -o none --quick
+complains "scenes/single.yaml: error:"
+
+cmake --install "$build" --prefix "$folder/first" >installed || fail "cmake --install"
+mv first second
+twinbox=$folder/second/bin/twinbox
+mkdir elsewhere
+cd elsewhere || exit 1
+
+run 0 simulate scenes/stack.yaml --method pair-net --hash stack.hash
+cmp -s stack.hash ../built.hash || fail "the installed program makes another run"
+run 0 render scenes/single.yaml --frames 0:1 -o pictures
+run 0 chart scenes/single.yaml --quick --launches scenes/launches/far.csv --methods engine -o chart
+run 0 stability --study bomb_speed --methods engine:k=4 -o stability
+says "borders -> stability/stability.csv"
+# Refused for its folder, not for its scenes.
+run 3 paper -o /proc/none --quick
+[ -e scenes ] && fail "there are scenes in the working directory"
+
+# What is here comes first.
+mkdir scenes
+echo "boxes" >scenes/stack.yaml
+run 2 simulate scenes/stack.yaml
+complains "scenes/stack.yaml:1:"
+run 2 simulate scenes/none.yaml
+complains "scenes/none.yaml: error:"
+
+cd ..
+pages=second/share/doc/twinbox
+for file in README.md LICENSE OFL.txt; do [ -s $pages/$file ] || fail "no $file"; done
+pictures=$(grep -o '([^():]*\.png)' $pages/README.md | tr -d '()')
+equal "a page has pictures" "$([ -n "$pictures" ] && echo yes)" yes
+for picture in $pictures; do [ -s "$pages/$picture" ] || fail "README.md shows $picture, which is not installed"; done
+for scene in "$sources"/scenes/*.yaml "$sources"/scenes/stability/*.yaml; do
+    cmp -s "$scene" "second/share/twinbox/${scene#"$sources"/}" || fail "$scene is not installed"
+done
+
+DESTDIR=$folder/stage cmake --install "$build" --prefix /usr >installed || fail "cmake --install with DESTDIR"
+equal "what is staged" "$(cd stage && echo *)" usr
+run 0 --version
+equal "the staged program" "$(stage/usr/bin/twinbox --version)" "$(cat out)"
+finish
