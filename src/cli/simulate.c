@@ -68,8 +68,10 @@ static const struct argp argp = {
     parse,
     "SCENE",
     "Run a scene with one method and store the trajectory.\v"
-    "Example: twinbox simulate scenes/stack.yaml --bomb-x 2.5 -o stack.npz --hash stack.csv\n"
-    "In Python: run = numpy.load('stack.npz'); run['position'] has shape (frames, bodies, 2).",
+    "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+    "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+    "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+    "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2).",
     NULL,
     NULL,
     NULL};

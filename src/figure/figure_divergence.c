@@ -221,7 +221,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_divergence = {
     .name = "divergence",
     .summary = "distance from the first run over time, with a band of chaotic divergence",
-    .example = "divergence a.npz b.npz --scene stack.yaml -o apart.svg",
+    .example = "divergence engine.npz momentum.npz --scene scenes/stack.yaml -o divergence.svg",
     .min_runs = 2,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,

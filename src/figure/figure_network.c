@@ -83,6 +83,6 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_network = {
     .name = "network",
     .summary = "layers, sizes and weights of a network's file",
-    .example = "network pair-net.npz --width column -o net.pdf",
+    .example = "network scenes/networks/pair-net.npz --width column -o network.pdf",
     .draw = draw,
 };

@@ -164,7 +164,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
 const FigureKind figure_pair = {
     .name = "narrow-phase",
     .summary = "contact of two boxes of a run: overlaps, normal, points",
-    .example = "narrow-phase engine.npz --bodies 2,11 -o pair.svg",
+    .example = "narrow-phase engine.npz --bodies 2,11 -o narrow-phase.svg",
     .min_runs = 1,
     .max_runs = 1,
     .takes_times = true,

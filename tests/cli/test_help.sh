@@ -23,6 +23,16 @@ for name in simulate render compare approve diverge figure dataset train chart p
     complains "needed"
 done
 
+# Examples work in this order in a folder with the scenes. (Those of other commands take longer.)
+ln -s "$scenes" scenes
+for name in simulate methods problem solve diverge figure; do
+    ARGP_HELP_FMT=rmargin=400 "$twinbox" "$name" --help | sed -n 's/^\(Example:\|        \) twinbox //p' >examples
+    [ -s examples ] || fail "the help of $name has no example"
+    while read -r arguments; do
+        case $arguments in diverge*) run 1 $arguments ;; *) run 0 $arguments ;; esac
+    done <examples
+done
+
 run 2
 complains "Usage: twinbox COMMAND"
 run 2 simulat

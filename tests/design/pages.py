@@ -8,7 +8,8 @@
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
   FOLDER, COMMAND and WHAT stand for any text.
-- Every option after `twinbox COMMAND` in a shell block or a sentence is one of that command.
+- Every option after `twinbox COMMAND` in a shell block or a sentence, or in an example of its
+  help, is one of that command.
 - Marked blocks run, page by page from top to bottom, in a fresh copy of the sources with twinbox on PATH, as a user
   would type them. The marks are words after the language of a block and are invisible when rendered:
 
@@ -29,6 +30,7 @@ import urllib.parse
 
 README_LINES, README_WORDS = 150, 1300
 NOT_IN_A_CLONE = {".git", "build", "out"}
+TEMPLATE = "src/paper/report/report.md"  # its links are to files beside the report that is made of it
 PLACEHOLDER = re.compile("NAME|FOLDER|COMMAND|WHAT")
 TIME = re.compile(r"\d[\d.]*(e[+-]?\d+)?( ?(ns|µs|us|ms|s|min)\b)")
 
@@ -48,8 +50,9 @@ def find_pages():
     for folder, names, files in os.walk(root):
         names[:] = sorted(name for name in names if name not in NOT_IN_A_CLONE)
         for file in sorted(files):
-            if file.endswith(".md"):
-                yield os.path.relpath(os.path.join(folder, file), root)
+            path = os.path.relpath(os.path.join(folder, file), root)
+            if path.endswith(".md") and path != TEMPLATE:
+                yield path
 
 
 class Block:
@@ -164,7 +167,8 @@ def options_of(command):
     if command not in helps:
         done = subprocess.run([twinbox, command, "--help"], capture_output=True, text=True)
         known = done.returncode == 0
-        helps[command] = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", done.stdout)) | {"-o", "-m"} if known else None
+        words = re.findall(r"(?<![\w-])--?[a-z][\w-]*", done.stdout.partition("Example:")[0])
+        helps[command] = set(words) if known else None
     return helps[command]
 
 
@@ -176,6 +180,15 @@ def check_options(place, text):
             check(known is not None, place, f"there is no command 'twinbox {call[1]}'")
             for option in re.findall(r"(?<=\s)--?[a-z][\w-]*", call[2]) if known else []:
                 check(option in known, place, f"twinbox {call[1]} has no option {option}")
+
+
+def check_examples():
+    """Of the help of all commands, in lines that are not wrapped."""
+    environment = {**os.environ, "ARGP_HELP_FMT": "rmargin=1000"}
+    listed = subprocess.run([twinbox, "--help"], capture_output=True, text=True).stdout
+    for command in re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE):
+        done = subprocess.run([twinbox, command, "--help"], env=environment, capture_output=True, text=True)
+        check_options(f"twinbox {command} --help", done.stdout.partition("Example:")[2])
 
 
 def is_output(shown, printed):
@@ -201,6 +214,7 @@ def run(place, block, folder):
     done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     check(done.returncode == status, place,
           f"exit status {done.returncode}, not {status}: {(done.stderr + done.stdout)[-800:]}")
+    check(block.language != "python" or not done.stderr, place, f"warnings: {done.stderr}")
     return done.stdout if status < 2 else done.stdout + done.stderr
 
 
@@ -239,6 +253,7 @@ check_links()
 check_readme()
 for page in pages.values():
     check_paths(page)
+check_examples()
 check_blocks()
 print(f"{len(pages)} pages, {checks} checks, {failures} failures")
 sys.exit(failures > 0)
