@@ -22,9 +22,8 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     strcpy(out + length, cut ? "..." : "");
 }
 
-/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off". */
+/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off", appended to empty texts. */
 static void split_setting(const char *setting, char *numbers, char *words) {
-    numbers[0] = words[0] = '\0';
     while (*setting != '\0') {
         size_t length = strcspn(setting, ",");
         char item[CHART_SETTING_SIZE];
@@ -39,7 +38,7 @@ static void split_setting(const char *setting, char *numbers, char *words) {
 }
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
-    char numbers[2 * CHART_SETTING_SIZE], words[2 * CHART_SETTING_SIZE];
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
     split_setting(row->setting, numbers, words);
     snprintf(key, CHART_KEY_SIZE, "%s%s", row->method, words);
     chart_plain(label, numbers);

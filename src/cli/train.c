@@ -138,7 +138,8 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     *request = (TrainRequest){.kind = find_kind(options->kind), .input = options->input, .output = options->output};
     if (request->kind == NULL) {
         const NameList known = name_kinds(NULL);
-        return error_unknown(error, "--kind", options->kind, "a kind", &known);
+        error_unknown(error, "--kind", options->kind, "a kind", &known);
+        return false;
     }
     for (int i = 0; request->kind->options[i].name != NULL; i++)
         request->values[i] = request->kind->options[i].standard;

@@ -4,6 +4,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#undef error_input
+#undef error_system
+#undef error_memory
+
 static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments)
     PRINTF_LIKE(4, 0);
 

@@ -82,7 +82,7 @@ static bool widen_band(Divergence *d, int body, const Progress *progress, Error 
 }
 
 static bool make_band(Divergence *d, Error *error) {
-    int bodies[BAND_BODIES];
+    int bodies[BAND_BODIES] = {0};
     d->low = malloc((size_t)d->frames * sizeof *d->low);
     d->high = malloc((size_t)d->frames * sizeof *d->high);
     if (d->low == NULL || d->high == NULL) return error_memory(error, "figure");

@@ -65,6 +65,7 @@ static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const c
     size_t offset = 0;
     for (GLuint i = 0; components[i] != 0; offset += sizeof(GLint) * (size_t)components[i++]) {
         gl->EnableVertexAttribArray(i);
+        /* OpenGL takes an offset as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr) */
         gl->VertexAttribIPointer(i, components[i], GL_INT, stride, (const void *)offset);
         gl->VertexAttribDivisor(i, 1);
     }

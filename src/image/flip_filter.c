@@ -43,7 +43,7 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: the feature width at the eye's peak
                                                            contrast sensitivity */
     int radius = at_most(ceil(3 * deviation));
-    double across[LARGEST], edge[LARGEST], point[LARGEST];
+    double across[LARGEST] = {0}, edge[LARGEST] = {0}, point[LARGEST] = {0};
     for (int k = -radius; k <= radius; k++) {
         double gaussian = exp(-k * k / (2 * deviation * deviation));
         across[k + radius] = gaussian;

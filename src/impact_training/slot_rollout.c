@@ -5,6 +5,7 @@
 #include "simulate/phases.h"
 #include "solvers/residual.h"
 
+#include <assert.h>
 #include <omp.h>
 #include <stdlib.h>
 
@@ -70,6 +71,7 @@ static bool run_prefix(Runs *runs, Error *error) {
 }
 
 static bool begin(Runs *runs, int threads, Error *error) {
+    assert(threads > 0);
     runs->solvers = calloc((size_t)threads, sizeof *runs->solvers);
     runs->worlds = calloc((size_t)threads, sizeof(World *));
     runs->sweeps = calloc((size_t)threads, sizeof *runs->sweeps);

@@ -25,7 +25,7 @@ void slot_samples_free(SlotSamples *samples) {
 }
 
 static bool reserve(SlotSamples *samples, int count) {
-    return array_reserve((void **)&samples->items, &samples->capacity, (size_t)(samples->count + count),
+    return array_reserve((void **)&samples->items, &samples->capacity, (size_t)samples->count + (size_t)count,
                          sizeof *samples->items);
 }
 

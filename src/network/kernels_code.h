@@ -41,7 +41,7 @@ static void tile_activations(Activation activation, float *values, int count) {
 
 static void predict(const Network *network, const float *inputs, float *scratch, float *outputs, int rows, int first,
                     int count) {
-    /* Aligned: a vector across two cache lines takes two loads. */
+    /* Aligned: a vector across two cache lines takes two loads. NOLINTNEXTLINE(performance-no-int-to-ptr) */
     float *in = (float *)(((uintptr_t)scratch + CACHE_LINE - 1) & ~(uintptr_t)(CACHE_LINE - 1));
     float *out = in + network_scratch_width(network) * TILE_ROWS;
     for (int i = 0; i < network->widths[0]; i++) {

@@ -59,7 +59,7 @@ bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *whe
 
 /* Layers, rows and biases in one block. */
 static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
-    const size_t inputs = (size_t)(ROW_LANES + shape->state + shape->present + shape->warm);
+    const size_t inputs = (size_t)ROW_LANES + (size_t)shape->state + (size_t)shape->present + (size_t)shape->warm;
     const size_t hidden = (size_t)shape->hidden, outputs = 2 * (size_t)shape->slot_count;
     network->parameter_count = (inputs + 1) * hidden + (hidden + 1) * hidden + (hidden + 1) * outputs;
     float *at = network->parameters = calloc(network->parameter_count, sizeof *at);

@@ -48,7 +48,7 @@ static Camera look_at(double x, double y, double scale, int width, int height) {
 bool camera_is_set(const Trajectory *trajectory) {
     Vec2 size = trajectory->camera_size, center = trajectory->camera_center;
     return size.x >= MIN_VIEW && size.y >= MIN_VIEW && size.x < EXTENT_FARTHEST && size.y < EXTENT_FARTHEST &&
-           fabs(center.x) < EXTENT_FARTHEST && fabs(center.y) < EXTENT_FARTHEST;
+           fabsf(center.x) < EXTENT_FARTHEST && fabsf(center.y) < EXTENT_FARTHEST;
 }
 
 Camera camera_fit(const Trajectory *trajectory, int width, int height) {

@@ -107,9 +107,9 @@ static bool is_selected(const ApprovalItem *item, const char *only, Approval *ap
 
 static bool approve_list(const ApprovalList *list, const char *only,
                          void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
-    Action *actions = malloc((list->count + 1) * sizeof *actions);
+    Action *actions = calloc(list->count + 1, sizeof *actions);
     if (actions == NULL) return error_memory(error, "approve");
-    bool ok = true, *selected = malloc(list->count + 1);
+    bool ok = true, *selected = calloc(list->count + 1, sizeof *selected);
     if (selected == NULL) ok = error_memory(error, "approve");
     for (size_t i = 0; ok && i < list->count; i++) {
         selected[i] = is_selected(&list->items[i], only, approval);

@@ -86,7 +86,7 @@ static bool add_item(ApprovalList *list, ApprovalItem item) {
 static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
     if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
     for (bool more = !json_read_char(json, ']'); more;) {
-        ApprovalItem item;
+        ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
         if (value == NULL || !read_item(json, value, &item, error)) return false;
         if (item.failed && !add_item(list, item)) return error_memory(error, json->path);

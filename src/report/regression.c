@@ -5,6 +5,7 @@
 #include "common/parallel.h"
 #include "report/regression_states.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +50,7 @@ static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *
 /* A missing or extra frame is decoded too, to detect damaged files. */
 static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame, RegressionSide side,
                         const uint8_t *data, Error *error) {
+    assert(frame->at[side] != NULL);
     RegressionFile *file = &frame->files[side];
     Image *image = image_decode_png(data, file->size, frame->at[side]->path, options->max_pixels, error);
     if (image == NULL) return false;

@@ -7,6 +7,7 @@
 #include "image/png_encoder.h"
 #include "report/regression_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,6 +72,7 @@ static bool draw_differences(const Regression *regression, RegressionFrame *fram
                              bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
     if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
+    assert(frame->at[EXPECTED] != NULL && frame->at[ACTUAL] != NULL);
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
                                         regression->options.max_pixels, error);

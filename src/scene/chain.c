@@ -113,7 +113,7 @@ bool chain_read(const YamlTree *tree, int node, const char *what, double *value,
     char operation = '*';
     *value = 1;
     for (int count = 1;; count++) {
-        double number;
+        double number = 0;
         if (!take_number(&chain, rest, &number, &rest, error) || !apply(&chain, operation, number, value, error))
             return false;
         if (*rest == '\0') return true;

@@ -74,7 +74,7 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     int64_t count = pattern_body_count(pattern);
     if (count > SCENE_MAX_BODIES - scene->body_count)
         return yaml_error(tree, place, error, "a scene must have at most %d bodies (got %lld)", SCENE_MAX_BODIES,
-                          (long long)(scene->body_count + count));
+                          (long long)scene->body_count + count);
     void *bodies = scene->bodies;
     bool room = array_reserve(&bodies, capacity, (size_t)(scene->body_count + count), sizeof *scene->bodies);
     scene->bodies = bodies;

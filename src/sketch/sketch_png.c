@@ -70,7 +70,7 @@ static void add_dashed_line(Painter *painter, const Point *points, size_t count,
 
 static void draw_path(Painter *painter, const SketchMark *mark) {
     const Pen *pen = &mark->pen;
-    Point *points = malloc(mark->count * sizeof *points);
+    Point *points = calloc(mark->count, sizeof *points);
     if (points == NULL) {
         painter->raster.failed = true;
         return;

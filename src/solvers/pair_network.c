@@ -114,11 +114,11 @@ const float *pair_network_predict(PairNetwork *pair, const ContactProblem *probl
     if (!array_reserve((void **)&pair->numbers, &pair->capacity, inputs_size + outputs_size + 1, sizeof(float)))
         return NULL;
     float *inputs = pair->numbers, *outputs = pair->numbers + inputs_size;
+    if (count == 0) return outputs;
     if (pair->constant) {
         for (size_t i = 0; i < outputs_size; i++) outputs[i] = pair->network->output_mean[i / (size_t)count];
         return outputs;
     }
-    if (count == 0) return outputs;
     const PairMoment *now;
     if (!find_moment(pair, problem, &now)) return NULL;
     for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {

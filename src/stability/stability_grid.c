@@ -96,7 +96,7 @@ static bool begin(Run *run, Error *error) {
     run->y_count = border_scan_values(&y, run->y);
     run->typical = read_scene(grid, NULL, 0, error);
     if (run->typical == NULL) return false;
-    const size_t cells = (size_t)(run->x_count * run->y_count), methods = (size_t)grid->methods->count;
+    const size_t cells = (size_t)run->x_count * (size_t)run->y_count, methods = (size_t)grid->methods->count;
     run->methods = malloc(methods * sizeof *run->methods);
     run->readings = malloc(methods * cells * sizeof *run->readings);
     if (run->methods == NULL || run->readings == NULL) return error_memory(error, grid->map->name);

@@ -47,7 +47,7 @@ static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run
 /* Saves the rows of the finished scenes and of the contenders scored in the current one. */
 static bool save_checkpoint(const Run *run, Error *error) {
     int count = run->row_count;
-    size_t most = (size_t)(run->row_count + run->study.contender_count * ROWS_EACH);
+    size_t most = (size_t)run->row_count + (size_t)run->study.contender_count * ROWS_EACH;
     ChartRow *done = malloc((most + 1) * sizeof *done);
     if (done == NULL) return error_memory(error, "study");
     if (count > 0) memcpy(done, run->rows, (size_t)count * sizeof *done);
@@ -106,7 +106,7 @@ static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, E
             return error_input(error, path, "another scene has the same name (%s)", run->rows[i].scene);
         }
     int count = run->study.contender_count;
-    size_t rows = (size_t)(run->row_count + count * ROWS_EACH);
+    size_t rows = (size_t)run->row_count + (size_t)count * ROWS_EACH;
     ChartRow *grown = realloc(run->rows, (rows + 1) * sizeof *grown);
     if (grown != NULL) run->rows = grown;
     run->scored = calloc((size_t)count + 1, sizeof *run->scored);

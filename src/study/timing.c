@@ -143,7 +143,7 @@ static StepCost summarise(const Timed *timed, int protocol, int phase, int repet
 
 static bool timing_begin(Timing *timing, const Contender *const *contenders, Error *error) {
     const Scene *scene = &timing->options->launches[0];
-    size_t samples = (size_t)(PROTOCOLS * PHASES * timing->options->repetitions);
+    size_t samples = (size_t)timing->options->repetitions * PROTOCOLS * PHASES;
     timing->items = calloc((size_t)timing->count, sizeof *timing->items);
     if (timing->items == NULL) return error_memory(error, "timing");
     for (int i = 0; i < timing->count; i++) {

@@ -66,7 +66,7 @@ static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
         advance = figure;
     }
     if (FT_Render_Glyph(face->glyph, FT_RENDER_MODE_NORMAL) != 0) quit("cannot render a glyph");
-    const FT_GlyphSlot slot = face->glyph;
+    FT_GlyphSlot slot = face->glyph;
     FontGlyph glyph = {code,
                        bitmap_size,
                        (short)slot->bitmap.width,

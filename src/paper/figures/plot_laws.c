@@ -108,7 +108,7 @@ static void draw_panel(const LawsFigure *laws, int panel) {
         box = (GnuplotBox){small_left + (panel % 2) * (small_width + small_gap),
                            right_bottom + (panel < 2) * (small + row_gap), small_width, small};
     gnuplot_panel_begin(page, box, panel == LAW_SET_ALL ? "Error" : titles[panel]);
-    gnuplot_log_axis(page, 'x', &laws->x, panel == LAW_SET_ALL || panel >= 2 ? "Weight in the loss" : NULL);
+    gnuplot_log_axis(page, 'x', &laws->x, panel >= 2 ? "Weight in the loss" : NULL);
     gnuplot_log_axis(page, 'y', &y,
                      panel == LAW_SET_ALL ? "Test error / that of predicting the mean"
                      : panel % 2 == 0     ? "Mean violation"

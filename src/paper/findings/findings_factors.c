@@ -32,7 +32,7 @@ static void find_best(const StudyTables *study, FactorRow *row) {
     const TrainedRow *baseline = study_baseline(study);
     if (baseline == NULL) return;
     row->baseline_ratio = baseline->ratio;
-    const TrainedRow *best = study_best(study, baseline->target, row->factor, INFINITY, &among);
+    const TrainedRow *best = study_best(study, (PairTarget)baseline->target, row->factor, INFINITY, &among);
     if (best == NULL) return;
     row->best = best->value;
     row->ratio = best->ratio;
