@@ -70,7 +70,7 @@ static void drawings_say_what_they_show(void **state) {
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
     expect_texts("narrow-phase",
-                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "the least", "reference edge",
+                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "smallest overlap", "reference edge",
                                        "incident edge", "side plane", "normal (", NULL});
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
