@@ -69,8 +69,7 @@ static void write_note(const ChartLayout *layout) {
     fprintf(layout->script, "set label '");
     write_counts(layout, "Unstable before the impact: ", offsetof(ChartLine, lost));
     write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
-    if (layout->chart->floored > 0)
-        fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
+    if (layout->chart->floored > 0) fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 
