@@ -42,7 +42,7 @@ static void growth_by_a_factor_is_a_straight_line(void **state) {
         assert_near(points[i].x, points[0].x + across * i, 1e-9);
         assert_near(points[i].y, points[60].y - up * (60 - i), 0.05);
     }
-    assert_int_equal(count_texts(&sketch, "pair-net from engine"), 1);
+    assert_int_equal(count_texts(&sketch, "pair-net vs engine"), 1);
     assert_int_equal(count_texts(&sketch, "largest distance (m)"), 1);
     assert_int_equal(count_texts(&sketch, "time (s)"), 1);
     assert_int_equal(count_texts(&sketch, "0.0"), 1);
