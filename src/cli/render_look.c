@@ -22,7 +22,7 @@ static const struct argp_option option_table[] = {
      "timeline (distance from the first run over time), separated by commas",
      0},
     {"camera", CAMERA, "KIND", 0,
-     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where a body is first 1 mm apart", 0},
+     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where the distance first exceeds 1 mm", 0},
     {"theme", THEME, "light|dark", 0, "Colours (default: light)", 0},
     {"costs", COSTS, "FILE.csv", 0, "Add the time per step to the captions, from a chart.csv of 'twinbox chart'", 0},
     {0}};

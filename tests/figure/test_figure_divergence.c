@@ -89,7 +89,7 @@ static void the_band_begins_with_the_shift(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "divergence", &spec);
     assert_int_equal(count_texts(&sketch, "engine, one of 5 bodies shifted by 1 \xC2\xB5m"), 1);
-    assert_int_equal(count_texts(&sketch, "bomb hits"), 1);
+    assert_int_equal(count_texts(&sketch, "impact"), 1);
     const SketchMark *band = NULL, *line = longest_line(&sketch);
     for (size_t i = 0; i < sketch.mark_count && band == NULL; i++)
         if (sketch.marks[i].closed && sketch.marks[i].count == 82) band = &sketch.marks[i];

@@ -70,8 +70,8 @@ static void drawings_say_what_they_show(void **state) {
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
     expect_texts("narrow-phase",
-                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "the least", "reference edge",
-                                       "incident edge", "side plane", "normal (", NULL});
+                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "smallest overlap",
+                                       "reference edge", "incident edge", "side plane", "normal (", NULL});
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
     expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",
@@ -189,10 +189,10 @@ static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
     return away;
 }
 
-/* So far has a box to go for the two to part. The engine's normal lies along the axis of the least, or of one that is
-   nearly so (clearly_better() in collision/manifold.c), and its points are as deep as that, or less deep where clipping
-   has cut the deepest corner off. */
-static void the_least_overlap_is_the_way_out(void **state) {
+/* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest overlap,
+   or of a nearly equal one (clearly_better() in collision/manifold.c). Its points are as deep as that, or less deep where
+   clipping has cut the deepest corner off. */
+static void the_smallest_overlap_separates_the_boxes(void **state) {
     (void)state;
     const double slack = 1e-4;
     uint32_t seed = 1;
@@ -339,7 +339,7 @@ int main(void) {
         cmocka_unit_test(drawings_say_what_they_show),
         cmocka_unit_test(the_loop_counts_what_the_run_has),
         cmocka_unit_test(the_collision_shown_is_the_engines),
-        cmocka_unit_test(the_least_overlap_is_the_way_out),
+        cmocka_unit_test(the_smallest_overlap_separates_the_boxes),
         cmocka_unit_test(the_row_shown_is_the_datasets),
         cmocka_unit_test(the_same_run_gives_the_same_files),
         cmocka_unit_test(scenes_that_show_nothing_are_refused),

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rates that follow from what a network is: the engine agrees with itself, a network that says nothing new is the warm
-   start, one that always says the mean is the constant. */
+/* Rates with known values: the engine agrees with itself, a network that predicts zero has the warm start's rates, one
+   that predicts the mean has the constant predictor's. */
 #include "testing.h"
 
 #include "pair/pair.h"
@@ -29,7 +29,7 @@ static Scene *read_stack(void) {
     return scene;
 }
 
-/* Without hidden layers, weights 0: it says `mean`, whatever it sees. */
+/* Without hidden layers and with weights 0: it always predicts `mean`. */
 static const char *write_constant(PairView view, PairTarget target, int outputs, const float *mean) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){pair_views[view].count, outputs}, &error);
@@ -85,8 +85,8 @@ static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
     scene_destroy(scene);
 }
 
-/* For every target: what the network says is what its constant says. */
-static void a_network_that_says_the_mean_is_the_constant(void **state) {
+/* For every target: such a network has the rates of its constant predictor. */
+static void a_network_that_predicts_the_mean_has_the_constants_rates(void **state) {
     (void)state;
     static const struct {
         PairView view;
@@ -117,7 +117,7 @@ static void a_network_that_says_the_mean_is_the_constant(void **state) {
     scene_destroy(scene);
 }
 
-/* all = (impact + 20 after + 60 rest) / (their numbers, weighed the same way) lies between its parts. */
+/* all = (impact + 20 after + 60 rest) / (their counts, weighted alike): a value between its parts. */
 static void all_lies_between_the_phases(void **state) {
     (void)state;
     Scene *scene = read_stack();
@@ -138,7 +138,7 @@ static void all_lies_between_the_phases(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_engine_agrees_with_itself),
                                        cmocka_unit_test(a_contact_net_that_says_nothing_is_the_warm_start),
-                                       cmocka_unit_test(a_network_that_says_the_mean_is_the_constant),
+                                       cmocka_unit_test(a_network_that_predicts_the_mean_has_the_constants_rates),
                                        cmocka_unit_test(all_lies_between_the_phases)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -84,7 +84,7 @@ static void expect_no_text(const char *text, const char *unwanted) {
     if (strstr(text, unwanted) != NULL) fail_msg("the report has \"%s\"", unwanted);
 }
 
-/* Expected numbers are computed from the tables by hand. */
+/* Expected numbers follow from the tables; comments name the rows. */
 static void numbers_are_computed_from_the_tables(void **state) {
     (void)state;
     char *text = write_and_read("report.md");
@@ -130,7 +130,8 @@ static void rates_are_beside_those_of_cheaper_predictors(void **state) {
     expect_text(text, "| contact-net | stack | all | 70.0% | 35.0% | 72.0% | 70.0% | 90.0% | 100.0% |");
     /* No warm start was rated by this definition. */
     expect_text(text, "| baseline | stack | all | 20.0% | 21.0% |  | 40.0% | 60.0% | 70.0% |");
-    /* Baseline in single, stack and stack at impact, contact-net in both, contact-small in single; networks that vary a factor are not shown. */
+    /* Baseline in single, stack and stack at impact, contact-net in both, contact-small in single. Networks that vary a
+       factor are not shown. */
     expect_text(text, "| absolute | 6 | 2 | 4 | 5 |");
     expect_no_text(text, "11.1%");
     free(text);

@@ -106,7 +106,7 @@ static void all_are_drawn(void **state) {
         "    ('loss', ('Mean squared error', 'Levenberg-Marquardt', \"the paper's Table 1\", 'Training iteration')),\n"
         "    ('factors', ('inputs = raw-unturned', 'best = impulse', '494', 'no result', 'aim for the best')),\n"
         "    ('rates', ('Within 0.1 m/s', 'target-impulse', 'engine, 10 sweeps', 'Right at rest (%)')),\n"
-        "    ('closed-loop', ('Frames until divergence by 0.1 m (600: never)', 'contact-net', 'pyramid, settled')),\n"
+        "    ('closed-loop', ('Frames until distance 0.1 m (600: never)', 'contact-net', 'pyramid, settled')),\n"
         "    ('laws', ('Friction cone (N s)', 'all four laws', 'Weight in the loss', 'Momentum (kg m/s)')),\n"
         "    ('transfer', ('RMS velocity error (m/s)', 'from scratch', '128'))):\n"
         "    for text in wanted:\n"

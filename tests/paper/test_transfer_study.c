@@ -15,7 +15,7 @@ static Dataset *record(const char *scene, PairView view) {
     return dataset;
 }
 
-/* The stack stands in for the pyramid: the study asks nothing of it but launches. */
+/* The stack replaces the pyramid: the study needs only its launches. */
 static const char *const single = SOURCE_DIR "/scenes/single.yaml", *const stack = SOURCE_DIR "/scenes/stack.yaml";
 
 static TransferResult run(const TransferData *data, TransferStudy study) {
@@ -25,7 +25,7 @@ static TransferResult run(const TransferData *data, TransferStudy study) {
     return result;
 }
 
-/* Mean square of the distance of the test rows' relative changes from the mean of the rows to train on, by hand. */
+/* Mean squared distance of the test rows' relative changes from the mean of the training rows, computed directly. */
 static double constant_by_hand(const Dataset *dataset) {
     double sum[2][2] = {{0}}, count[2] = {0}, squares = 0;
     for (int64_t r = 0; r < dataset->rows; r++) {
@@ -48,7 +48,7 @@ static void errors_stand_beside_the_constant(void **state) {
     Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
     const TransferData data = {NULL, NULL, pyramid};
-    /* After no step a network says anything; after some, with the contact in sight, it beats the constant. */
+    /* An untrained network predicts anything; a trained one, with inputs of the contact, beats the constant predictor. */
     const TransferResult begun = run(&data, (TransferStudy){.seed = 3, .launches = 2});
     const TransferResult trained = run(&data, (TransferStudy){.seed = 3, .launches = 2, .iterations = 40});
     assert_near(begun.constant, constant_by_hand(drawn), 1e-9);

@@ -61,8 +61,7 @@ static void draw_panel(Loop *loop, bool costs) {
     gnuplot_panel_begin(page,
                         (GnuplotBox){left + costs * (frames_width + gap), bottom, width, loop->lines * row_height},
                         costs ? "Cost" : "In place of the solver");
-    gnuplot_log_axis(page, 'x', axis,
-                     costs ? "Step time / the engine's" : "Frames until divergence by 0.1 m (600: never)");
+    gnuplot_log_axis(page, 'x', axis, costs ? "Step time / the engine's" : "Frames until distance 0.1 m (600: never)");
     gnuplot_linear_axis(page, 'y', loop->lines - 0.5, -0.5, "", NULL);
     draw_guides(loop, axis, costs ? 1 : CLOSED_LOOP_FRAMES);
     for (int scene = 0; scene < PAPER_SCENES; scene++) {
