@@ -124,8 +124,8 @@ static bool read_fuzzy(const Option *option, const char *text, void *value, Erro
 }
 
 static bool report(Regression *regression, const Options *options, Error *error) {
-    const Progress *progress = progress_bar_begin("report");
-    bool ok = regression_report_write(regression, options->report, (size_t)options->megabytes << 20, progress, error);
+    bool ok = regression_report_write(regression, options->report, (size_t)options->megabytes << 20,
+                                      progress_bar_begin("report"), error);
     progress_bar_end();
     if (ok) printf("report -> %s/report.html\n", options->report);
     return ok;
@@ -135,8 +135,8 @@ static bool compare_pictures(const Options *options, Error *error) {
     const RegressionOptions compared = {options->max_difference, options->max_share, &options->mask,
                                         options->max_pixels};
     Regression regression;
-    const Progress *progress = progress_bar_begin("comparing");
-    bool ok = regression_run(&regression, options->paths[0], options->paths[1], &compared, progress, error);
+    bool ok = regression_run(&regression, options->paths[0], options->paths[1], &compared,
+                             progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
     compare_print(&regression);

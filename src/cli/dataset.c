@@ -64,8 +64,7 @@ bool command_dataset(int argc, char **argv, Error *error) {
     options.dataset.scenes = options.scenes;
     if (options.dataset.bomb_x.count == 0 && options.dataset.random == 0)
         options.dataset.bomb_x = (FloatRange){-5, 0.05, 201};
-    const Progress *progress = progress_bar_begin("recording launches");
-    Dataset *dataset = dataset_record(&options.dataset, progress, error);
+    Dataset *dataset = dataset_record(&options.dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     bool ok = dataset != NULL && dataset_write(dataset, options.output, error);
     if (ok) printf("%lld rows of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);

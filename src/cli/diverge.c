@@ -68,8 +68,8 @@ static bool measure(Divergence *d, Error *error) {
 static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
     int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
     if (body < 0) return error_input(error, scene, "has no body that can move, so none can be shifted");
-    const Progress *progress = progress_bar_begin(d->runs[0]->scene);
-    bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, progress, error);
+    bool ok =
+        chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, progress_bar_begin(d->runs[0]->scene), error);
     progress_bar_end();
     return ok && growth_measure(d->chaos.distance, d->growth.first, d->growth.end, (double)d->runs[0]->dt, &d->shifted,
                                 error);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 static const CommandSpec spec = {
+    .options = (const Option[]){{0}},
     .help = "List the methods and their settings. A method is given as NAME or NAME:KEY=VALUE,...\v"
             "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz"};
 

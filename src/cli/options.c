@@ -5,8 +5,9 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { FIRST_KEY = 256, HELP_SIZE = 1024 };
+enum { FIRST_KEY = 256 };
 
 typedef struct Parsing {
     const CommandSpec *spec;
@@ -17,6 +18,13 @@ typedef struct Parsing {
 } Parsing;
 
 static int key_of(const Option *rows, int i) { return rows[i].letter != 0 ? rows[i].letter : FIRST_KEY + i; }
+
+/* -1: none. */
+static int find_row(const Option *rows, int key) {
+    for (int i = 0; rows[i].help != NULL; i++)
+        if (key_of(rows, i) == key) return i;
+    return -1;
+}
 
 static void read_value(Parsing *parsing, const Option *row, const char *text) {
     if (parsing->error->kind == ERROR_NONE) row->read(row, text, parsing->options + row->at, parsing->error);
@@ -35,52 +43,46 @@ static void take_input(Parsing *parsing, const char *text, struct argp_state *st
 static void check_needed(const Parsing *parsing, struct argp_state *state) {
     const CommandSpec *spec = parsing->spec;
     if (parsing->input_count < spec->inputs.least) argp_error(state, "%s", spec->input.needed);
-    for (int i = 0; spec->options != NULL && spec->options[i].help != NULL; i++)
+    for (int i = 0; spec->options[i].help != NULL; i++)
         if (spec->options[i].needed != NULL && !parsing->given[i]) argp_error(state, "%s", spec->options[i].needed);
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
     Parsing *parsing = state->input;
-    const Option *rows = parsing->spec->options;
-    if (key == ARGP_KEY_ARG) {
-        take_input(parsing, text, state);
-        return 0;
-    }
-    if (key == ARGP_KEY_END) {
-        check_needed(parsing, state);
-        return 0;
-    }
-    for (int i = 0; rows != NULL && rows[i].help != NULL; i++) {
-        if (key != key_of(rows, i)) continue;
+    const int i = find_row(parsing->spec->options, key);
+    if (i >= 0) {
         parsing->given[i] = true;
-        read_value(parsing, &rows[i], text);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+        read_value(parsing, &parsing->spec->options[i], text);
+    } else if (key == ARGP_KEY_ARG)
+        take_input(parsing, text, state);
+    else if (key == ARGP_KEY_END)
+        check_needed(parsing, state);
+    else
+        return ARGP_ERR_UNKNOWN;
+    return 0;
 }
 
 /* The help of an option, with its default. argp frees it. */
 static char *add_standard(int key, const char *text, void *input) {
     const Option *rows = ((const Parsing *)input)->spec->options;
-    for (int i = 0; rows != NULL && rows[i].help != NULL; i++) {
-        char *help;
-        if (key != key_of(rows, i) || rows[i].standard == NULL || (help = malloc(HELP_SIZE)) == NULL) continue;
-        snprintf(help, HELP_SIZE, "%s (default: %s)", text, rows[i].standard);
-        return help;
-    }
-    return (char *)text;
+    const int i = find_row(rows, key);
+    if (i < 0 || rows[i].standard == NULL) return (char *)text;
+    const size_t size = strlen(text) + strlen(rows[i].standard) + sizeof " (default: )";
+    char *help = malloc(size);
+    if (help != NULL) snprintf(help, size, "%s (default: %s)", text, rows[i].standard);
+    return help;
 }
 
 bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
     struct argp_option rows[OPTIONS_MAX + 1] = {{0}};
-    for (int i = 0; spec->options != NULL && spec->options[i].help != NULL; i++) {
+    for (int i = 0; spec->options[i].help != NULL; i++) {
         const Option *row = &spec->options[i];
         assert(i < OPTIONS_MAX);
-        /* Names are stored with their dashes. */
-        rows[i] =
-            row->name == NULL
-                ? (struct argp_option){.doc = row->help}
-                : (struct argp_option){row->name + 2, key_of(spec->options, i), row->value, 0, row->help, row->group};
+        rows[i] = (struct argp_option){.doc = row->help, .group = row->group};
+        if (row->name == NULL) continue;
+        rows[i].name = row->name + strlen("--");
+        rows[i].key = key_of(spec->options, i);
+        rows[i].arg = row->value;
     }
     const struct argp argp = {.options = rows,
                               .parser = parse,

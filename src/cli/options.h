@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The command line of a command. One table states each option's name, help, type and the member of the command's
-   Options that gets its value; argp writes the help and finds the options. */
+   Options that gets its value. What is not given keeps the value that the member had. argp writes the help and finds
+   the options. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
@@ -26,9 +27,9 @@ struct Option {
     size_t count_at;    /* lists: of the member that counts */
     double least, most; /* numbers: bounds; lists: number of values in `most` */
     const char *const *names;
-    const char *needed;   /* the error if it is not given; NULL: may be left out */
-    const char *standard; /* what the help adds: " (default: ...)"; or NULL. Options must be set to it. */
-    int group;            /* from here on, in the help: a heading begins one, too */
+    const char *needed;   /* "-o DIR is needed": the error if it is not given; NULL: may be left out */
+    const char *standard; /* NULL, or the help adds it: " (default: 10)". The caller sets the member to it. */
+    int group;            /* of the help, from this row on; a heading begins one, too */
 };
 
 /* The offset of a member, which must have this type. */
@@ -44,14 +45,14 @@ struct Option {
     .read = option_int, .at = OPTION_AT(T, member, int), .least = (minimum), .most = (maximum)
 #define OPTION_FLOAT(T, member, minimum, maximum) \
     .read = option_float, .at = OPTION_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
-/* A double that is rounded to float. */
+/* A double; its value is rounded to float. */
 #define OPTION_DOUBLE(T, member, minimum, maximum) \
     .read = option_double, .at = OPTION_AT(T, member, double), .least = (minimum), .most = (maximum)
 /* An enum without negative values, from a list of names that ends with NULL. */
 #define OPTION_ENUM(T, member, list) .read = option_enum, .at = OPTION_AT(T, member, unsigned), .names = (list)
 /* Several of the names, separated by commas: bit i for names[i]. */
 #define OPTION_FLAGS(T, member, list) .read = option_flags, .at = OPTION_AT(T, member, unsigned), .names = (list)
-/* Any other: read(option, text, &options->member, error). */
+/* Any other: function(option, text, &options->member, error). */
 #define OPTION_READ(function, T, member) .read = (function), .at = offsetof(T, member)
 /* An option that may be repeated: texts in an array, their number in `count`. */
 #define OPTION_TEXTS(T, array, count)                                                                       \
@@ -75,7 +76,7 @@ OptionRead option_text, option_path, option_flag, option_seed, option_range, opt
     option_enum, option_flags, option_texts, option_paths, option_set;
 
 typedef struct CommandSpec {
-    const Option *options; /* ended by {0}; or NULL */
+    const Option *options; /* ended by {0} */
     Option input;          /* how one of the command's arguments is read; value: what the help calls them all */
     struct {
         int least, most;

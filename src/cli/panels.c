@@ -23,8 +23,7 @@ bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name,
     if (!method_parse(&method, method_name, error)) return false;
     char what[2 * SCENE_NAME_SIZE + 8];
     snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
-    const Progress *progress = progress_bar_begin(what);
-    Trajectory *run = simulate(scene, &method, progress, error);
+    Trajectory *run = simulate(scene, &method, progress_bar_begin(what), error);
     progress_bar_end();
     return add(panels, run, input, error);
 }

@@ -47,8 +47,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 bool command_paper(int argc, char **argv, Error *error) {
     PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    const Progress *progress = progress_bar_begin("paper");
-    bool ok = paper_run(&options, progress, error);
+    bool ok = paper_run(&options, progress_bar_begin("paper"), error);
     progress_bar_end();
     return ok && draw_and_report(&options, error);
 }

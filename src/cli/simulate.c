@@ -87,8 +87,7 @@ static bool store(const Trajectory *run, const Options *options, Error *error) {
 
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     if (!override_scene(scene, options, error)) return false;
-    const Progress *progress = progress_bar_begin(scene->name);
-    Trajectory *run = simulate(scene, method, progress, error);
+    Trajectory *run = simulate(scene, method, progress_bar_begin(scene->name), error);
     progress_bar_end();
     bool ok = run != NULL && store(run, options, error);
     if (ok)

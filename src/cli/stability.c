@@ -68,8 +68,7 @@ static bool make_clip(const Options *options, Error *error) {
 }
 
 static bool study(const StabilityOptions *options, Error *error) {
-    const Progress *progress = progress_bar_begin("stability");
-    bool ok = stability_run(options, progress, error);
+    bool ok = stability_run(options, progress_bar_begin("stability"), error);
     progress_bar_end();
     ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
     const NameList left_out = contenders_left_out(STUDY_STABILITY);

@@ -23,10 +23,9 @@ static void print_schedule(void *context, int sweeps, double without, double tun
 static bool fit_and_store(const Scene *scene, const TrainRequest *request, Error *error) {
     MomentumFitOptions fit = {.on_schedule = print_schedule};
     if (!train_read(request, &fit, error)) return false;
-    const Progress *progress = progress_bar_begin("fitting");
     printf("error in m/s, at impact plus after\nsweeps  no momentum   hand-tuned      learned\n");
     MomentumSchedules schedules;
-    bool ok = momentum_fit(&schedules, scene, &fit, progress, error);
+    bool ok = momentum_fit(&schedules, scene, &fit, progress_bar_begin("fitting"), error);
     progress_bar_end();
     if (!ok) return false;
     train_describe(request, schedules.command, sizeof schedules.command);

@@ -78,10 +78,9 @@ static void print_score(void *context, const TrainingScore *score) {
 }
 
 static Network *train(const Dataset *dataset, TrainingOptions *training, Error *error) {
-    const Progress *progress = progress_bar_begin("training");
     training->on_score = print_score;
     printf("iteration   test score  train score  constant test  constant train\n");
-    Network *network = training_run(dataset, training, progress, error);
+    Network *network = training_run(dataset, training, progress_bar_begin("training"), error);
     progress_bar_end();
     return network;
 }

@@ -64,12 +64,11 @@ static bool store(SlotNetwork *network, const TrainRequest *request, int width, 
 }
 
 static SlotNetwork *train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
-    const Progress *progress = progress_bar_begin("training");
     *score = (SceneNetScore){0};
     training->context = score;
     printf("%d wide; mean velocity error, m/s\nround  samples     train  held out  momentum 20\n",
            training->widths.hidden);
-    SlotNetwork *network = scene_training_run(scene, training, progress, error);
+    SlotNetwork *network = scene_training_run(scene, training, progress_bar_begin("training"), error);
     progress_bar_end();
     return network;
 }
