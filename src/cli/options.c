@@ -26,8 +26,9 @@ static int find_row(const Option *rows, int key) {
     return -1;
 }
 
-static void read_value(Parsing *parsing, const Option *row, const char *text) {
-    if (parsing->error->kind == ERROR_NONE) row->read(row, text, parsing->options + row->at, parsing->error);
+/* The first error stays, so reading continues after it: bad usage is reported before bad values. */
+static void read_value(const Parsing *parsing, const Option *row, const char *text) {
+    row->read(row, text, parsing->options + row->at, parsing->error);
 }
 
 static void take_input(Parsing *parsing, const char *text, struct argp_state *state) {
