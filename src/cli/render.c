@@ -56,7 +56,7 @@ static const Option option_table[] = {
      "timeline (distance from the first run over time), separated by commas",
      OPTION_FLAGS(Options, render.look.show, look_show_names)},
     {"--camera", 0, "KIND",
-     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where a body is first 1 mm apart",
+     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where the distance first exceeds 1 mm",
      OPTION_ENUM(Options, render.look.camera, look_camera_names)},
     {"--theme", 0, "light|dark", "Colours (default: light)", OPTION_ENUM(Options, render.look.theme, look_theme_names)},
     {"--costs", 0, "FILE.csv", "Add the time per step to the captions, from a chart.csv of 'twinbox chart'",
