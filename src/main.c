@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
    3 the system failed. */
-#include "cli/command.h"
+#include "cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -46,7 +46,7 @@ int main(int argc, char **argv) {
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[1] = name;
     Error error = {0};
-    int status = command->run(argc - 1, argv + 1, &error);
+    bool same = command->run(argc - 1, argv + 1, &error);
     /* Output that could not be written is a failure of the system, not success. */
     if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
         error_system(&error, "standard output", "cannot write");
@@ -54,5 +54,5 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", error.message);
         return (int)error.kind;
     }
-    return status;
+    return same ? 0 : 1;
 }

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static const char front_name[] = "unbeaten among solvers";
+static const char front_name[] = "Pareto front of solvers";
 
 static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
 
@@ -67,10 +67,9 @@ static void write_counts(const ChartLayout *layout, const char *why, size_t offs
 static void write_note(const ChartLayout *layout) {
     if (layout->left_out + layout->lost + layout->chart->floored == 0) return;
     fprintf(layout->script, "set label '");
-    write_counts(layout, "Scene lost before the impact: ", offsetof(ChartLine, lost));
+    write_counts(layout, "Unstable before the impact: ", offsetof(ChartLine, lost));
     write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
-    if (layout->chart->floored > 0)
-        fprintf(layout->script, "Below %g m/s the reference is no better.", PARETO_RESOLUTION);
+    if (layout->chart->floored > 0) fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
     fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
 }
 

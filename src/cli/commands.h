@@ -1,18 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The commands of twinbox. Each is one file, with its option table and glue only, and one line here. */
 #pragma once
-#include "cli/command.h"
+#include "common/error.h"
 
-int command_simulate(int argc, char **argv, Error *error);
-int command_render(int argc, char **argv, Error *error);
-int command_compare(int argc, char **argv, Error *error);
-int command_approve(int argc, char **argv, Error *error);
-int command_diverge(int argc, char **argv, Error *error);
-int command_figure(int argc, char **argv, Error *error);
-int command_dataset(int argc, char **argv, Error *error);
-int command_train(int argc, char **argv, Error *error);
-int command_chart(int argc, char **argv, Error *error);
-int command_paper(int argc, char **argv, Error *error);
-int command_stability(int argc, char **argv, Error *error);
-int command_problem(int argc, char **argv, Error *error);
-int command_solve(int argc, char **argv, Error *error);
-int command_methods(int argc, char **argv, Error *error);
+#define COMMANDS(COMMAND)                                                          \
+    COMMAND(simulate, "run a scene with one method and store the trajectory")      \
+    COMMAND(render, "draw runs side by side as PNG frames and videos")             \
+    COMMAND(compare, "compare two trajectories or two PNG sequences")              \
+    COMMAND(approve, "accept the changes that a report of compare shows")          \
+    COMMAND(diverge, "find why two trajectories diverge, and how fast")            \
+    COMMAND(figure, "draw a figure for a paper from runs")                         \
+    COMMAND(dataset, "record what the engine's solver does to each touching pair") \
+    COMMAND(train, "train the network of a method")                                \
+    COMMAND(chart, "measure speed against accuracy for every method")              \
+    COMMAND(paper, "reproduce the paper, from seed to report")                     \
+    COMMAND(stability, "find where each method fails")                             \
+    COMMAND(problem, "write the contact problem of one step to a file")            \
+    COMMAND(solve, "solve one contact problem with many methods and score them")   \
+    COMMAND(methods, "list the methods and their settings")
+
+typedef struct Command {
+    const char *name, *summary;
+    /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the error
+       and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within argp. */
+    bool (*run)(int argc, char **argv, Error *error);
+} Command;
+
+/* All commands, ended by a NULL name. */
+extern const Command commands[];
+
+#define COMMAND_DECLARED(name, summary) bool command_##name(int argc, char **argv, Error *error);
+COMMANDS(COMMAND_DECLARED)
+#undef COMMAND_DECLARED

@@ -1,68 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/diverge_print.h"
-#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 
 #include <float.h>
 #include <stdlib.h>
 
-enum { TOLERANCE = 256, SCENE, CSV };
-
-static const struct argp_option option_table[] = {
-    {"tolerance", TOLERANCE, "M", 0,
-     "Runs diverge where the centres of a body are more than M metres apart (default: 0, any bit of pose or "
-     "velocity)",
-     0},
-    {"scene", SCENE, "FILE", 0,
-     "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
-     "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
-     "last body",
-     0},
-    {"csv", CSV, "FILE", 0, "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m", 0},
-    {0}};
-
 typedef struct Options {
     const char *paths[2];
     int count;
-    const char *tolerance, *scene, *csv;
+    double tolerance; /* m */
+    const char *scene, *csv;
 } Options;
 
-static error_t parse(int key, char *value, struct argp_state *state) {
-    Options *options = state->input;
-    switch (key) {
-    case TOLERANCE: options->tolerance = value; break;
-    case SCENE: options->scene = installed_path(value); break;
-    case CSV: options->csv = value; break;
-    case ARGP_KEY_ARG:
-        if (options->count == 2) argp_error(state, "only two runs can be compared (third: '%s')", value);
-        options->paths[options->count++] = value;
-        break;
-    case ARGP_KEY_END:
-        if (options->count < 2) argp_error(state, "two runs (.npz) are needed");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
+static const Option option_table[] = {
+    {"--tolerance", 0, "M",
+     "Runs diverge where the centres of a body are more than M metres apart (default: 0, any bit of pose or "
+     "velocity)",
+     OPTION_DOUBLE(Options, tolerance, 0, (double)FLT_MAX)},
+    {"--scene", 0, "FILE",
+     "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
+     "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
+     "last body",
+     OPTION_PATH(Options, scene)},
+    {"--csv", 0, "FILE", "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m",
+     OPTION_TEXT(Options, csv)},
+    {0}};
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "RUN RUN",
-    "Find why two runs diverge: the first frame, body and contact that differ, whether the solver or an earlier step "
-    "is the cause, and how fast the distance grows from there. Of runs of different lengths, the frames of the "
-    "shorter one are compared. Exit status 0: the runs do not diverge beyond the tolerance, 1: they do.\v"
-    "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv",
-    NULL,
-    NULL,
-    NULL};
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "RUN RUN", .needed = "two runs (.npz) are needed", OPTION_TEXTS(Options, paths, count)},
+    .inputs = {2, 2, "run"},
+    .help =
+        "Find why two runs diverge: the first frame, body and contact that differ, whether the solver or an earlier "
+        "step is the cause, and how fast the distance grows from there. Of runs of different lengths, the frames of "
+        "the shorter one are compared. Exit status 0: the runs do not diverge beyond the tolerance, 1: they do.\v"
+        "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv"};
 
 /* Two runs and the result. */
 typedef struct Divergence {
     Trajectory *runs[2];
-    float tolerance;
     TrajectoryParting parting;
     double *distance; /* [frames of both] */
     Growth growth, shifted;
@@ -89,21 +67,18 @@ static bool measure(Divergence *d, Error *error) {
 
 /* Over the same frames as the growth of the two runs. */
 static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
-    ProgressBar bar;
     int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
     if (body < 0) return error_input(error, scene, "has no body that can move, so none can be shifted");
-    progress_bar_begin(&bar, d->runs[0]->scene);
-    bool ok = chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, &bar.progress, error);
-    progress_bar_end(&bar);
+    bool ok =
+        chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, progress_bar_begin(d->runs[0]->scene), error);
+    progress_bar_end();
     return ok && growth_measure(d->chaos.distance, d->growth.first, d->growth.end, (double)d->runs[0]->dt, &d->shifted,
                                 error);
 }
 
 static bool find(Divergence *d, const Options *options, Error *error) {
-    if ((options->tolerance != NULL &&
-         !option_float("--tolerance", options->tolerance, 0, FLT_MAX, &d->tolerance, error)) ||
-        !read_runs(d, options, error) ||
-        !trajectory_part(d->runs[0], d->runs[1], (double)d->tolerance, &d->parting, error) || !measure(d, error) ||
+    if (!read_runs(d, options, error) ||
+        !trajectory_part(d->runs[0], d->runs[1], options->tolerance, &d->parting, error) || !measure(d, error) ||
         (options->scene != NULL && !measure_chaos(d, options->scene, error)))
         return false;
     const DistanceTable table = {d->parting.frames, (double)d->runs[0]->dt, d->distance, d->chaos.distance};
@@ -113,7 +88,7 @@ static bool find(Divergence *d, const Options *options, Error *error) {
 static void print(const Divergence *d, const Options *options) {
     const Trajectory *a = d->runs[0], *b = d->runs[1];
     diverge_print_runs(options->paths, a, b);
-    diverge_print_parting(a, &d->parting, (double)d->tolerance);
+    diverge_print_parting(a, &d->parting, options->tolerance);
     if (d->parting.first.frame < 0) return;
     diverge_print_growth(&d->growth, (double)a->dt);
     if (d->chaos.distance != NULL)
@@ -122,9 +97,9 @@ static void print(const Divergence *d, const Options *options) {
         printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
 }
 
-int command_diverge(int argc, char **argv, Error *error) {
+bool command_diverge(int argc, char **argv, Error *error) {
     Options options = {0};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
     Divergence divergence = {0};
     bool ok = find(&divergence, &options, error);
     if (ok) print(&divergence, &options);
@@ -132,5 +107,5 @@ int command_diverge(int argc, char **argv, Error *error) {
     chaos_free(&divergence.chaos);
     free(divergence.distance);
     for (int i = 0; i < 2; i++) trajectory_destroy(divergence.runs[i]);
-    return same ? STATUS_SAME : STATUS_DIFFERENT;
+    return same;
 }

@@ -56,11 +56,9 @@ bool draw_videos_check(const DrawVideos *videos, int width, int height, Error *e
 }
 
 static bool draw(const Panels *panels, const RenderOptions *render, RenderResult *result, Error *error) {
-    ProgressBar bar;
-    progress_bar_begin(&bar, "drawing");
-    bool ok =
-        render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, &bar.progress, error);
-    progress_bar_end(&bar);
+    const Progress *progress = progress_bar_begin("drawing");
+    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, progress, error);
+    progress_bar_end();
     return ok;
 }
 
@@ -81,10 +79,9 @@ static bool encode(const char *path, const Panels *panels, const RenderOptions *
                           .frame_rate = 1 / (double)panels->runs[0]->dt,
                           .hashes = result->hashes,
                           .path = path};
-    ProgressBar bar;
-    progress_bar_begin(&bar, is_output(path) ? "writing" : "encoding");
-    bool ok = is_output(path) ? write_output(&video, &bar.progress, error) : video_encode(&video, &bar.progress, error);
-    progress_bar_end(&bar);
+    const Progress *progress = progress_bar_begin(is_output(path) ? "writing" : "encoding");
+    bool ok = is_output(path) ? write_output(&video, progress, error) : video_encode(&video, progress, error);
+    progress_bar_end();
     return ok;
 }
 

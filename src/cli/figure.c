@@ -8,56 +8,34 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AT = 256, MOMENTS, WIDTH, DPI, FONT_SIZE, TRANSPARENT, SCENE, BODIES };
-
-static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "Figure to write: .png, .svg or .pdf", 0},
-    {"at", AT, "T,T,...", 0, "Moments to show, seconds from the start of the run, rising", 0},
-    {"moments", MOMENTS, "N", 0, "Number of moments instead, evenly spaced from the first to the last", 0},
-    {"scene", SCENE, "FILE", 0, "divergence: scene of the first run, for the band of chaos", 0},
-    {"bodies", BODIES, "A,B", 0, "narrow-phase: the pair (default: the bomb's first, else the first to touch)", 0},
-    {"width", WIDTH, "column|page|MM", 0, "Width: 85 mm, 174 mm (default) or 40 to 400 mm", 1},
-    {"dpi", DPI, "N", 0, "Dots per inch of scenes and of PNG (default: 300; 50 to 1200)", 1},
-    {"font-size", FONT_SIZE, "PT", 0, "Font size in points (default: 8; 5 to 14)", 1},
-    {"transparent", TRANSPARENT, NULL, 0, "Transparent background instead of white", 1},
-    {0}};
-
 typedef struct Options {
-    const char *kind, *inputs[FIGURE_RUNS_MAX];
+    const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
     int input_count;
-    const char *output, *at, *moments, *scene, *bodies, *width, *dpi, *points;
+    FigureSpec figure;
     bool transparent;
 } Options;
 
-static error_t parse(int key, char *value, struct argp_state *state) {
-    Options *options = state->input;
-    switch (key) {
-    case 'o': options->output = value; break;
-    case AT: options->at = value; break;
-    case MOMENTS: options->moments = value; break;
-    case SCENE: options->scene = installed_path(value); break;
-    case BODIES: options->bodies = value; break;
-    case WIDTH: options->width = value; break;
-    case DPI: options->dpi = value; break;
-    case FONT_SIZE: options->points = value; break;
-    case TRANSPARENT: options->transparent = true; break;
-    case ARGP_KEY_ARG:
-        if (options->kind == NULL) {
-            options->kind = value;
-            break;
-        }
-        if (options->input_count == FIGURE_RUNS_MAX) argp_error(state, "at most %d runs", FIGURE_RUNS_MAX);
-        options->inputs[options->input_count++] = installed_path(value);
-        break;
-    case ARGP_KEY_END:
-        if (options->kind == NULL) argp_error(state, "a kind of figure is needed");
-        if (options->output == NULL) argp_error(state, "-o FILE is needed");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
+static OptionRead read_input, read_times, read_bodies, read_width;
 
+static const Option option_table[] = {
+    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_TEXT(Options, output),
+     .needed = "-o FILE is needed"},
+    {"--at", 0, "T,T,...", "Moments to show, seconds from the start of the run, rising",
+     OPTION_READ(read_times, Options, figure)},
+    {"--moments", 0, "N", "Number of moments instead, evenly spaced from the first to the last",
+     OPTION_INT(Options, figure.moments, 1, FIGURE_MOMENTS_MAX)},
+    {"--scene", 0, "FILE", "divergence: scene of the first run, for the band of chaos",
+     OPTION_PATH(Options, figure.scene)},
+    {"--bodies", 0, "A,B", "narrow-phase: the pair (default: the bomb's first, else the first to touch)",
+     OPTION_READ(read_bodies, Options, figure.bodies)},
+    {"--width", 0, "column|page|MM", "Width: 85 mm, 174 mm (default) or 40 to 400 mm",
+     OPTION_READ(read_width, Options, figure.width), .least = FIGURE_WIDTH_MIN, .most = FIGURE_WIDTH_MAX, .group = 1},
+    {"--dpi", 0, "N", "Dots per inch of scenes and of PNG (default: 300; 50 to 1200)",
+     OPTION_DOUBLE(Options, figure.dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX)},
+    {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
+     OPTION_DOUBLE(Options, figure.points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX)},
+    {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
+    {0}};
 enum { HELP_SIZE = 4096 };
 
 /* All kinds, each with an example. */
@@ -75,53 +53,54 @@ static void write_help(char help[HELP_SIZE]) {
     snprintf(help + used, (size_t)(HELP_SIZE - used), "\n");
 }
 
-static bool read_width(const char *text, double *width, Error *error) {
-    float number;
-    if (strcmp(text, "column") == 0)
-        *width = FIGURE_COLUMN_WIDTH;
-    else if (strcmp(text, "page") == 0)
-        *width = FIGURE_PAGE_WIDTH;
-    else if (option_float("--width", text, (float)FIGURE_WIDTH_MIN, (float)FIGURE_WIDTH_MAX, &number, error))
-        *width = (double)number;
+/* The kind, then runs. */
+static bool read_input(const Option *option, const char *text, void *value, Error *error) {
+    (void)option, (void)error;
+    Options *options = value;
+    if (options->kind == NULL)
+        options->kind = text;
     else
-        return false;
+        options->inputs[options->input_count++] = installed_path(text);
     return true;
 }
 
-static bool read_number(const char *option, const char *text, double least, double largest, double *value,
-                        Error *error) {
-    float number;
-    if (text == NULL) return true;
-    if (!option_float(option, text, (float)least, (float)largest, &number, error)) return false;
-    *value = (double)number;
+static bool read_width(const Option *option, const char *text, void *value, Error *error) {
+    if (strcmp(text, "column") == 0)
+        *(double *)value = FIGURE_COLUMN_WIDTH;
+    else if (strcmp(text, "page") == 0)
+        *(double *)value = FIGURE_PAGE_WIDTH;
+    else
+        return option_double(option, text, value, error);
     return true;
 }
 
 /* "0.5,0.75,1" */
-static bool read_times(const char *text, FigureSpec *spec, Error *error) {
+static bool read_times(const Option *option, const char *text, void *value, Error *error) {
+    FigureSpec *spec = value;
+    spec->time_count = 0;
     for (const char *rest = text;; rest++) {
         if (spec->time_count == FIGURE_MOMENTS_MAX)
-            return error_input(error, "--at", "more than %d moments", FIGURE_MOMENTS_MAX);
+            return error_input(error, option->name, "more than %d moments", FIGURE_MOMENTS_MAX);
         double *time = &spec->times[spec->time_count];
         if (!parse_leading_double(rest, time, &rest) || (*rest != '\0' && *rest != ','))
-            return error_input(error, "--at", "'%s' is not a list of seconds such as 0.5,0.75,1", text);
-        if (spec->time_count > 0 && *time <= time[-1]) return error_input(error, "--at", "'%s' must rise", text);
+            return error_input(error, option->name, "'%s' is not a list of seconds such as 0.5,0.75,1", text);
+        if (spec->time_count > 0 && *time <= time[-1]) return error_input(error, option->name, "'%s' must rise", text);
         spec->time_count++;
         if (*rest == '\0') return true;
     }
 }
 
 /* "3,11" */
-static bool read_bodies(const char *text, FigureSpec *spec, Error *error) {
+static bool read_bodies(const Option *option, const char *text, void *value, Error *error) {
     const char *comma = strchr(text, ',');
-    char first[16];
-    int64_t bodies[2];
-    if (comma == NULL || comma - text >= (int)sizeof first ||
-        (snprintf(first, sizeof first, "%.*s", (int)(comma - text), text),
-         !parse_int(first, 0, INT32_MAX, &bodies[0])) ||
-        !parse_int(comma + 1, 0, INT32_MAX, &bodies[1]) || bodies[0] == bodies[1])
-        return error_input(error, "--bodies", "'%s' is not a pair of bodies such as 3,11", text);
-    for (int i = 0; i < 2; i++) spec->bodies[i] = (int)bodies[i];
+    char first[16] = "";
+    int64_t a, b;
+    if (comma != NULL && comma - text < (int)sizeof first) memcpy(first, text, (size_t)(comma - text));
+    if (!parse_int(first, 0, INT32_MAX, &a) || !parse_int(comma + 1, 0, INT32_MAX, &b) || a == b)
+        return error_input(error, option->name, "'%s' is not a pair of bodies such as 3,11", text);
+    int *bodies = value;
+    bodies[0] = (int)a;
+    bodies[1] = (int)b;
     return true;
 }
 
@@ -139,67 +118,57 @@ static bool check_inputs(const FigureKind *kind, const Options *options, Error *
                        options->input_count);
 }
 
-static bool read_options(const Options *options, const FigureKind *kind, FigureSpec *spec, SketchOutput *output,
-                         Error *error) {
-    int moments;
+static bool check_options(const FigureKind *kind, const Options *options, Error *error) {
+    const FigureSpec *figure = &options->figure;
     SketchFormat format;
-    *spec =
-        (FigureSpec){.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI, .scene = options->scene};
     if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
-    if (options->at != NULL && !kind->takes_times) return refuse("--at", kind, error);
-    if (options->moments != NULL && !kind->takes_moments) return refuse("--moments", kind, error);
-    if (options->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
-    if (options->bodies != NULL && !kind->takes_bodies) return refuse("--bodies", kind, error);
-    if (options->at != NULL && options->moments != NULL)
-        return error_input(error, "--moments", "cannot be combined with --at");
-    if ((options->width != NULL && !read_width(options->width, &spec->width, error)) ||
-        !read_number("--dpi", options->dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX, &spec->dpi, error) ||
-        !read_number("--font-size", options->points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX, &spec->points, error) ||
-        (options->at != NULL && !read_times(options->at, spec, error)) ||
-        (options->bodies != NULL && !read_bodies(options->bodies, spec, error)))
-        return false;
-    if (options->moments != NULL) {
-        if (!option_int("--moments", options->moments, 1, FIGURE_MOMENTS_MAX, &moments, error)) return false;
-        spec->moments = moments;
-    }
-    *output = (SketchOutput){spec->dpi, options->transparent};
-    return true;
+    if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
+    if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
+    if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
+    if (figure->bodies[0] != figure->bodies[1] && !kind->takes_bodies) return refuse("--bodies", kind, error);
+    return figure->time_count == 0 || figure->moments == 0 ||
+           error_input(error, "--moments", "cannot be combined with --at");
 }
 
-static bool draw(const FigureKind *kind, const FigureSpec *spec, const Options *options, const SketchOutput *output,
-                 Error *error) {
+static bool draw(const FigureKind *kind, const Options *options, Error *error) {
+    const SketchOutput output = {options->figure.dpi, options->transparent};
     Sketch sketch = {0};
-    bool ok = kind->draw(&sketch, spec, error) && sketch_check_pixels(sketch.width, sketch.height, spec->dpi, error) &&
-              sketch_write(&sketch, options->output, output, error);
+    bool ok = kind->draw(&sketch, &options->figure, error) &&
+              sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
+              sketch_write(&sketch, options->output, &output, error);
     if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
     sketch_free(&sketch);
     return ok;
 }
 
-int command_figure(int argc, char **argv, Error *error) {
-    Options options = {0};
-    char help[HELP_SIZE];
-    write_help(help);
-    const struct argp argp = {option_table, parse, "KIND RUN...", help, NULL, NULL, NULL};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
-    const FigureKind *kind = figure_kind(options.kind, error);
-    FigureSpec spec;
-    SketchOutput output;
-    if (kind == NULL || !read_options(&options, kind, &spec, &output, error)) return STATUS_DIFFERENT;
+static bool read_and_draw(const FigureKind *kind, Options *options, Error *error) {
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
+    FigureSpec *figure = &options->figure;
     bool ok = true;
-    if (kind->max_runs == 0) spec.network = options.inputs[0];
-    for (int i = 0; ok && kind->max_runs > 0 && i < options.input_count; i++) {
-        runs[i] = trajectory_read(options.inputs[i], error);
-        spec.runs[i] = runs[i], spec.paths[i] = options.inputs[i];
-        spec.run_count++;
+    if (kind->max_runs == 0) figure->network = options->inputs[0];
+    for (int i = 0; ok && kind->max_runs > 0 && i < options->input_count; i++) {
+        runs[i] = trajectory_read(options->inputs[i], error);
+        figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
+        figure->run_count++;
         ok = runs[i] != NULL;
     }
-    ProgressBar bar;
-    progress_bar_begin(&bar, kind->name);
-    spec.progress = &bar.progress;
-    ok = ok && draw(kind, &spec, &options, &output, error);
-    progress_bar_end(&bar);
+    figure->progress = progress_bar_begin(kind->name);
+    ok = ok && draw(kind, options, error);
+    progress_bar_end();
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);
-    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+    return ok;
+}
+
+bool command_figure(int argc, char **argv, Error *error) {
+    Options options = {.figure = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
+    char help[HELP_SIZE];
+    write_help(help);
+    const CommandSpec spec = {
+        .options = option_table,
+        .input = {.value = "KIND RUN...", .needed = "a kind of figure is needed", .read = read_input},
+        .inputs = {1, 1 + FIGURE_RUNS_MAX, "argument"},
+        .help = help};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    const FigureKind *kind = figure_kind(options.kind, error);
+    return kind != NULL && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
 }

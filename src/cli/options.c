@@ -1,98 +1,98 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/options.h"
 
-#include <limits.h>
+#include <argp.h>
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-bool options_parse(const struct argp *argp, int argc, char **argv, void *input) {
+enum { FIRST_KEY = 256 };
+
+typedef struct Parsing {
+    const CommandSpec *spec;
+    char *options;
+    Error *error;
+    int input_count;
+    bool given[OPTIONS_MAX];
+} Parsing;
+
+static int key_of(const Option *rows, int i) { return rows[i].letter != 0 ? rows[i].letter : FIRST_KEY + i; }
+
+/* -1: none. */
+static int find_row(const Option *rows, int key) {
+    for (int i = 0; rows[i].help != NULL; i++)
+        if (key_of(rows, i) == key) return i;
+    return -1;
+}
+
+/* The first error stays, so reading continues after it: bad usage is reported before bad values. */
+static void read_value(const Parsing *parsing, const Option *row, const char *text) {
+    row->read(row, text, parsing->options + row->at, parsing->error);
+}
+
+static void take_input(Parsing *parsing, const char *text, struct argp_state *state) {
+    const CommandSpec *spec = parsing->spec;
+    if (spec->inputs.most == 0) argp_error(state, "'%s' is not expected", text);
+    if (parsing->input_count == spec->inputs.most)
+        argp_error(state, "only %d %s%s can be given ('%s' is one more)", spec->inputs.most, spec->inputs.noun,
+                   spec->inputs.most > 1 ? "s" : "", text);
+    parsing->input_count++;
+    read_value(parsing, &spec->input, text);
+}
+
+static void check_needed(const Parsing *parsing, struct argp_state *state) {
+    const CommandSpec *spec = parsing->spec;
+    if (parsing->input_count < spec->inputs.least) argp_error(state, "%s", spec->input.needed);
+    for (int i = 0; spec->options[i].help != NULL; i++)
+        if (spec->options[i].needed != NULL && !parsing->given[i]) argp_error(state, "%s", spec->options[i].needed);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+    Parsing *parsing = state->input;
+    const int i = find_row(parsing->spec->options, key);
+    if (i >= 0) {
+        parsing->given[i] = true;
+        read_value(parsing, &parsing->spec->options[i], text);
+    } else if (key == ARGP_KEY_ARG)
+        take_input(parsing, text, state);
+    else if (key == ARGP_KEY_END)
+        check_needed(parsing, state);
+    else
+        return ARGP_ERR_UNKNOWN;
+    return 0;
+}
+
+/* The help of an option, with its default. argp frees it. */
+static char *add_standard(int key, const char *text, void *input) {
+    const Option *rows = ((const Parsing *)input)->spec->options;
+    const int i = find_row(rows, key);
+    if (i < 0 || rows[i].standard == NULL) return (char *)text;
+    const size_t size = strlen(text) + strlen(rows[i].standard) + sizeof " (default: )";
+    char *help = malloc(size);
+    if (help != NULL) snprintf(help, size, "%s (default: %s)", text, rows[i].standard);
+    return help;
+}
+
+bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
+    struct argp_option rows[OPTIONS_MAX + 1] = {{0}};
+    for (int i = 0; spec->options[i].help != NULL; i++) {
+        const Option *row = &spec->options[i];
+        assert(i < OPTIONS_MAX);
+        rows[i] = (struct argp_option){.doc = row->help, .group = row->group};
+        if (row->name == NULL) continue;
+        rows[i].name = row->name + strlen("--");
+        rows[i].key = key_of(spec->options, i);
+        rows[i].arg = row->value;
+    }
+    const struct argp argp = {.options = rows,
+                              .parser = parse,
+                              .args_doc = spec->input.value != NULL ? spec->input.value : "",
+                              .doc = spec->help,
+                              .help_filter = add_standard};
+    Parsing parsing = {.spec = spec, .options = options, .error = error};
     argp_err_exit_status = ERROR_INPUT;
-    return argp_parse(argp, argc, argv, 0, NULL, input) == 0;
-}
-
-bool option_int(const char *option, const char *text, int64_t minimum, int64_t maximum, int *value, Error *error) {
-    int64_t parsed;
-    if (!parse_int(text, minimum, maximum, &parsed))
-        return error_input(error, option, "'%s' is not a whole number from %lld to %lld", text, (long long)minimum,
-                           (long long)maximum);
-    *value = (int)parsed;
-    return true;
-}
-
-bool option_seed(const char *option, const char *text, uint64_t *value, Error *error) {
-    int64_t parsed;
-    if (!parse_int(text, 0, UINT32_MAX, &parsed))
-        return error_input(error, option, "'%s' is not a whole number from 0 to %lu", text, (unsigned long)UINT32_MAX);
-    *value = (uint64_t)parsed;
-    return true;
-}
-
-bool option_float(const char *option, const char *text, float minimum, float maximum, float *value, Error *error) {
-    float parsed;
-    if (!parse_float(text, &parsed) || parsed < minimum || parsed > maximum)
-        return error_input(error, option, "'%s' is not a number from %g to %g", text, (double)minimum, (double)maximum);
-    *value = parsed;
-    return true;
-}
-
-void options_add_set(SetOptions *options, const char *text) {
-    if (options->count <= SCENE_MAX_PARAMETERS) options->texts[options->count++] = text;
-}
-
-static bool read_setting(const char *text, SceneSetting *setting, Error *error) {
-    const char *value = strchr(text, '=');
-    size_t length = value == NULL ? 0 : (size_t)(value - text);
-    if (length == 0 || length >= sizeof setting->name || !parse_double(value + 1, &setting->value))
-        return error_input(error, "--set", "'%s' is not NAME=VALUE with a number after '='", text);
-    memcpy(setting->name, text, length);
-    setting->name[length] = '\0';
-    return true;
-}
-
-Scene *options_read_scene(const char *path, const SetOptions *options, Error *error) {
-    SceneSetting settings[SCENE_MAX_PARAMETERS + 1];
-    for (int i = 0; i < options->count; i++)
-        if (!read_setting(options->texts[i], &settings[i], error)) return NULL;
-    return scene_read_with(path, settings, options->count, error);
-}
-
-bool option_range(const char *option, const char *text, FloatRange *range, Error *error) {
-    enum { MAX_VALUES = 100000 };
-    if (!parse_range(text, MAX_VALUES, range))
-        return error_input(error, option, "'%s' is not A:B:STEP with A <= B, STEP > 0 and at most %d values", text,
-                           MAX_VALUES);
-    return true;
-}
-
-/* Splits text at the first `separator` into two whole numbers. An empty part leaves its number unchanged. */
-static bool parse_two(const char *text, char separator, int64_t minimum, int64_t maximum, int64_t *first,
-                      int64_t *second) {
-    const char *middle = strchr(text, separator);
-    size_t length = middle == NULL ? 0 : (size_t)(middle - text);
-    char part[24];
-    if (middle == NULL || length >= sizeof part) return false;
-    memcpy(part, text, length);
-    part[length] = '\0';
-    return (length == 0 || parse_int(part, minimum, maximum, first)) &&
-           (middle[1] == '\0' || parse_int(middle + 1, minimum, maximum, second));
-}
-
-bool option_size(const char *option, const char *text, int minimum, int maximum, int *width, int *height,
-                 Error *error) {
-    int64_t w = 0, h = 0;
-    if (!parse_two(text, 'x', minimum, maximum, &w, &h) || w == 0 || h == 0)
-        return error_input(error, option, "'%s' is not WIDTHxHEIGHT, each from %d to %d", text, minimum, maximum);
-    *width = (int)w;
-    *height = (int)h;
-    return true;
-}
-
-bool option_frames(const char *option, const char *text, int *first, int *last, Error *error) {
-    int64_t a = 0, b = -1;
-    bool ok = strchr(text, ':') != NULL ? strcmp(text, ":") != 0 && parse_two(text, ':', 0, INT_MAX, &a, &b)
-                                        : parse_int(text, 0, INT_MAX, &a) && ((b = a), true);
-    if (!ok || (b != -1 && b < a))
-        return error_input(error, option, "'%s' is not A:B with frame numbers 0 <= A <= B", text);
-    *first = (int)a;
-    *last = (int)b;
-    return true;
+    const error_t status = argp_parse(&argp, argc, argv, 0, NULL, &parsing);
+    if (status != 0 && error->kind == ERROR_NONE) error_memory(error, argv[0]);
+    return error->kind == ERROR_NONE;
 }

@@ -1,41 +1,90 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Option values: text -> number, with a message that names the option. */
+/* The command line of a command. One table states each option's name, help, type and the member of the command's
+   Options that gets its value. What is not given keeps the value that the member had. argp writes the help and finds
+   the options. */
 #pragma once
 #include "common/error.h"
 #include "common/parse.h"
 #include "scene/scene.h"
 
-#include <argp.h>
+#include <stddef.h>
 #include <stdint.h>
 
-/* argp_parse with exit status 2 on bad usage. Options may stand between arguments. False if a parser returned EINVAL
-   with error set. */
-bool options_parse(const struct argp *argp, int argc, char **argv, void *input);
+enum { OPTIONS_MAX = 63 }; /* of a command */
 
-bool option_int(const char *option, const char *text, int64_t minimum, int64_t maximum, int *value, Error *error);
-bool option_seed(const char *option, const char *text, uint64_t *value, Error *error);
+typedef struct Option Option;
 
-/* A float in [minimum, maximum], read by parse_float. */
-bool option_float(const char *option, const char *text, float minimum, float maximum, float *value, Error *error);
+/* Text -> *value, with an error that begins with option->name. `text` is NULL for a flag. */
+typedef bool OptionRead(const Option *option, const char *text, void *value, Error *error);
+
+struct Option {
+    const char *name;   /* "--frames"; NULL: a heading above the options of its group */
+    int letter;         /* 'o' for -o as well; or 0 */
+    const char *value;  /* what the help calls its value: "N"; NULL: a flag */
+    const char *help;   /* NULL ends a table */
+    OptionRead *read;   /* read, at and what follows up to names: one of the macros below */
+    size_t at;          /* of the member in the command's Options, bytes */
+    size_t count_at;    /* lists: of the member that counts */
+    double least, most; /* numbers: bounds; lists: number of values in `most` */
+    const char *const *names;
+    const char *needed;   /* "-o DIR is needed": the error if it is not given; NULL: may be left out */
+    const char *standard; /* NULL, or the help adds it: " (default: 10)". The caller sets the member to it. */
+    int group;            /* of the help, from this row on; a heading begins one, too */
+};
+
+/* The offset of a member, which must have this type. */
+#define OPTION_AT(T, member, type) (offsetof(T, member) + 0 * sizeof(_Generic(&((T *)NULL)->member, type * : 0)))
+
+/* What follows the help in the row of an option. T is the command's Options. */
+#define OPTION_TEXT(T, member) .read = option_text, .at = OPTION_AT(T, member, const char *)
+#define OPTION_PATH(T, member) .read = option_path, .at = OPTION_AT(T, member, const char *) /* installed_path() */
+#define OPTION_FLAG(T, member) .read = option_flag, .at = OPTION_AT(T, member, bool)
+#define OPTION_SEED(T, member) .read = option_seed, .at = OPTION_AT(T, member, uint64_t)
+#define OPTION_RANGE(T, member) .read = option_range, .at = OPTION_AT(T, member, FloatRange)
+#define OPTION_INT(T, member, minimum, maximum) \
+    .read = option_int, .at = OPTION_AT(T, member, int), .least = (minimum), .most = (maximum)
+#define OPTION_FLOAT(T, member, minimum, maximum) \
+    .read = option_float, .at = OPTION_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
+/* A double; its value is rounded to float. */
+#define OPTION_DOUBLE(T, member, minimum, maximum) \
+    .read = option_double, .at = OPTION_AT(T, member, double), .least = (minimum), .most = (maximum)
+/* An enum without negative values, from a list of names that ends with NULL. */
+#define OPTION_ENUM(T, member, list) .read = option_enum, .at = OPTION_AT(T, member, unsigned), .names = (list)
+/* Several of the names, separated by commas: bit i for names[i]. */
+#define OPTION_FLAGS(T, member, list) .read = option_flags, .at = OPTION_AT(T, member, unsigned), .names = (list)
+/* Any other: function(option, text, &options->member, error). */
+#define OPTION_READ(function, T, member) .read = (function), .at = offsetof(T, member)
+/* An option that may be repeated: texts in an array, their number in `count`. */
+#define OPTION_TEXTS(T, array, count)                                                                       \
+    .read = option_texts, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
+    .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
+#define OPTION_PATHS(T, array, count)                                                                       \
+    .read = option_paths, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
+    .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
 
 /* The values of all --set options. Has room for one more than a scene can have, which the scene then refuses. */
-typedef struct SetOptions {
+typedef struct SceneSettings {
     int count;
-    const char *texts[SCENE_MAX_PARAMETERS + 1];
-} SetOptions;
+    SceneSetting items[SCENE_MAX_PARAMETERS + 1];
+} SceneSettings;
 
-#define OPTION_SET(key, group) \
-    { "set", (key), "NAME=VALUE", 0, "Value of one of the scene's parameters (may be repeated)", (group) }
+#define OPTION_SET(T, member)                                                             \
+    "--set", 0, "NAME=VALUE", "Value of one of the scene's parameters (may be repeated)", \
+        OPTION_READ(option_set, T, member)
 
-void options_add_set(SetOptions *options, const char *text);
+OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,
+    option_enum, option_flags, option_texts, option_paths, option_set;
 
-/* scene_read_with() these settings. */
-Scene *options_read_scene(const char *path, const SetOptions *options, Error *error);
+typedef struct CommandSpec {
+    const Option *options; /* ended by {0} */
+    Option input;          /* how one of the command's arguments is read; value: what the help calls them all */
+    struct {
+        int least, most;
+        const char *noun; /* "scene", for the error "only 2 scenes can be given" */
+    } inputs;
+    const char *help; /* description, \v, examples */
+} CommandSpec;
 
-bool option_range(const char *option, const char *text, FloatRange *range, Error *error);
-
-/* "1920x1080" */
-bool option_size(const char *option, const char *text, int minimum, int maximum, int *width, int *height, Error *error);
-
-/* "A:B", ":B", "A:" or "A": whole numbers, A <= B; *last is -1 if left open. */
-bool option_frames(const char *option, const char *text, int *first, int *last, Error *error);
+/* Fills `options`. Bad usage ends the program with exit status 2; a bad value sets error: the first one stands. Options
+   may stand between arguments. */
+bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error);

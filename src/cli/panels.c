@@ -23,15 +23,13 @@ bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name,
     if (!method_parse(&method, method_name, error)) return false;
     char what[2 * SCENE_NAME_SIZE + 8];
     snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
-    ProgressBar bar;
-    progress_bar_begin(&bar, what);
-    Trajectory *run = simulate(scene, &method, &bar.progress, error);
-    progress_bar_end(&bar);
+    Trajectory *run = simulate(scene, &method, progress_bar_begin(what), error);
+    progress_bar_end();
     return add(panels, run, input, error);
 }
 
-static bool add_scene(Panels *panels, const char *input, const SetOptions *set, Error *error) {
-    Scene *scene = options_read_scene(input, set, error);
+static bool add_scene(Panels *panels, const char *input, const SceneSettings *set, Error *error) {
+    Scene *scene = scene_read_with(input, set->items, set->count, error);
     bool ok = scene != NULL && panels_add_run(panels, scene, "engine", input, error);
     if (ok && scene_network(scene, "pair-net") != NULL) ok = panels_add_run(panels, scene, "pair-net", input, error);
     scene_destroy(scene);
@@ -43,7 +41,7 @@ static bool is_stored(const char *input) {
     return ending != NULL && strcmp(ending, ".npz") == 0;
 }
 
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error) {
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set, Error *error) {
     int scenes = 0;
     for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
     if (set->count > 0 && scenes != 1) return error_input(error, "--set", "needs exactly one scene (got %d)", scenes);

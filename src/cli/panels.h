@@ -13,7 +13,7 @@ typedef struct Panels {
 } Panels;
 
 /* Settings need exactly one scene among the inputs. After an error, panels_free frees what was loaded before it. */
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SetOptions *set, Error *error);
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set, Error *error);
 void panels_free(Panels *panels);
 
 /* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */

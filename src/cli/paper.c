@@ -11,52 +11,26 @@
 
 #include <stdio.h>
 
-enum { SCENES = 256, QUICK, SEED };
-
-static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Folder for tables, figures, networks and the report", 0},
-    {"scenes", SCENES, "DIR", 0,
+static const Option option_table[] = {
+    {"--output", 'o', "DIR", "Folder for tables, figures, networks and the report", OPTION_TEXT(PaperOptions, folder),
+     .needed = "-o DIR is needed"},
+    {"--scenes", 0, "DIR",
      "Folder with single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes, or the installed "
      "scenes)",
-     0},
-    {"quick", QUICK, NULL, 0, "Fewer networks, launches and iterations: under a minute", 0},
-    {"seed", SEED, "N", 0, "Seed of launches, splits and initial weights (default: 1)", 0},
+     OPTION_TEXT(PaperOptions, scenes)},
+    {"--quick", 0, NULL, "Fewer networks, launches and iterations: under a minute", OPTION_FLAG(PaperOptions, quick)},
+    {"--seed", 0, "N", "Seed of launches, splits and initial weights (default: 1)", OPTION_SEED(PaperOptions, seed)},
     {0}};
 
-typedef struct Options {
-    PaperOptions study;
-    const char *seed;
-} Options;
-
-static error_t parse(int key, char *value, struct argp_state *state) {
-    Options *options = state->input;
-    switch (key) {
-    case 'o': options->study.folder = value; break;
-    case SCENES: options->study.scenes = value; break;
-    case QUICK: options->study.quick = true; break;
-    case SEED: options->seed = value; break;
-    case ARGP_KEY_ARG: argp_error(state, "'%s' is not expected", value); break;
-    case ARGP_KEY_END:
-        if (options->study.folder == NULL) argp_error(state, "-o DIR is needed");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
-
-static const struct argp argp = {
-    option_table,
-    parse,
-    "",
-    "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every reading, "
-    "one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future work. "
-    "Writes report.md, report.html, every table as CSV, and every figure as PNG and SVG. Takes about ten minutes on "
-    "two cores. An interrupted run continues where it stopped.\v"
-    "Example: twinbox paper -o out/paper\n"
-    "         twinbox paper -o out/paper-quick --quick",
-    NULL,
-    NULL,
-    NULL};
+static const CommandSpec spec = {
+    .options = option_table,
+    .help =
+        "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every "
+        "reading, one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future "
+        "work. Writes report.md, report.html, every table as CSV, and every figure as PNG and SVG. Takes about ten "
+        "minutes on two cores. An interrupted run continues where it stopped.\v"
+        "Example: twinbox paper -o out/paper\n"
+        "         twinbox paper -o out/paper-quick --quick"};
 
 static bool draw_and_report(const PaperOptions *study, Error *error) {
     enum { PATH_SIZE = 4096 };
@@ -70,13 +44,10 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
     return true;
 }
 
-int command_paper(int argc, char **argv, Error *error) {
-    Options options = {.study = {.scenes = installed_path("scenes")}, .seed = "1"};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
-    if (!option_seed("--seed", options.seed, &options.study.seed, error)) return STATUS_DIFFERENT;
-    ProgressBar bar;
-    progress_bar_begin(&bar, "paper");
-    bool ok = paper_run(&options.study, &bar.progress, error);
-    progress_bar_end(&bar);
-    return ok && draw_and_report(&options.study, error) ? STATUS_SAME : STATUS_DIFFERENT;
+bool command_paper(int argc, char **argv, Error *error) {
+    PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    bool ok = paper_run(&options, progress_bar_begin("paper"), error);
+    progress_bar_end();
+    return ok && draw_and_report(&options, error);
 }

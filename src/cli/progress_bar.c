@@ -9,6 +9,13 @@
 
 static volatile sig_atomic_t interrupted;
 
+/* There is one terminal: one bar at a time. */
+static struct {
+    char what[192];
+    double begun, shown; /* s */
+    bool visible, terminal;
+} bar;
+
 static void on_interrupt(int signal_number) {
     (void)signal_number;
     interrupted = 1;
@@ -30,34 +37,35 @@ static void format_seconds(char *text, size_t size, double seconds) {
         snprintf(text, size, "%d min %02d s", whole / 60, whole % 60);
 }
 
-static void show(ProgressBar *bar, double part, double elapsed) {
+static void show(double part, double elapsed) {
     enum { WIDTH = 30 };
     char left[32];
     format_seconds(left, sizeof left, elapsed / part * (1 - part));
-    if (!bar->terminal) {
-        fprintf(stderr, "%s: %.0f%%, %s left\n", bar->what, 100 * part, left);
+    if (!bar.terminal) {
+        fprintf(stderr, "%s: %.0f%%, %s left\n", bar.what, 100 * part, left);
         return;
     }
     char cells[WIDTH + 1];
     memset(cells, '.', WIDTH);
     memset(cells, '#', (size_t)(part * WIDTH));
     cells[WIDTH] = '\0';
-    fprintf(stderr, "\r\033[K%s [%s] %3.0f%%, %s left", bar->what, cells, 100 * part, left);
+    fprintf(stderr, "\r\033[K%s [%s] %3.0f%%, %s left", bar.what, cells, 100 * part, left);
     fflush(stderr);
 }
 
 static bool report(void *context, double done, double total) {
-    ProgressBar *bar = context;
-    double time = now(), pause = bar->terminal ? 0.1 : 5.0;
-    if (time - bar->begun >= 1.0 && time - bar->shown >= pause && done > 0) {
-        bar->shown = time;
-        bar->visible = true;
-        show(bar, done < total ? done / total : 1.0, time - bar->begun);
+    (void)context;
+    double time = now(), pause = bar.terminal ? 0.1 : 5.0;
+    if (time - bar.begun >= 1.0 && time - bar.shown >= pause && done > 0) {
+        bar.shown = time;
+        bar.visible = true;
+        show(done < total ? done / total : 1.0, time - bar.begun);
     }
     return !progress_interrupted();
 }
 
-void progress_bar_begin(ProgressBar *bar, const char *what) {
+const Progress *progress_bar_begin(const char *what) {
+    static const Progress progress = {report, NULL};
     /* SA_RESETHAND: a second Ctrl-C ends the program at once. */
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
@@ -65,12 +73,19 @@ void progress_bar_begin(ProgressBar *bar, const char *what) {
         sigaction(SIGINT, &action, NULL);
         sigaction(SIGTERM, &action, NULL);
     }
-    *bar = (ProgressBar){.what = what, .begun = now(), .terminal = isatty(STDERR_FILENO) == 1};
-    bar->progress = (Progress){report, bar};
+    progress_bar_end();
+    bar.begun = now();
+    bar.shown = 0;
+    bar.terminal = isatty(STDERR_FILENO) == 1;
+    snprintf(bar.what, sizeof bar.what, "%s", what);
+    return &progress;
 }
 
-void progress_bar_clear(ProgressBar *bar) {
-    if (bar->visible && bar->terminal) fputs("\r\033[K", stderr);
+void progress_bar_clear(void) {
+    if (bar.visible && bar.terminal) fputs("\r\033[K", stderr);
 }
 
-void progress_bar_end(ProgressBar *bar) { progress_bar_clear(bar); }
+void progress_bar_end(void) {
+    progress_bar_clear();
+    bar.visible = false;
+}

@@ -1,106 +1,75 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "simulate/simulate.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { NO_BOMB = 256, BOMB_X, BOMB_FRAME, FRAMES, DT, ITERATIONS, NO_WARM, NO_ACCUMULATE, NO_CORRECTION, HASH, SET };
+typedef struct Options {
+    const char *scene, *output, *method, *hashes;
+    float bomb_x;           /* m; NaN: the scene's */
+    int bomb_frame;         /* -1: the scene's */
+    int frames, iterations; /* 0: the scene's */
+    float dt;               /* s; 0: the scene's */
+    bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
+    SceneSettings set;
+} Options;
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "RUN", 0, "Trajectory to write: RUN.npz, or RUN.csv for poses as text", 0},
-    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Method (default: engine); see twinbox methods", 0},
-    {"hash", HASH, "FILE", 0, "Write frame,hash of every frame as CSV", 0},
-    {NULL, 0, NULL, 0, "Override the scene:", 1},
-    OPTION_SET(SET, 1),
-    {"bomb-x", BOMB_X, "X", 0, "Where the bomb is launched, m", 1},
-    {"bomb-frame", BOMB_FRAME, "N", 0, "Step after which the bomb is added", 1},
-    {"no-bomb", NO_BOMB, NULL, 0, "No bomb", 1},
-    {"frames", FRAMES, "N", 0, "Number of steps", 1},
-    {"dt", DT, "S", 0, "Time step, s: a number or a fraction such as 1/60", 1},
-    {"iterations", ITERATIONS, "N", 0, "Sweeps per step", 1},
-    {"no-warm-starting", NO_WARM, NULL, 0, "Start every step with impulses of 0", 1},
-    {"no-accumulate", NO_ACCUMULATE, NULL, 0, "Clamp each impulse instead of their sum", 1},
-    {"no-position-correction", NO_CORRECTION, NULL, 0, "Do not correct overlaps", 1},
+static const Option option_table[] = {
+    {"--output", 'o', "RUN", "Trajectory to write: RUN.npz, or RUN.csv for poses as text",
+     OPTION_TEXT(Options, output)},
+    {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
+     OPTION_TEXT(Options, method)},
+    {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
+    {.help = "Override the scene:"},
+    {OPTION_SET(Options, set)},
+    {"--bomb-x", 0, "X", "Where the bomb is launched, m",
+     OPTION_FLOAT(Options, bomb_x, -SCENE_MAX_POSITION, SCENE_MAX_POSITION)},
+    {"--bomb-frame", 0, "N", "Step after which the bomb is added",
+     OPTION_INT(Options, bomb_frame, 0, SCENE_MAX_FRAMES)},
+    {"--no-bomb", 0, NULL, "No bomb", OPTION_FLAG(Options, no_bomb)},
+    {"--frames", 0, "N", "Number of steps", OPTION_INT(Options, frames, 1, SCENE_MAX_FRAMES)},
+    {"--dt", 0, "S", "Time step, s: a number or a fraction such as 1/60",
+     OPTION_FLOAT(Options, dt, SCENE_MIN_DT, SCENE_MAX_DT)},
+    {"--iterations", 0, "N", "Sweeps per step", OPTION_INT(Options, iterations, 1, SCENE_MAX_ITERATIONS)},
+    {"--no-warm-starting", 0, NULL, "Start every step with impulses of 0", OPTION_FLAG(Options, no_warm_starting)},
+    {"--no-accumulate", 0, NULL, "Clamp each impulse instead of their sum", OPTION_FLAG(Options, no_accumulate)},
+    {"--no-position-correction", 0, NULL, "Do not correct overlaps", OPTION_FLAG(Options, no_position_correction)},
     {0}};
 
-typedef struct SimulateOptions {
-    const char *scene, *output, *method, *hashes;
-    const char *bomb_x, *bomb_frame, *frames, *dt, *iterations; /* NULL: the scene's */
-    bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
-    SetOptions set;
-} SimulateOptions;
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
+    .inputs = {1, 1, "scene"},
+    .help = "Run a scene with one method and store the trajectory.\v"
+            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
-static error_t parse(int key, char *value, struct argp_state *state) {
-    SimulateOptions *options = state->input;
-    switch (key) {
-    case 'o': options->output = value; break;
-    case 'm': options->method = value; break;
-    case HASH: options->hashes = value; break;
-    case SET: options_add_set(&options->set, value); break;
-    case BOMB_X: options->bomb_x = value; break;
-    case BOMB_FRAME: options->bomb_frame = value; break;
-    case NO_BOMB: options->no_bomb = true; break;
-    case FRAMES: options->frames = value; break;
-    case DT: options->dt = value; break;
-    case ITERATIONS: options->iterations = value; break;
-    case NO_WARM: options->no_warm_starting = true; break;
-    case NO_ACCUMULATE: options->no_accumulate = true; break;
-    case NO_CORRECTION: options->no_position_correction = true; break;
-    case ARGP_KEY_ARG:
-        if (options->scene != NULL) argp_error(state, "only one scene can be given (second: '%s')", value);
-        options->scene = installed_path(value);
-        break;
-    case ARGP_KEY_END:
-        if (options->scene == NULL) argp_error(state, "a scene file is needed");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
+static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
+    const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
+    if (options->no_bomb && launched)
+        return error_input(error, "--no-bomb", "cannot be combined with --bomb-x or --bomb-frame");
+    if (!bomb->present && launched) return error_input(error, options->scene, "the scene has no bomb to launch");
+    if (options->no_bomb) bomb->present = false;
+    if (!isnan(options->bomb_x)) bomb->body.position.x = options->bomb_x;
+    if (options->bomb_frame >= 0) bomb->frame = options->bomb_frame;
+    return true;
 }
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "SCENE",
-    "Run a scene with one method and store the trajectory.\v"
-    "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-    "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-    "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-    "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2).",
-    NULL,
-    NULL,
-    NULL};
-
-static bool override_bomb(SceneBomb *bomb, const SimulateOptions *options, const char *scene, Error *error) {
-    if (options->no_bomb) {
-        if (options->bomb_x != NULL || options->bomb_frame != NULL)
-            return error_input(error, "--no-bomb", "cannot be combined with --bomb-x or --bomb-frame");
-        bomb->present = false;
-        return true;
-    }
-    if (!bomb->present && (options->bomb_x != NULL || options->bomb_frame != NULL))
-        return error_input(error, scene, "the scene has no bomb to launch");
-    return (options->bomb_x == NULL || option_float("--bomb-x", options->bomb_x, -SCENE_MAX_POSITION,
-                                                    SCENE_MAX_POSITION, &bomb->body.position.x, error)) &&
-           (options->bomb_frame == NULL ||
-            option_int("--bomb-frame", options->bomb_frame, 0, SCENE_MAX_FRAMES, &bomb->frame, error));
-}
-
-static bool override_scene(Scene *scene, const SimulateOptions *options, Error *error) {
+static bool override_scene(Scene *scene, const Options *options, Error *error) {
     if (options->no_warm_starting) scene->warm_starting = false;
     if (options->no_accumulate) scene->accumulate_impulses = false;
     if (options->no_position_correction) scene->position_correction = false;
-    return override_bomb(&scene->bomb, options, options->scene, error) &&
-           (options->frames == NULL ||
-            option_int("--frames", options->frames, 1, SCENE_MAX_FRAMES, &scene->frames, error)) &&
-           (options->dt == NULL || option_float("--dt", options->dt, SCENE_MIN_DT, SCENE_MAX_DT, &scene->dt, error)) &&
-           (options->iterations == NULL ||
-            option_int("--iterations", options->iterations, 1, SCENE_MAX_ITERATIONS, &scene->iterations, error));
+    if (options->frames > 0) scene->frames = options->frames;
+    if (options->dt > 0) scene->dt = options->dt;
+    if (options->iterations > 0) scene->iterations = options->iterations;
+    return override_bomb(&scene->bomb, options, error);
 }
 
 static bool ends_with(const char *text, const char *ending) {
@@ -108,7 +77,7 @@ static bool ends_with(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-static bool store(const Trajectory *run, const SimulateOptions *options, Error *error) {
+static bool store(const Trajectory *run, const Options *options, Error *error) {
     bool ok = true;
     if (options->output != NULL)
         ok = ends_with(options->output, ".csv") ? trajectory_write_csv(run, options->output, error)
@@ -116,12 +85,10 @@ static bool store(const Trajectory *run, const SimulateOptions *options, Error *
     return ok && (options->hashes == NULL || trajectory_write_hashes(run, options->hashes, error));
 }
 
-static bool run_scene(Scene *scene, const Method *method, const SimulateOptions *options, Error *error) {
+static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     if (!override_scene(scene, options, error)) return false;
-    ProgressBar bar;
-    progress_bar_begin(&bar, scene->name);
-    Trajectory *run = simulate(scene, method, &bar.progress, error);
-    progress_bar_end(&bar);
+    Trajectory *run = simulate(scene, method, progress_bar_begin(scene->name), error);
+    progress_bar_end();
     bool ok = run != NULL && store(run, options, error);
     if (ok)
         printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", run->scene, run->method,
@@ -131,17 +98,15 @@ static bool run_scene(Scene *scene, const Method *method, const SimulateOptions 
     return ok;
 }
 
-int command_simulate(int argc, char **argv, Error *error) {
-    SimulateOptions options = {.method = "engine"};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
-    if (options.output != NULL && !ends_with(options.output, ".npz") && !ends_with(options.output, ".csv")) {
-        error_input(error, options.output, "the name of a trajectory must end in .npz or .csv");
-        return STATUS_DIFFERENT;
-    }
+bool command_simulate(int argc, char **argv, Error *error) {
+    Options options = {.method = "engine", .bomb_x = NAN, .bomb_frame = -1};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (options.output != NULL && !ends_with(options.output, ".npz") && !ends_with(options.output, ".csv"))
+        return error_input(error, options.output, "the name of a trajectory must end in .npz or .csv");
     Method method;
-    if (!method_parse(&method, options.method, error)) return STATUS_DIFFERENT;
-    Scene *scene = options_read_scene(options.scene, &options.set, error);
+    if (!method_parse(&method, options.method, error)) return false;
+    Scene *scene = scene_read_with(options.scene, options.set.items, options.set.count, error);
     bool ok = scene != NULL && run_scene(scene, &method, &options, error);
     scene_destroy(scene);
-    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+    return ok;
 }

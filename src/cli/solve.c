@@ -10,47 +10,27 @@
 
 enum { MAX_METHODS = 64 };
 
-static const struct argp_option option_table[] = {
-    {"method", 'm', "NAME[:KEY=VALUE,...]", 0, "Method to score (may be repeated)", 0}, {0}};
-
 typedef struct Options {
     const char *path;
     const char *methods[MAX_METHODS];
     int method_count;
 } Options;
 
-static error_t parse(int key, char *value, struct argp_state *state) {
-    Options *options = state->input;
-    switch (key) {
-    case 'm':
-        if (options->method_count == MAX_METHODS) argp_error(state, "at most %d methods", MAX_METHODS);
-        options->methods[options->method_count++] = value;
-        break;
-    case ARGP_KEY_ARG:
-        if (options->path != NULL) argp_error(state, "only one problem can be given (second: '%s')", value);
-        options->path = value;
-        break;
-    case ARGP_KEY_END:
-        if (options->path == NULL) argp_error(state, "a contact problem (.npz) is needed");
-        if (options->method_count == 0) argp_error(state, "--method NAME is needed");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
+static const Option option_table[] = {{"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
+                                       OPTION_TEXTS(Options, methods, method_count),
+                                       .needed = "--method NAME is needed"},
+                                      {0}};
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "P.npz",
-    "Solve one contact problem with each method and score it against the converged solution: RMS error of the bodies' "
-    "velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of the change "
-    "made by the contacts), and the residual of the method's impulses: the largest change of a contact's velocity by "
-    "one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
-    "Example: twinbox solve impact.npz --method engine:k=10 --method engine:k=100",
-    NULL,
-    NULL,
-    NULL};
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "P.npz", .needed = "a contact problem (.npz) is needed", OPTION_TEXT(Options, path)},
+    .inputs = {1, 1, "problem"},
+    .help =
+        "Solve one contact problem with each method and score it against the converged solution: RMS error of the "
+        "bodies' velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of "
+        "the change made by the contacts), and the residual of the method's impulses: the largest change of a "
+        "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
+        "Example: twinbox solve impact.npz --method engine:k=10 --method engine:k=100"};
 
 static bool score(const Method *method, const Scene *scene, const ContactProblem *problem, const Reference *truth,
                   ContactSolution *solution, Error *error) {
@@ -95,14 +75,14 @@ static bool score_all(const StoredProblem *stored, const Method *methods, int me
     return ok;
 }
 
-int command_solve(int argc, char **argv, Error *error) {
+bool command_solve(int argc, char **argv, Error *error) {
     Options options = {0};
-    if (!options_parse(&argp, argc, argv, &options)) return STATUS_DIFFERENT;
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
     static Method methods[MAX_METHODS];
     for (int i = 0; i < options.method_count; i++)
-        if (!method_parse(&methods[i], options.methods[i], error)) return STATUS_DIFFERENT;
+        if (!method_parse(&methods[i], options.methods[i], error)) return false;
     StoredProblem *stored = problem_read(options.path, error);
     bool ok = stored != NULL && score_all(stored, methods, options.method_count, error);
     problem_destroy(stored);
-    return ok ? STATUS_SAME : STATUS_DIFFERENT;
+    return ok;
 }

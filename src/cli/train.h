@@ -2,10 +2,7 @@
 /* The kinds of network that `twinbox train` trains. To add a kind, write one file that defines train_NAME, and add one
    line KIND(NAME) here. */
 #pragma once
-#include "common/error.h"
-
-#include <stdbool.h>
-#include <stddef.h>
+#include "cli/options.h"
 
 /* The first is the default of --kind. */
 #define TRAIN_KINDS(KIND)   \
@@ -13,25 +10,16 @@
     KIND(momentum_schedule) \
     KIND(scene_net)
 
-typedef struct TrainOption {
-    const char *name;     /* without dashes */
-    const char *value;    /* what the help calls its value: "N"; NULL: a flag, whose value is "" */
-    const char *standard; /* the value if it is not given; NULL: none */
-    const char *help;
-} TrainOption;
-
-enum { TRAIN_OPTIONS_MAX = 32 };
-
 /* What to train, as on the command line. */
 typedef struct TrainRequest {
     const struct TrainKind *kind;
     const char *input, *output;
-    const char *values[TRAIN_OPTIONS_MAX]; /* of the kind's options; NULL: neither given nor a standard */
+    const char *values[OPTIONS_MAX]; /* texts of the kind's options; NULL: neither given nor a standard; "": a flag */
 } TrainRequest;
 
 typedef struct TrainKind {
     const char *name, *input, *summary; /* input: what the help calls the file to train on */
-    const TrainOption *options;         /* at most TRAIN_OPTIONS_MAX, ended by a NULL name; in the order of a command */
+    const Option *options;              /* in the order of a command; those not given have the value `standard` */
     bool (*train)(const TrainRequest *request, Error *error);
 } TrainKind;
 
@@ -42,13 +30,13 @@ TRAIN_KINDS(TRAIN_KIND_DECLARED)
 /* All kinds, ended by NULL. */
 extern const TrainKind *const train_kinds[];
 
-/* The kind's option of that name, or -1. */
+/* The kind's option of that name ("--seed"), or -1. */
 int train_find_option(const TrainKind *kind, const char *name);
 
-/* The value of one of the kind's options; NULL if it has none. */
-const char *train_value(const TrainRequest *request, const char *option);
+/* Reads the values into the Options of the kind. */
+bool train_read(const TrainRequest *request, void *options, Error *error);
 
-/* Sets it; NULL: as if it were not given. */
+/* Sets the text of an option; NULL: as if it were not given. */
 void train_set(TrainRequest *request, const char *option, const char *value);
 
 /* The command line that trains the same network again, to be stored in it. */

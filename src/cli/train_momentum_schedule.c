@@ -1,35 +1,32 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "impact_training/momentum_fit.h"
 
 #include <stdio.h>
 
-static const TrainOption options[] = {{"iterations", "N", "100", "Generations of CMA-ES for each number of sweeps"},
-                                      {"seed", "N", "1", "Seed of the search"},
-                                      {"bomb-x", "A:B:STEP", "-5:5:0.5", "Launches that the factors are fitted to, m"},
-                                      {NULL, NULL, NULL, NULL}};
+static const Option options[] = {
+    {"--iterations", 0, "N", "Generations of CMA-ES for each number of sweeps",
+     OPTION_INT(MomentumFitOptions, generations, 0, 100000), .standard = "100"},
+    {"--seed", 0, "N", "Seed of the search", OPTION_SEED(MomentumFitOptions, seed), .standard = "1"},
+    {"--bomb-x", 0, "A:B:STEP", "Launches that the factors are fitted to, m", OPTION_RANGE(MomentumFitOptions, bomb_x),
+     .standard = "-5:5:0.5"},
+    {0}};
 
 static void print_schedule(void *context, int sweeps, double without, double tuned, double learned) {
-    progress_bar_clear(context);
+    (void)context;
+    progress_bar_clear();
     printf("%6d  %11.4f  %11.4f  %11.4f\n", sweeps, without, tuned, learned);
     fflush(stdout);
 }
 
 static bool fit_and_store(const Scene *scene, const TrainRequest *request, Error *error) {
     MomentumFitOptions fit = {.on_schedule = print_schedule};
-    if (!option_range("--bomb-x", train_value(request, "bomb-x"), &fit.bomb_x, error) ||
-        !option_int("--iterations", train_value(request, "iterations"), 0, 100000, &fit.generations, error) ||
-        !option_seed("--seed", train_value(request, "seed"), &fit.seed, error))
-        return false;
-    ProgressBar bar;
-    progress_bar_begin(&bar, "fitting");
-    fit.context = &bar;
+    if (!train_read(request, &fit, error)) return false;
     printf("error in m/s, at impact plus after\nsweeps  no momentum   hand-tuned      learned\n");
     MomentumSchedules schedules;
-    bool ok = momentum_fit(&schedules, scene, &fit, &bar.progress, error);
-    progress_bar_end(&bar);
+    bool ok = momentum_fit(&schedules, scene, &fit, progress_bar_begin("fitting"), error);
+    progress_bar_end();
     if (!ok) return false;
     train_describe(request, schedules.command, sizeof schedules.command);
     ok = momentum_schedules_write(&schedules, request->output, error);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "training/training.h"
@@ -7,64 +6,82 @@
 #include <stdio.h>
 #include <string.h>
 
-static const TrainOption options[] = {
-    {"layers", "WIDTHS", "10-10-2",
+typedef struct Options {
+    TrainingOptions training;
+    const char *from; /* NET.npz, or NULL */
+} Options;
+
+static OptionRead read_layers, read_laws;
+
+static const Option options[] = {
+    {"--layers", 0, "WIDTHS",
      "Widths of the layers. 10-10-2: change of relative velocity, min-max outputs, as in the paper's 3.2. With two "
-     "hidden "
-     "layers and all six changes: 10-8-8-6, standardised outputs, as in its 3.1"},
-    {"optimizer", "NAME", "adam", "adam, bfgs, gd (gradient descent) or lm (Levenberg-Marquardt)"},
-    {"iterations", "N", "2000", "Full-batch steps"},
-    {"seed", "N", "1", "Seed of the initial weights"},
-    {"from", "NET.npz", NULL, "Continue from the weights of this network, such as one cut short by Ctrl-C"},
-    {"hidden", "NAME", NULL, "Activation of the hidden layers: sigmoid (default), tanh or relu"},
-    {"output-activation", "NAME", NULL, "sigmoid or linear (default: sigmoid for two outputs, linear for six)"},
-    {"scale", "NAME", NULL,
+     "hidden layers and all six changes: 10-8-8-6, standardised outputs, as in its 3.1",
+     OPTION_READ(read_layers, Options, training), .standard = "10-10-2"},
+    {"--optimizer", 0, "NAME", "adam, bfgs, gd (gradient descent) or lm (Levenberg-Marquardt)",
+     OPTION_TEXT(Options, training.optimizer), .standard = "adam"},
+    {"--iterations", 0, "N", "Full-batch steps", OPTION_INT(Options, training.iterations, 0, 1000000),
+     .standard = "2000"},
+    {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(Options, training.seed), .standard = "1"},
+    {"--from", 0, "NET.npz", "Continue from the weights of this network, such as one cut short by Ctrl-C",
+     OPTION_TEXT(Options, from)},
+    {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
+     OPTION_TEXT(Options, training.hidden)},
+    {"--output-activation", 0, "NAME", "sigmoid or linear (default: sigmoid for two outputs, linear for six)",
+     OPTION_TEXT(Options, training.output_activation)},
+    {"--scale", 0, "NAME",
      "Scale of the outputs: minmax or, with linear outputs, standard (default: minmax with sigmoid, standard with "
-     "linear)"},
-    {"loss", "NAME", NULL,
+     "linear)",
+     OPTION_TEXT(Options, training.scale)},
+    {"--loss", 0, "NAME",
      "Loss of the outputs: mse (default), or smooth-l1, which is linear beyond 0.3 m/s, so that rare impacts weigh "
-     "less"},
-    {"laws", "NAME=W,...", NULL,
+     "less",
+     OPTION_TEXT(Options, training.loss)},
+    {"--laws", 0, "NAME=W,...",
      "Weights of physical laws in the loss of six outputs: momentum, energy, approach, cone. Needs a dataset recorded "
-     "with --context"},
-    {NULL, NULL, NULL, NULL}};
+     "with --context",
+     OPTION_READ(read_laws, Options, training.laws)},
+    {0}};
+
+static bool read_laws(const Option *option, const char *text, void *value, Error *error) {
+    (void)option;
+    return law_weights_parse(text, value, error);
+}
 
 /* "10-10-2" -> widths; a layer of weights lies between two of them. */
-static bool parse_layers(const char *text, TrainingOptions *training, Error *error) {
+static bool read_layers(const Option *option, const char *text, void *value, Error *error) {
+    TrainingOptions *training = value;
     int count = 0;
     for (const char *rest = text; count <= NETWORK_MAX_LAYERS; rest++) {
         size_t length = strcspn(rest, "-");
         char width[16] = "";
-        int64_t value;
+        int64_t parsed;
         if (length < sizeof width) memcpy(width, rest, length);
-        if (!parse_int(width, 1, NETWORK_MAX_WIDTH, &value)) break;
-        training->widths[count++] = (int)value;
+        if (!parse_int(width, 1, NETWORK_MAX_WIDTH, &parsed)) break;
+        training->widths[count++] = (int)parsed;
         rest += length;
         if (*rest != '\0') continue;
         training->layers = count - 1;
         if (count >= 2) return true;
         break;
     }
-    return error_input(error, "--layers", "'%s' is not 2 to %d widths from 1 to %d, such as 10-10-2", text,
+    return error_input(error, option->name, "'%s' is not 2 to %d widths from 1 to %d, such as 10-10-2", text,
                        NETWORK_MAX_LAYERS + 1, NETWORK_MAX_WIDTH);
 }
 
 static void print_score(void *context, const TrainingScore *score) {
-    ProgressBar *bar = context;
-    progress_bar_clear(bar);
+    (void)context;
+    progress_bar_clear();
     printf("%9d  %10.6f  %10.6f  %13.6f  %14.6f\n", score->iteration, score->test, score->train, score->constant_test,
            score->constant_train);
     fflush(stdout);
 }
 
 static Network *train(const Dataset *dataset, TrainingOptions *training, Error *error) {
-    ProgressBar bar;
-    progress_bar_begin(&bar, "training");
     training->on_score = print_score;
-    training->context = &bar;
     printf("iteration   test score  train score  constant test  constant train\n");
-    Network *network = training_run(dataset, training, &bar.progress, error);
-    progress_bar_end(&bar);
+    Network *network = training_run(dataset, training, progress_bar_begin("training"), error);
+    progress_bar_end();
     return network;
 }
 
@@ -84,22 +101,13 @@ static bool train_and_store(const Dataset *dataset, const TrainRequest *request,
 }
 
 static bool run(const TrainRequest *request, Error *error) {
-    const char *laws = train_value(request, "laws"), *from = train_value(request, "from");
-    TrainingOptions training = {.optimizer = train_value(request, "optimizer"),
-                                .hidden = train_value(request, "hidden"),
-                                .output_activation = train_value(request, "output-activation"),
-                                .scale = train_value(request, "scale"),
-                                .loss = train_value(request, "loss")};
-    if (!parse_layers(train_value(request, "layers"), &training, error) ||
-        !option_int("--iterations", train_value(request, "iterations"), 0, 1000000, &training.iterations, error) ||
-        !option_seed("--seed", train_value(request, "seed"), &training.seed, error) ||
-        (laws != NULL && !law_weights_parse(laws, &training.laws, error)))
-        return false;
+    Options given = {.from = NULL};
+    if (!train_read(request, &given, error)) return false;
     Network *start = NULL;
-    if (from != NULL && (start = network_read(from, error)) == NULL) return false;
-    training.start = start;
+    if (given.from != NULL && (start = network_read(given.from, error)) == NULL) return false;
+    given.training.start = start;
     Dataset *dataset = dataset_read(request->input, error);
-    bool ok = dataset != NULL && train_and_store(dataset, request, &training, error);
+    bool ok = dataset != NULL && train_and_store(dataset, request, &given.training, error);
     dataset_destroy(dataset);
     network_destroy(start);
     return ok;

@@ -11,10 +11,13 @@ int train_find_option(const TrainKind *kind, const char *name) {
     return -1;
 }
 
-const char *train_value(const TrainRequest *request, const char *option) {
-    const int i = train_find_option(request->kind, option);
-    assert(i >= 0);
-    return request->values[i];
+bool train_read(const TrainRequest *request, void *options, Error *error) {
+    for (int i = 0; request->kind->options[i].name != NULL; i++) {
+        const Option *option = &request->kind->options[i];
+        if (request->values[i] == NULL) continue;
+        if (!option->read(option, request->values[i], (char *)options + option->at, error)) return false;
+    }
+    return true;
 }
 
 void train_set(TrainRequest *request, const char *option, const char *value) {
@@ -34,9 +37,9 @@ void train_describe(const TrainRequest *request, char *command, size_t size) {
     append(command, size, " ", request->input);
     append(command, size, " -o ", request->output);
     for (int i = 0; request->kind->options[i].name != NULL; i++) {
-        const TrainOption *option = &request->kind->options[i];
+        const Option *option = &request->kind->options[i];
         if (request->values[i] == NULL) continue;
-        append(command, size, " --", option->name);
+        append(command, size, " ", option->name);
         /* A value that begins with '-' would be taken for an option. */
         const bool negative = option->standard != NULL && option->standard[0] == '-';
         if (option->value != NULL) append(command, size, negative ? "=" : " ", request->values[i]);

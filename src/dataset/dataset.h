@@ -18,7 +18,7 @@ enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DA
    (reference/reference.h), the paper's more accurate source. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
-extern const char *const dataset_label_names[DATASET_LABELS];
+extern const char *const dataset_label_names[DATASET_LABELS + 1]; /* ends with NULL */
 
 typedef struct Dataset {
     PairView view;

@@ -13,7 +13,7 @@
 
 #define KIND "dataset"
 
-const char *const dataset_label_names[DATASET_LABELS] = {"engine", "reference"};
+const char *const dataset_label_names[DATASET_LABELS + 1] = {"engine", "reference"};
 
 enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
 

@@ -98,7 +98,7 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     text_fit(title, spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
                 title);
-    if (numbered < count) snprintf(part, sizeof part, ", %d of them written", numbered);
+    if (numbered < count) snprintf(part, sizeof part, ", %d labelled", numbered);
     snprintf(counts, sizeof counts, "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
     text_fit(counts, CONTACT_TYPE * spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 0.6 * line},

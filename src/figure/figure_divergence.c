@@ -161,8 +161,8 @@ static void draw_legend(const Divergence *d, Sketch *sketch, double left, double
             pen_line(colour_of(style.colour), 2.2, strcmp(style.dashes, "solid") == 0 ? NULL : style.dashes);
         bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        snprintf(words, sizeof words, "%s from %s%s", spec->runs[i]->method, spec->runs[0]->method,
-                 ever ? "" : ": equal");
+        snprintf(words, sizeof words, "%s vs %s%s", spec->runs[i]->method, spec->runs[0]->method,
+                 ever ? "" : ": identical");
         draw_legend_row(sketch, at, spec->points, width, words);
     }
     if (d->low == NULL) return;
@@ -181,7 +181,7 @@ static void draw_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
     const bool right = x > (plot->low.x + plot->high.x) / 2;
     sketch_line(sketch, (Point){x, plot->low.y}, (Point){x, plot->high.y}, &pen);
     sketch_text(sketch, (Point){x + (right ? -0.8 : 0.8), plot->low.y + 0.6 * line_height(d->spec->points)},
-                &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "bomb hits");
+                &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "impact");
 }
 
 static bool draw_plot(const Divergence *d, Sketch *sketch, Range range, Error *error) {

@@ -61,7 +61,7 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
     if (outside > 0)
         sketch_text(sketch, (Point){high.x - 0.8, high.y - line_height(spec->points) / 2},
-                    &(TextStyle){spec->points * 0.85, TEXT_RIGHT, INK_SOFT, 0, true}, "%d outside", outside);
+                    &(TextStyle){spec->points * 0.85, TEXT_RIGHT, INK_SOFT, 0, true}, "%d out of view", outside);
     return true;
 }
 

@@ -121,7 +121,7 @@ static void draw_texts(const Strobe *strobe, Sketch *sketch) {
     int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &cells->window);
     if (outside > 0)
         sketch_text(sketch, (Point){strobe->low.x + cells->width, y},
-                    &(TextStyle){spec->points, TEXT_RIGHT, INK_SOFT, 0, false}, "%d outside at the end", outside);
+                    &(TextStyle){spec->points, TEXT_RIGHT, INK_SOFT, 0, false}, "%d out of view at the end", outside);
 }
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {

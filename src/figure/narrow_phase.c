@@ -19,7 +19,8 @@ bool collision_find(Collision *collision) {
     }
     if (collision->least < 0) return false;
     collision->normal = collision->manifold.normal;
-    collision->label = collision->least == least_overlap(collision->overlaps) ? "the least" : "nearly the least";
+    collision->label =
+        collision->least == least_overlap(collision->overlaps) ? "smallest overlap" : "near-smallest overlap";
     return true;
 }
 

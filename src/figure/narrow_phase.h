@@ -12,7 +12,7 @@ typedef struct Collision {
     Manifold manifold;
     AxisOverlap overlaps[SEPARATING_AXES];
     int least;         /* index of the overlap whose axis is the manifold's normal */
-    const char *label; /* label of that overlap: "the least" */
+    const char *label; /* label of that overlap: "smallest overlap" */
     char names[2][16];
     double points; /* font size */
     Vec2 normal;   /* the manifold's, in world coordinates (the picture is rotated) */

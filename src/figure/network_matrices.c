@@ -89,7 +89,7 @@ static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error
              matrix->activation);
     text_fit(words, points, all->width);
     sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
-    snprintf(words, sizeof words, "%d to %d, at most %.2g", matrix->inputs, matrix->outputs, largest);
+    snprintf(words, sizeof words, "%d to %d, max |w| %.2g", matrix->inputs, matrix->outputs, largest);
     text_fit(words, small, all->width);
     sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
                 words);
@@ -101,8 +101,8 @@ static void draw_color_scale(const Matrices *all, Sketch *sketch) {
     enum { STEPS = 20 };
     const double points = small_type * all->spec->points, y = 0.5 * line_height(points), high = 2, cell = 1;
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
-    sketch_text(sketch, (Point){0.2, y}, &words, "below 0");
-    double x = 0.2 + type_width("below 0", points) + 1.2;
+    sketch_text(sketch, (Point){0.2, y}, &words, "negative");
+    double x = 0.2 + type_width("negative", points) + 1.2;
     const double start = x;
     for (int i = 0; i < STEPS; i++, x += cell) {
         const Pen pen = {weight_colour(2.0 * i / (STEPS - 1) - 1), 1, NO_COLOUR, 0, NULL};
@@ -110,7 +110,7 @@ static void draw_color_scale(const Matrices *all, Sketch *sketch) {
     }
     sketch_rectangle(sketch, (Point){start, y - high / 2}, (Point){x, y + high / 2},
                      &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
-    sketch_text(sketch, (Point){x + 1.2, y}, &words, "above 0; inputs from left to right");
+    sketch_text(sketch, (Point){x + 1.2, y}, &words, "positive; columns: inputs, rows: outputs");
 }
 
 static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, const char *title,
@@ -160,9 +160,9 @@ static Matrix layer_matrix(const char *name, const SlotLayer *layer) {
 bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const SlotNetwork *network, Error *error) {
     const Matrix matrices[] = {
         projection_matrix("bomb's state", &network->bomb_state),
-        projection_matrix("others' state", &network->state),
-        projection_matrix("contacts there", &network->present),
-        projection_matrix("warm impulses", &network->warm),
+        projection_matrix("other bodies' state", &network->state),
+        projection_matrix("contact flags", &network->present),
+        projection_matrix("warm-start impulses", &network->warm),
         layer_matrix("layer 1", &network->first),
         layer_matrix("layer 2", &network->second),
         {"impulses", "linear", network->rows, network->second.to, 2 * network->slot_count, false},

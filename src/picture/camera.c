@@ -6,8 +6,8 @@
 #include <math.h>
 
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
-static const double MIN_SIDE = 2.0;    /* m */
-static const double MIN_VIEW = 1e-3;    /* m; the smallest view that a scene may set */
+static const double MIN_SIDE = 2.0;      /* m */
+static const double MIN_VIEW = 1e-3;     /* m; the smallest view that a scene may set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 

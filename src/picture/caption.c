@@ -87,7 +87,7 @@ static void draw_slow(const Picture *picture, Moment moment, int x, int right, D
     const Layout *layout = &picture->layout;
     char text[64];
     if (moment.slow <= 1) return;
-    snprintf(text, sizeof text, "slow motion 1/%d, poses between frames", moment.slow);
+    snprintf(text, sizeof text, "slow motion 1/%d, interpolated poses", moment.slow);
     x += layout->status.pixels;
     font_add_fitting(drawing, &layout->status, text, x, layout->header_baseline, right - x, picture->theme->ink_soft);
 }
@@ -95,7 +95,7 @@ static void draw_slow(const Picture *picture, Moment moment, int x, int right, D
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Item items[3] = {time_item(picture, moment), frame_item(picture, moment.frame),
-                           distance_item("apart ", picture_distance(picture, moment), picture->largest_distance)};
+                           distance_item("distance ", picture_distance(picture, moment), picture->largest_distance)};
     int count = is_pair(picture) ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
     for (int i = 0; i < count; i++) {
         int left = x - item_width(&layout->status, &items[i]);
@@ -170,7 +170,7 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
     }
     char state[CAPTION_SIZE];
     if (run > 0 && !is_pair(picture)) {
-        Item item = distance_item("apart ", picture_run_distance(picture, run, moment), picture->run_largest[run]);
+        Item item = distance_item("distance ", picture_run_distance(picture, run, moment), picture->run_largest[run]);
         right -= item_width(&layout->method, &item);
         draw_item(picture, &layout->method, &item, right, baseline, drawing);
         right -= layout->method.pixels;

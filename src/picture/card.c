@@ -125,7 +125,7 @@ static void draw_distances(const Card *card, int run, int baseline, const int co
 }
 
 static void draw_end(const Card *card) {
-    static const char *const heads[] = {"at the end", "largest", "1 mm apart at"};
+    static const char *const heads[] = {"at the end", "largest", "> 1 mm at"};
     const Picture *picture = card->picture;
     const Theme *theme = picture->theme;
     char title[CAPTION_SIZE], note[CAPTION_SIZE], text[2 * CAPTION_SIZE];

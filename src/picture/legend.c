@@ -109,7 +109,7 @@ static void add_velocity(Row *row) {
 }
 
 static void add_heads(Row *row) {
-    add_text(row, "(two heads: longer than shown)");
+    add_text(row, "(two heads: arrow truncated to fit)");
     end_entry(row);
 }
 

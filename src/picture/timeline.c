@@ -167,7 +167,7 @@ static void draw_events(const Picture *picture, Drawing *drawing) {
         x_divergence = divergence < 0 ? end : (int)x_at(picture, divergence);
     if (impact >= 0) draw_event(picture, impact, "impact", impact < divergence ? x_divergence : end, drawing);
     if (divergence >= 0)
-        draw_event(picture, divergence, "first body 1 mm apart", divergence <= impact ? x_impact : end, drawing);
+        draw_event(picture, divergence, "distance > 1 mm", divergence <= impact ? x_impact : end, drawing);
 }
 
 /* The title of the curves, and a sample line for each run. */

@@ -237,7 +237,7 @@ const ContactSolverKind solver_scene_net = {
     .description = {.name = "scene-net",
                     .summary = "a network predicts all impulses of a scene at impacts; sweeps follow",
                     .settings = settings,
-                    .title = "Network of the scene",
+                    .title = "Scene network",
                     .needs_network = true,
                     .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1")},
     .create = create,

@@ -89,7 +89,7 @@ run 2 diverge engine.npz more.npz --tolerance -1
 complains "--tolerance: error:"
 run 2 diverge engine.npz more.npz --tolerance nan
 run 2 diverge engine.npz more.npz short.npz
-complains "only two runs can be compared"
+complains "only 2 runs can be given"
 run 3 diverge engine.npz more.npz --csv /nowhere/distance.csv
 complains "/nowhere/distance.csv"
 finish

@@ -79,7 +79,7 @@ refused "needed" strip engine.npz
 refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
 refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
 refused "network needs 1 network (.npz), not 0" network -o a.png
-refused "at most 6 runs" strip 1 2 3 4 5 6 7 -o a.png
+refused "only 7 arguments can be given" strip 1 2 3 4 5 6 7 -o a.png
 refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
 refused "--width: error: '39'" strip engine.npz -o a.png --width 39
 refused "--dpi: error: '1201'" strip engine.npz -o a.png --dpi 1201

@@ -37,7 +37,7 @@ static char *read_text(const char *path) {
 }
 
 /* What a command prints; the caller frees it. */
-static char *run_command(int (*command)(int, char **, Error *), char **argv) {
+static char *run_command(bool (*command)(int, char **, Error *), char **argv) {
     Error error = {0};
     const char *path = temporary_path("printed");
     int argc = 0;
@@ -45,16 +45,16 @@ static char *run_command(int (*command)(int, char **, Error *), char **argv) {
     fflush(stdout);
     const int before = dup(STDOUT_FILENO);
     assert_non_null(freopen(path, "w", stdout));
-    const int status = command(argc, argv, &error);
+    const bool same = command(argc, argv, &error);
     fflush(stdout);
     dup2(before, STDOUT_FILENO);
     close(before);
-    assert_ok(status == STATUS_SAME, error);
+    assert_ok(same, error);
     return read_text(path);
 }
 
 /* The command writes a table to the path, and the table has the text. */
-static void assert_table_has(int (*command)(int, char **, Error *), char **argv, const char *path, const char *text) {
+static void assert_table_has(bool (*command)(int, char **, Error *), char **argv, const char *path, const char *text) {
     free(run_command(command, argv));
     char *table = read_text(path);
     if (strstr(table, text) == NULL) fail_msg("%s lacks %s", path, text);

@@ -85,6 +85,8 @@ complains "cut.npz: error:"
 [ -e x ] && fail "a refused command made a folder"
 run 2 render single.yaml -o x --video a.mp4 --video a.mp4
 complains "'a.mp4' twice"
+run 2 render single.yaml -o x $(seq -f '--video %g.mp4' 9)
+complains "--video: error: can be given at most 8 times"
 mkdir folder.gif
 run 2 render single.yaml -o x --video folder.gif
 complains "folder.gif: error: is not a regular file"

@@ -110,7 +110,11 @@ run 2 simulate "$scenes/pyramid.yaml" --frames 1000000
 complains "too many to record"
 run 2 simulate "$scenes/single.yaml" --no-bomb --bomb-x 3
 run 2 simulate "$scenes/single.yaml" "$scenes/stack.yaml"
-complains "only one scene can be given"
+complains "only 1 scene can be given ('"
+run 2 simulate "$scenes/stack.yaml" --dt 0 --frames 0 # the first of several errors
+complains "--dt: error: '0'"
+run 2 simulate --dt 0
+complains "a scene file is needed"
 run 2 simulate "$scenes/single.yaml" --method pair-net:network=nowhere.npz
 complains "nowhere.npz"
 run 2 simulate "$scenes/single.yaml" --method pair-net:network="$scenes/single.yaml"

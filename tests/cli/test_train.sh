@@ -27,7 +27,7 @@ complains "--kind: error: 'magic' is not a kind; known: pair-net, momentum-sched
 run 2 train --kind momentum-schedule nowhere.yaml -o x.npz --seed 2 --iterations 1
 complains "nowhere.yaml"
 run 2 train one.npz two.npz -o x.npz
-complains "one file at a time ('two.npz' is a second)"
+complains "only 1 file can be given ('two.npz' is one more)"
 
 # The command that is stored trains the same again.
 sed 's/^frames:.*/frames: 60/' "$scenes/single.yaml" >single.yaml

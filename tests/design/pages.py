@@ -7,17 +7,16 @@
 - Every page can be reached from README.md. Every relative link, picture and anchor exists in a fresh clone.
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
-  FOLDER, COMMAND and WHAT stand for any text.
-- Every option after `twinbox COMMAND` in a shell block or a sentence, or in an example of its
-  help, is one of that command.
+  FOLDER, COMMAND and WHAT stand for any text. So does every test that a page names.
+- Every option after `twinbox COMMAND` in a shell block, a sentence or an example of --help is one of that command.
 - Marked blocks run, page by page from top to bottom, in a fresh copy of the sources with twinbox on PATH, as a user
   would type them. The marks are words after the language of a block and are invisible when rendered:
 
       ```sh quick            is run by bash and must succeed
-      ```sh quick status=1   its last command must end with this status
-      ```python quick        is run by Python
+      ```sh quick status=1   must end with this status
+      ```python quick        is run by Python, without warnings
       ```yaml file=NAME      is written to a file; so is any other language
-      ```text output         is the output of the block before; "..." stands for any text or lines, and times are not compared
+      ```text output         is the output of the block before: "..." is any text or lines, times are not compared
 """
 import glob
 import os
@@ -28,9 +27,10 @@ import sys
 import tempfile
 import urllib.parse
 
+from markdown_page import Page
+
 README_LINES, README_WORDS = 150, 1300
 NOT_IN_A_CLONE = {".git", "build", "out"}
-TEMPLATE = "src/paper/report/report.md"  # its links are to files beside the report that is made of it
 PLACEHOLDER = re.compile("NAME|FOLDER|COMMAND|WHAT")
 TIME = re.compile(r"\d[\d.]*(e[+-]?\d+)?( ?(ns|µs|us|ms|s|min)\b)")
 
@@ -50,80 +50,20 @@ def find_pages():
     for folder, names, files in os.walk(root):
         names[:] = sorted(name for name in names if name not in NOT_IN_A_CLONE)
         for file in sorted(files):
-            path = os.path.relpath(os.path.join(folder, file), root)
-            if path.endswith(".md") and path != TEMPLATE:
-                yield path
+            if file.endswith(".md"):
+                yield os.path.relpath(os.path.join(folder, file), root)
 
 
-class Block:
-    def __init__(self, line, fence, info):
-        words = info.split()
-        self.line, self.fence, self.language, self.marks = line, fence, words[0] if words else "", words[1:]
-        self.lines = []
-
-    def text(self):
-        return "".join(line + "\n" for line in self.lines)
-
-    def value(self, key, default=None):
-        return next((mark[len(key) + 1:] for mark in self.marks if mark.startswith(key + "=")), default)
+pages = {path: Page(root, path) for path in find_pages()}
 
 
-def slug(heading, seen):
-    """An anchor as GitHub makes it."""
-    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
-    text = re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
-    seen[text] = seen.get(text, -1) + 1
-    return text if seen[text] == 0 else f"{text}-{seen[text]}"
-
-
-class Page:
-    """Headings, links and blocks of a page."""
-
-    def __init__(self, path):
-        self.path, self.anchors, self.links, self.blocks = path, set(), [], []
-        block, seen, prose = None, {}, []
-        with open(os.path.join(root, path), encoding="utf-8") as file:
-            self.lines = file.read().split("\n")
-        for number, line in enumerate(self.lines, 1):
-            fence = re.match(r" *(```+)(.*)", line)
-            if fence and block is None:
-                block = Block(number, fence[1], fence[2])
-                self.blocks.append(block)
-            elif fence and fence[1] >= block.fence and not fence[2].strip():
-                block = None
-            elif block is not None:
-                block.lines.append(line)
-            else:
-                if heading := re.match(r"#+ (.*)", line):
-                    self.anchors.add(slug(heading[1], seen))
-                prose.append((number, line))
-        check(block is None, path, "a block has no end")
-        self.find_links(prose)
-
-    def find_links(self, prose):
-        # Links may break over lines; code in a sentence is no link.
-        text = "".join(f"{line}\n" for _, line in prose)
-        self.commands = [(prose[text.count("\n", 0, code.start())][0], code[1])
-                         for code in re.finditer(r"`(twinbox [^`]*)`", text)]
-        text = re.sub(r"`[^`\n]*`", lambda code: " " * len(code[0]), text)
-        for link in re.finditer(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)|<(?:a|img)\s[^>]*>", text):
-            number = prose[text.count("\n", 0, link.start())][0]
-            if link[3]:
-                self.links.append((number, link[1] == "!", link[2], link[3]))
-                continue
-            values = dict(re.findall(r'(\w+)="([^"]*)"', link[0]))
-            self.links.append((number, "src" in values, values.get("alt", ""), values.get("src", values.get("href", ""))))
-
-
-pages = {path: Page(path) for path in find_pages()}
-
-
-def check_link(page, line, picture, text, target):
-    place = f"{page.path}:{line}"
+def check_link(page, link):
+    """Returns the path that it leads to."""
+    place, target = f"{page.path}:{link.line}", link.target
     if re.match(r"[a-z]+:", target):
         check(target.startswith("https://"), place, f"'{target}' is not an https link")
         return None
-    check(not picture or len(text) > 10, place, f"the picture {target} has no description")
+    check(not link.is_picture or len(link.text) > 10, place, f"the picture {target} has no description")
     file, _, anchor = urllib.parse.unquote(target).partition("#")
     path = os.path.normpath(os.path.join(os.path.dirname(page.path), file)) if file else page.path
     inside = not path.startswith("..") and path.split(os.sep)[0] not in NOT_IN_A_CLONE
@@ -137,12 +77,17 @@ def check_link(page, line, picture, text, target):
 
 def check_links():
     reached, new = set(), {"README.md"}
-    targets = {path: {check_link(page, *link) for link in page.links} for path, page in pages.items()}
+    targets = {path: {check_link(page, link) for link in page.links} for path, page in pages.items()}
     while new:
         reached |= new
         new = {target for path in new for target in targets[path] if target in pages} - reached
     for path in pages:
         check(path in reached, path, "no link leads from README.md to this page")
+
+
+def check_blocks_end():
+    for page in pages.values():
+        check(page.is_closed, page.path, "a block has no end")
 
 
 def check_readme():
@@ -158,6 +103,10 @@ def check_paths(page):
         for path in re.findall(r"(?<![\w/.-])(?:src|tests|scenes|golden|shaders)/[\w./*-]*[\w*]", line):
             known = path in written or glob.glob(os.path.join(root, PLACEHOLDER.sub("*", path)))
             check(known, f"{page.path}:{number}", f"there is no {path}")
+        for folder, what in re.findall(r"`([a-z_]+)/([a-z_]+)`", line):
+            if os.path.isdir(os.path.join(root, "tests", folder)) and not os.path.exists(os.path.join(root, folder)):
+                known = glob.glob(os.path.join(root, "tests", folder, f"test_{what}.*"))
+                check(known, f"{page.path}:{number}", f"there is no test {folder}/{what}")
 
 
 helps = {}
@@ -210,8 +159,10 @@ def run(place, block, folder):
     status = int(block.value("status", "0"))
     environment = {**os.environ, "PATH": f"{os.path.dirname(twinbox)}:{os.environ['PATH']}"}
     text = block.text()
-    command = ["bash", "-c", f"set -e -o pipefail\n{text}"] if block.language == "sh" else ["/usr/bin/python3", "-c", text]
-    done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    shell = ["bash", "-c", f"set -e -o pipefail\n{text}"]
+    command = shell if block.language == "sh" else ["/usr/bin/python3", "-c", text]
+    done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True)
     check(done.returncode == status, place,
           f"exit status {done.returncode}, not {status}: {(done.stderr + done.stdout)[-800:]}")
     check(block.language != "python" or not done.stderr, place, f"warnings: {done.stderr}")
@@ -249,6 +200,7 @@ def check_blocks():
             run_blocks(page, clone)
 
 
+check_blocks_end()
 check_links()
 check_readme()
 for page in pages.values():

@@ -100,7 +100,7 @@ static void numbers_without_room_are_left_out(void **state) {
     draw_kind(&sketch, "annotated", &spec);
     int written = count_texts(&sketch, "0.10") + count_texts(&sketch, "3.00");
     char line[64];
-    snprintf(line, sizeof line, "101 contacts, impulses in N s, %d of them written", written);
+    snprintf(line, sizeof line, "101 contacts, impulses in N s, %d labelled", written);
     assert_true(written > 1 && written < 40);
     assert_int_equal(count_texts(&sketch, line), 1);
     assert_int_equal(count_texts(&sketch, "3.00"), 1);

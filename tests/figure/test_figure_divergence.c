@@ -42,7 +42,7 @@ static void growth_by_a_factor_is_a_straight_line(void **state) {
         assert_near(points[i].x, points[0].x + across * i, 1e-9);
         assert_near(points[i].y, points[60].y - up * (60 - i), 0.05);
     }
-    assert_int_equal(count_texts(&sketch, "pair-net from engine"), 1);
+    assert_int_equal(count_texts(&sketch, "pair-net vs engine"), 1);
     assert_int_equal(count_texts(&sketch, "largest distance (m)"), 1);
     assert_int_equal(count_texts(&sketch, "time (s)"), 1);
     assert_int_equal(count_texts(&sketch, "0.0"), 1);
@@ -89,7 +89,7 @@ static void the_band_begins_with_the_shift(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "divergence", &spec);
     assert_int_equal(count_texts(&sketch, "engine, one of 5 bodies shifted by 1 \xC2\xB5m"), 1);
-    assert_int_equal(count_texts(&sketch, "bomb hits"), 1);
+    assert_int_equal(count_texts(&sketch, "impact"), 1);
     const SketchMark *band = NULL, *line = longest_line(&sketch);
     for (size_t i = 0; i < sketch.mark_count && band == NULL; i++)
         if (sketch.marks[i].closed && sketch.marks[i].count == 82) band = &sketch.marks[i];

@@ -98,7 +98,7 @@ static void wide_layers_are_matrices(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
     assert_int_equal(count_marks(&sketch, MARK_IMAGE), 1);
-    assert_int_equal(count_texts(&sketch, "50 to 2, at most 2"), 1);
+    assert_int_equal(count_texts(&sketch, "50 to 2, max |w| 2"), 1);
     const Image *image = nth_mark(&sketch, MARK_IMAGE, 0)->image;
     const uint8_t first[] = {0x00, 0x4C, 0x80, 255}, last[] = {0xF2, 0xCF, 0x80, 255}, none[] = {255, 255, 255, 255};
     const size_t row = 4 * (size_t)image->width;

@@ -76,7 +76,7 @@ static void who_has_left_is_counted(void **state) {
     spec.moments = 2;
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
-    assert_int_equal(count_texts(&sketch, "2 outside"), 1);
+    assert_int_equal(count_texts(&sketch, "2 out of view"), 1);
     sketch_free(&sketch);
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);

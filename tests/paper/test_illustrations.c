@@ -70,8 +70,8 @@ static void drawings_say_what_they_show(void **state) {
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
     expect_texts("narrow-phase",
-                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "the least", "reference edge",
-                                       "incident edge", "side plane", "normal (", NULL});
+                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "smallest overlap",
+                                       "reference edge", "incident edge", "side plane", "normal (", NULL});
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
     expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",

@@ -52,8 +52,8 @@ static void draw_pair(Sketch *sketch, const SweepRow *row) {
 
 /* The legend of arrows and letters. */
 static void draw_key(Sketch *sketch) {
-    static const char *const arrows[] = {"velocity before", "its change"};
-    static const char *const letters[] = {"dx, dy: b as seen from a", "v: velocity, w: spin", "dv, dw: their changes"};
+    static const char *const arrows[] = {"velocity before", "velocity change"};
+    static const char *const letters[] = {"dx, dy: b relative to a", "v: velocity, w: spin", "dv, dw: their changes"};
     const uint32_t colours[] = {ACCENT, NETWORK_COLOUR};
     const TextStyle words = {7.5, TEXT_LEFT, INK, 0, false};
     Point at = {split + 61, height - 11};
@@ -88,7 +88,7 @@ static void draw_row(Sketch *sketch, const SweepRow *row) {
     draw_numbers(sketch, (Point){second, top - 8.5}, input_names + 5, row->inputs + 5, 5);
     draw_numbers(sketch, (Point){third + 1, top - 8.5}, change_names, row->changes, 6);
     sketch_text(sketch, (Point){split, 4.5}, &(TextStyle){7.5, TEXT_LEFT, INK, 0, false},
-                "The two outputs: change of b as seen from a, (%s, %s) m/s",
+                "The two outputs: velocity change of b relative to a, (%s, %s) m/s",
                 show_decimals((double)row->changes[3] - (double)row->changes[0], 3).text,
                 show_decimals((double)row->changes[4] - (double)row->changes[1], 3).text);
 }

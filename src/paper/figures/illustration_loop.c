@@ -95,7 +95,7 @@ static void draw_network(Sketch *sketch, const StepCounts *counts) {
     const TextStyle heading = {9, TEXT_CENTER, NETWORK_INK, 0, false}, words = {7.5, TEXT_CENTER, INK, 0, false};
     double middle = (low.x + high.x) / 2;
     sketch_text(sketch, (Point){middle, 11}, &heading, "Neural network, in place of the solver");
-    sketch_text(sketch, (Point){middle, 5}, &words, "%d predictions, one a touching pair: %d numbers in, %d out",
+    sketch_text(sketch, (Point){middle, 5}, &words, "%d predictions, one per touching pair: %d inputs, %d outputs",
                 counts->touching, PAIR_INPUTS, PAPER_OUTPUTS);
     sketch_arrow(sketch, (Point){middle, high.y + 0.6}, (Point){middle, low_row - 0.8}, HEAD_AT_END, NETWORK_INK, 2);
 }
@@ -120,7 +120,7 @@ static void draw_stages(Sketch *sketch, const StepCounts *c) {
     snprintf(first, LINE_SIZE, "%d sweeps over %d points:", c->sweeps, c->points);
     snprintf(second, LINE_SIZE, "%d pairs of impulses", c->sweeps * c->points);
     draw_stage(sketch, corner(1, low_row), "5  Constraint solving", first, second, &solving, NETWORK_INK);
-    snprintf(first, LINE_SIZE, "New velocities carry %d bodies", c->moving);
+    snprintf(first, LINE_SIZE, "New velocities move %d bodies", c->moving);
     snprintf(second, LINE_SIZE, "for 1/%.4g s, the bomb %.2f m", c->steps_a_second, c->bomb_moved);
     draw_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
 }

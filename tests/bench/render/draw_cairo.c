@@ -90,8 +90,8 @@ static void draw_texts(cairo_t *cairo, const Picture *picture, int frame) {
     const Layout *layout = &picture->layout;
     char text[160];
     draw_text(cairo, layout->scene.pixels, layout->left, layout->header_baseline, picture->runs[0]->scene);
-    snprintf(text, sizeof text, "apart %.2f m   frame %d   t = %.3f s", picture_distance(picture, moment_stored(frame)),
-             frame, frame * (double)picture->runs[0]->dt);
+    snprintf(text, sizeof text, "distance %.2f m   frame %d   t = %.3f s",
+             picture_distance(picture, moment_stored(frame)), frame, frame * (double)picture->runs[0]->dt);
     draw_text(cairo, layout->status.pixels, layout->right - 24 * layout->status.pixels, layout->header_baseline, text);
     for (int i = 0; i < picture->count; i++) {
         Rect rect = layout->panels[i];
