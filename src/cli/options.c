@@ -85,7 +85,8 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
         rows[i].key = key_of(spec->options, i);
         rows[i].arg = row->value;
     }
-    const struct argp argp = {.options = rows,
+    /* argp leaks if it gets a table without rows. */
+    const struct argp argp = {.options = rows[0].doc != NULL ? rows : NULL,
                               .parser = parse,
                               .args_doc = spec->input.value != NULL ? spec->input.value : "",
                               .doc = spec->help,
