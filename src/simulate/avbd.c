@@ -22,6 +22,7 @@
    passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft. */
 #include "common/array.h"
 #include "simulate/step_memory.h"
+#include "sweeps/contact_velocity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -122,14 +123,12 @@ static bool reserve(Avbd *avbd, const ContactProblem *problem) {
            array_reserve((void **)&avbd->visits, &avbd->visit_capacity, 2 * contacts, sizeof *avbd->visits);
 }
 
-static float bounded(float value, float low, float high) { return fmaxf(low, fminf(value, high)); }
-
 /* The share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall. */
 static float falling(const Avbd *avbd, const Body *body, int i, Vec2 gravity, float dt) {
     float square = vec2_dot(gravity, gravity);
     if (!avbd->memory.known[i] || !(square > 0)) return 0;
     Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, avbd->before[i]));
-    return bounded(vec2_dot(acceleration, gravity) / square, 0, 1);
+    return contact_clamp(vec2_dot(acceleration, gravity) / square, 0, 1);
 }
 
 /* A body begins where it would be if its contacts gave it the acceleration of the last step. */
@@ -154,15 +153,23 @@ static AvbdRow make_row(Vec2 axis, Vec2 arm_a, Vec2 arm_b, float start) {
                      .start = start};
 }
 
-/* Multipliers are the world's impulses, so that a copy of a world has them; penalties are known only here. */
+/* A contact that was there begins with the penalty that it had; a new one with the smallest. Of an unknown past, only the
+   impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
+static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, float mass, float dt) {
+    float penalty = last != NULL ? avbd->gamma * last->penalty : loaded ? mass / (dt * dt) : 0;
+    return contact_clamp(penalty, PENALTY_MIN, PENALTY_MAX);
+}
+
+/* Multipliers are the world's impulses, so that a copy of a world has them. */
 static void warm_start(const Avbd *avbd, AvbdContact *contact, const ContactPoint *point, const AvbdContact *last,
                        float dt) {
     const float decay = avbd->alpha < 0 ? 1.0f : avbd->alpha * avbd->gamma;
-    contact->normal.force = decay * point->warm_normal / dt;
-    contact->tangent.force = decay * point->warm_tangent / dt;
-    const float normal = last != NULL ? last->normal.penalty : 0, tangent = last != NULL ? last->tangent.penalty : 0;
-    contact->normal.penalty = bounded(avbd->gamma * normal, PENALTY_MIN, PENALTY_MAX);
-    contact->tangent.penalty = bounded(avbd->gamma * tangent, PENALTY_MIN, PENALTY_MAX);
+    const bool loaded = point->warm_normal > 0;
+    AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
+    normal->force = decay * point->warm_normal / dt;
+    tangent->force = decay * point->warm_tangent / dt;
+    normal->penalty = first_penalty(avbd, last != NULL ? &last->normal : NULL, loaded, point->mass_normal, dt);
+    tangent->penalty = first_penalty(avbd, last != NULL ? &last->tangent : NULL, loaded, point->mass_tangent, dt);
 }
 
 static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt) {
@@ -224,10 +231,13 @@ static float gap(const Avbd *avbd, const AvbdContact *contact, const AvbdRow *ro
            dot(&row->of_b, &avbd->bodies[contact->b].moved);
 }
 
-static float normal_force(const AvbdRow *row, float gap) { return fmaxf(row->force - row->penalty * gap, 0.0f); }
+static float normal_force(const AvbdRow *row, float gap) {
+    float force = row->force - row->penalty * gap;
+    return 0.0f > force ? 0.0f : force;
+}
 
 static float tangent_force(const AvbdRow *row, float gap, float most) {
-    return bounded(row->force - row->penalty * gap, -most, most);
+    return contact_clamp(row->force - row->penalty * gap, -most, most);
 }
 
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
@@ -285,7 +295,7 @@ static void visit_bodies(Avbd *avbd, float share) {
 }
 
 static void raise_penalty(const Avbd *avbd, AvbdRow *row, float gap) {
-    row->penalty = fminf(row->penalty + avbd->beta * fabsf(gap), PENALTY_MAX);
+    row->penalty = contact_clamp(row->penalty + avbd->beta * fabsf(gap), PENALTY_MIN, PENALTY_MAX);
 }
 
 /* The friction bound is that of the normal force before this update, as in the visits. */

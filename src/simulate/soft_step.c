@@ -18,6 +18,7 @@
    Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. */
 #include "common/array.h"
 #include "simulate/step_memory.h"
+#include "sweeps/contact_velocity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,7 +108,7 @@ static Softness make_softness(float hertz, float damping, float h) {
 
 /* A spring of a higher frequency than an eighth of the substeps' would swing. */
 static void set_softness(SoftStep *stepping, const Scene *scene, float h) {
-    const float hertz = fminf(stepping->hertz, 0.125f / h);
+    const float highest = 0.125f / h, hertz = stepping->hertz < highest ? stepping->hertz : highest;
     const Softness rigid = {1, 0, 0};
     stepping->moving = scene->position_correction ? make_softness(hertz, stepping->damping, h) : rigid;
     stepping->fixed = scene->position_correction ? make_softness(2.0f * hertz, stepping->damping, h) : rigid;
@@ -215,13 +216,13 @@ static void solve_normal(const SoftPair *pair, SoftPoint *point, SoftBody *a, So
     const float gap = separation(a, b, point, pair->normal);
     float bias = gap * inverse_h, mass_share = 1, impulse_share = 0;
     if (!(gap > 0)) {
-        bias = fmaxf(softness->bias_rate * gap, -PUSH_OUT_SPEED);
+        bias = contact_clamp(softness->bias_rate * gap, -PUSH_OUT_SPEED, 0);
         mass_share = softness->mass_share;
         impulse_share = softness->impulse_share;
     }
     float velocity = vec2_dot(relative_velocity(a, b, point), pair->normal), old = point->impulse.normal;
-    point->impulse.normal =
-        fmaxf(old - point->mass_normal * (mass_share * velocity + bias) - impulse_share * old, 0.0f);
+    float sum = old - point->mass_normal * (mass_share * velocity + bias) - impulse_share * old;
+    point->impulse.normal = 0.0f > sum ? 0.0f : sum;
     point->total.normal += point->impulse.normal - old;
     push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
 }
@@ -230,7 +231,7 @@ static void solve_friction(const SoftPair *pair, SoftPoint *point, SoftBody *a, 
     const Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
     float velocity = vec2_dot(relative_velocity(a, b, point), tangent), old = point->impulse.tangent;
     float most = pair->friction * point->impulse.normal;
-    point->impulse.tangent = fmaxf(-most, fminf(old - point->mass_tangent * velocity, most));
+    point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
     point->total.tangent += point->impulse.tangent - old;
     push(a, b, point, vec2_scale(point->impulse.tangent - old, tangent));
 }
@@ -241,7 +242,7 @@ static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
     for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
         SoftPoint *points = &stepping->points[pair->first];
         SoftBody a = stepping->bodies[pair->a], b = stepping->bodies[pair->b];
-        const Softness *softness = relaxing ? &rigid : pair->softness;
+        const Softness *softness = pair->softness;
         for (int k = 0; k < pair->count; k++) solve_normal(pair, &points[k], &a, &b, softness, inverse_h);
         for (int k = 0; relaxing && k < pair->count; k++) solve_friction(pair, &points[k], &a, &b);
         stepping->bodies[pair->a] = a;
