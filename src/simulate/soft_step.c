@@ -11,9 +11,9 @@
    w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close, no
    more. The arms of impulses stay those of the collision pass; s follows the poses.
 
-   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are CONTACT_SLOP inside the boxes: boxes
-   rest at the engine's overlap, and contacts do not come and go. Box2D's bounds on speed, continuous collision, sleeping
-   and restitution are left out. One contact after the other, not four at a time.
+   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
+   contacts would come and go. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
+   visits one contact after the other, not four at a time.
 
    Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. */
 #include "common/array.h"
@@ -24,6 +24,7 @@
 #include <stdlib.h>
 
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
+#define SKIN 0.005f         /* m, Box2D's linear slop */
 
 /* c, 1 - c and c r of the equation above. */
 typedef struct Softness {
@@ -130,6 +131,14 @@ static ContactImpulse warm_start(const SoftStep *stepping, const ContactPoint *c
     return (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
 }
 
+/* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP are
+   at rest. */
+static float first_gap(const SoftStep *stepping, const ContactPoint *contact, int i) {
+    const float gap = contact->separation + SKIN;
+    const bool closed = stepping->memory.before[i] < 0 && contact->warm_normal > 0;
+    return closed && gap > 0 ? 0 : gap;
+}
+
 static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     SoftPair *last = stepping->pair_count > 0 ? &stepping->pairs[stepping->pair_count - 1] : NULL;
@@ -145,10 +154,10 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                                                              contact->friction,
                                                              moving ? &stepping->moving : &stepping->fixed};
     }
-    Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
+    const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
     stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
                                       .arm_b = contact->arm_b,
-                                      .base = contact->separation + CONTACT_SLOP - vec2_dot(between, contact->normal),
+                                      .base = first_gap(stepping, contact, i) - vec2_dot(between, contact->normal),
                                       .mass_normal = contact->mass_normal,
                                       .mass_tangent = contact->mass_tangent,
                                       .impulse = warm_start(stepping, contact, i)};
@@ -242,7 +251,7 @@ static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
     for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
         SoftPoint *points = &stepping->points[pair->first];
         SoftBody a = stepping->bodies[pair->a], b = stepping->bodies[pair->b];
-        const Softness *softness = pair->softness;
+        const Softness *softness = relaxing ? &rigid : pair->softness;
         for (int k = 0; k < pair->count; k++) solve_normal(pair, &points[k], &a, &b, softness, inverse_h);
         for (int k = 0; relaxing && k < pair->count; k++) solve_friction(pair, &points[k], &a, &b);
         stepping->bodies[pair->a] = a;
