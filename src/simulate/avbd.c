@@ -5,7 +5,7 @@
    d is the displacement of a body in the step (x, y, angle), y = v dt + g dt^2 what it would be without contacts, J the
    gradient of a contact's gap C(d) = C0 + J d. A visit of a body solves one 3 x 3 system,
 
-       (M / dt^2 + sum k J J^T) delta = -M / dt^2 (d - y) + sum J f,   f = l - k C, f >= 0, or |f| <= friction * l_normal
+       (M / dt^2 + sum k J J^T) delta = -M / dt^2 (d - y) + sum J f,   f = l - k C,   f >= 0 or |f| <= mu l_normal
 
    and adds delta to d. After each pass over the bodies, every contact takes l = f, and the penalty k rises by beta |C|
    while f is inside its bounds. l and k are those of the step before, k times gamma. So the forces come from the
@@ -153,8 +153,8 @@ static AvbdRow make_row(Vec2 axis, Vec2 arm_a, Vec2 arm_b, float start) {
                      .start = start};
 }
 
-/* A contact that was there begins with the penalty that it had; a new one with the smallest. Of an unknown past, only the
-   impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
+/* A contact that was there begins with the penalty that it had; a new one with the smallest. In a step of unknown past,
+   only the impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
 static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, float mass, float dt) {
     float penalty = last != NULL ? avbd->gamma * last->penalty : loaded ? mass / (dt * dt) : 0;
     return contact_clamp(penalty, PENALTY_MIN, PENALTY_MAX);

@@ -8,8 +8,8 @@
 
        dp = -m (c v + c r s) - (1 - c) p,   c = w h (2 z + w h) / (1 + w h (2 z + w h)),   r = w / (2 z + w h),
 
-   w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close, no
-   more. The arms of impulses stay those of the collision pass; s follows the poses.
+   w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
+   no more. The arms of impulses stay those of the collision pass; s follows the poses.
 
    Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
    contacts would come and go. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
@@ -131,8 +131,8 @@ static ContactImpulse warm_start(const SoftStep *stepping, const ContactPoint *c
     return (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
 }
 
-/* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP are
-   at rest. */
+/* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP
+   are at rest. */
 static float first_gap(const SoftStep *stepping, const ContactPoint *contact, int i) {
     const float gap = contact->separation + SKIN;
     const bool closed = stepping->memory.before[i] < 0 && contact->warm_normal > 0;

@@ -159,8 +159,8 @@ static void overlap_gives_no_velocity(void **state) {
         }
 }
 
-/* A turned box strikes one at rest, hardly overlapping: with overlap, the arms of avbd and of the contact problem end in
-   different points. */
+/* A turned box strikes one at rest, hardly overlapping: with overlap, the arms of avbd and of the contact problem end
+   in different points. */
 static void many_passes_of_avbd_meet_the_reference(void **state) {
     (void)state;
     BodyDef bodies[] = {ground, box_at(0, 0.499f), box_at(0.6f, 1.6537f)};
