@@ -67,7 +67,7 @@ typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */
     ContactImpulse *impulses; /* [contact_count]; zeros from a method without impulses */
     /* N s: momentum that the method created: the sum over pairs of moving bodies of |ma dva + mb dvb|; 0 for a method
-       that applies impulses */
+       that applies impulses; of avbd the sum over bodies of the momentum that its impulses do not account for */
     float momentum_error;
     NetworkFallbacks fallbacks; /* zeros without a network */
 } ContactSolution;

@@ -22,7 +22,9 @@
     SOLVER(constant)              \
     STEPPING(playback)            \
     SOLVER(reference)             \
-    SOLVER(relu_net)
+    SOLVER(relu_net)              \
+    STEPPING(soft_step)           \
+    STEPPING(avbd)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;

@@ -1,35 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A step allocates nothing once the world has warmed up. The linker hands every call of malloc, calloc and realloc
-   in this program to the functions below (tests/CMakeLists.txt). */
+/* A step allocates nothing once the world has warmed up. */
+#include "allocations.h"
 #include "pair_networks.h"
 #include "slot_problems.h"
 
 #include "solvers/scene_net.h"
 #include "solvers/scene_view.h"
-
-static int allocations;
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *block, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *block, size_t size);
-
-void *__wrap_malloc(size_t size) {
-    allocations++;
-    return __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t count, size_t size) {
-    allocations++;
-    return __real_calloc(count, size);
-}
-
-void *__wrap_realloc(void *block, size_t size) {
-    allocations++;
-    return __real_realloc(block, size);
-}
 
 static World *make_pyramid(void) {
     World *world = make_world();

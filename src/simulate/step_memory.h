@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which contacts and bodies of a step are those of the stepper's last step, for steppers that carry more from step to
+   step than the impulses that the world keeps. A body is known only if its state is, bit for bit, the one that the last
+   step ended with: in another world, a copy of an earlier state or a new launch it is not. */
+#pragma once
+#include "dynamics/world.h"
+#include "simulate/stepping.h"
+
+typedef struct KeptContact {
+    int a, b;
+    uint32_t feature;
+} KeptContact;
+
+/* Zero-initialise; free with step_memory_free. */
+typedef struct StepMemory {
+    int body_count, contact_count; /* of the last step */
+    Body *bodies;                  /* [body_count] after it */
+    KeptContact *contacts;         /* [contact_count] */
+    bool *known;                   /* [bodies of this step] */
+    int *before;                   /* [contacts of this step] index of the same point in the last step, or -1 */
+    size_t body_capacity, contact_capacity, known_capacity, before_capacity;
+} StepMemory;
+
+void step_memory_free(StepMemory *memory);
+
+/* Fills `known` and `before` for a step that has begun; nothing is known in the first step of a run, and no contact
+   without warm starting. False when memory is short. */
+bool step_memory_match(StepMemory *memory, const World *world, const Step *step);
+
+/* Call it after the step has ended; it does not fail, as step_memory_match has reserved the arrays. */
+void step_memory_keep(StepMemory *memory, const World *world);
