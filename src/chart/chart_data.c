@@ -38,10 +38,18 @@ static void split_setting(const char *setting, char *numbers, char *words) {
     }
 }
 
+/* A method that can have a fixed number of sweeps runs until a residual instead. */
+static bool by_rule(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    const char *near = strstr(row->setting, "near=");
+    return near != NULL && (near == row->setting || near[-1] == ',') && method != NULL &&
+           settings_known(method->settings, "k");
+}
+
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE], words[2 * CHART_SETTING_SIZE];
     split_setting(row->setting, numbers, words);
-    snprintf(key, CHART_KEY_SIZE, "%s%s", row->method, words);
+    snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, by_rule(row) ? ", near" : "", words);
     chart_plain(label, numbers);
 }
 

@@ -72,13 +72,33 @@ void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->before.velocities);
     free(momentum->before.impulses);
+    free(momentum->more_factors);
     *momentum = (Momentum){0};
+}
+
+bool momentum_read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
+    StoppingRule *rule = &momentum->rule;
+    if (!stopping_read(rule, chosen, error)) return false;
+    if (rule->more == 0) return true;
+    momentum->more_factors = malloc((size_t)rule->more * sizeof *momentum->more_factors);
+    if (momentum->more_factors == NULL) return error_memory(error, "momentum");
+    for (int s = 0; s < rule->more; s++) momentum->more_factors[s] = momentum_factor_tuned(s, rule->more);
+    return true;
+}
+
+bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
+    for (int done = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
+        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, STOPPING_BLOCK)
+                        : sweeps_continue_momentum(sweeps, factors + done, STOPPING_BLOCK)))
+            return false;
+    return true;
 }
 
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
                     ContactSolution *solution, Error *error) {
     if (!sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) ||
-        !sweeps_run_momentum(&momentum->sweeps, factors, count))
+        !sweeps_run_momentum(&momentum->sweeps, factors, count) ||
+        !momentum_run_more(&momentum->sweeps, problem, &momentum->rule, momentum->more_factors))
         return error_memory(error, "momentum");
     if (sweeps_end(&momentum->sweeps, solution)) return true;
     ContactSolution *before = &momentum->before;
@@ -97,8 +117,8 @@ typedef struct State {
     float *factors; /* [sweep_count] */
 } State;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
 
 static void destroy(void *state) {
     State *solver = state;
@@ -120,7 +140,9 @@ static void *create(const Settings *chosen, Error *error) {
     }
     solver->sweep_count = sweep_count;
     for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_tuned(s, sweep_count);
-    return solver;
+    if (momentum_read_rule(&solver->momentum, chosen, error)) return solver;
+    destroy(solver);
+    return NULL;
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -132,7 +154,7 @@ const ContactSolverKind solver_momentum = {
     .description = {.name = "momentum",
                     .summary = "sequential impulses with momentum extrapolation between sweeps",
                     .settings = settings,
-                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.5", "near=0.1", "near=0.02"),
                     .chart_quick = METHOD_RUNS("k=10", "k=20"),
                     .stability = METHOD_RUNS("", "k=20"),
                     .stability_place = 3},

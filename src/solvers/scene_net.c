@@ -20,7 +20,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, CHECK_EVERY = 8 };
+enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24 };
 
 /* More sweeps follow the network while the residual is this large; for a calm step, while it is this share of it. */
 static const float near_default = 0.02f; /* m/s, RMS over the contacts */
@@ -43,6 +43,7 @@ typedef struct SceneNet {
     Momentum momentum;
     ScenePrediction prediction;
     float near;                           /* m/s */
+    bool silent;                          /* the network predicts nothing */
     int after, rest, half;                /* sweeps after the network, and without it */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_without_momentum;          /* all of them are 0 */
@@ -54,6 +55,8 @@ static const SettingSpec settings[] = {
     {"network", "file of the trained network (default: the scene's)"},
     {"after", "sweeps after the network (default: as in its training)"},
     {"near", "residual above which more sweeps follow, m/s (default: 0.02)"},
+    {"prediction",
+     "on|off: off: the warm start in place of the network's prediction, and no learned factors (default: on)"},
     {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
     {NULL, NULL}};
 
@@ -73,23 +76,25 @@ static void choose_factors(SceneNet *solver) {
     const SlotNetwork *network = solver->network;
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
+    learned |= solver->silent;
     solver->after_without_momentum = !learned;
     for (int s = 0; s < solver->after; s++)
-        solver->after_factors[s] = solver->after == network->sweeps ? network->factors[s]
-                                   : learned                        ? momentum_factor_tuned(s, solver->after)
-                                                                    : 0;
+        solver->after_factors[s] = solver->after == network->sweeps && !solver->silent ? network->factors[s]
+                                   : learned ? momentum_factor_tuned(s, solver->after)
+                                             : 0;
     for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_tuned(s, solver->rest);
     for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_tuned(s, solver->half);
     for (int s = 0; s < MORE_SWEEPS; s++) solver->more_factors[s] = momentum_factor_tuned(s, MORE_SWEEPS);
 }
 
-static SceneNet *make(const SlotNetwork *network, int after, int rest, float near, Error *error) {
+static SceneNet *make(const SlotNetwork *network, bool silent, int after, int rest, float near, Error *error) {
     SceneNet *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         error_memory(error, "scene-net");
         return NULL;
     }
     solver->network = network;
+    solver->silent = silent;
     solver->after = after;
     solver->rest = rest;
     solver->near = near;
@@ -115,11 +120,12 @@ static void *create(const Settings *chosen, Error *error) {
     if (network == NULL) return NULL;
     int after = network->sweeps, rest = REST_SWEEPS;
     float near = near_default;
+    bool predicts = true;
     SceneNet *solver = NULL;
     if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &after, error) &&
         settings_int(chosen, "rest", 1, SWEEPS_MAX, &rest, error) &&
-        settings_float(chosen, "near", 0, 1e6f, &near, error))
-        solver = make(network, after, rest, near, error);
+        settings_bool(chosen, "prediction", &predicts, error) && settings_float(chosen, "near", 0, 1e6f, &near, error))
+        solver = make(network, !predicts, after, rest, near, error);
     if (solver == NULL)
         slot_network_destroy(network);
     else
@@ -164,17 +170,10 @@ static bool run_after(SceneNet *solver) {
                                           : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* Sweeps until the residual is below `near`, at most `most` times. The remaining error has long waves, such as a heavy
-   bomb on a whole stack, which need momentum with large factors: so this is one run of sweeps, checked every
-   CHECK_EVERY, not many short ones. */
+/* Sweeps until the residual is below `near`, at most `most`. */
 static bool run_more(SceneNet *solver, const ContactProblem *problem, float near, int most) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    const float *factors = solver->more_factors;
-    for (int done = 0; done < most && residual_reaches(sweeps, problem->contact_count, near); done += CHECK_EVERY)
-        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, CHECK_EVERY)
-                        : sweeps_continue_momentum(sweeps, factors + done, CHECK_EVERY)))
-            return false;
-    return true;
+    const StoppingRule rule = {near, most};
+    return momentum_run_more(&solver->momentum.sweeps, problem, &rule, solver->more_factors);
 }
 
 static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
@@ -219,7 +218,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Route route;
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
-    if (route == ROUTE_NETWORK) {
+    if (route == ROUTE_NETWORK && !solver->silent) {
         scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
@@ -229,7 +228,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     }
     if (!run(solver, problem, route)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
-    solution->fallbacks.not_finite += route == ROUTE_NETWORK;
+    solution->fallbacks.not_finite += route == ROUTE_NETWORK && !solver->silent;
     return solve_without(solver, problem, solution, error);
 }
 
@@ -239,13 +238,15 @@ const ContactSolverKind solver_scene_net = {
                     .settings = settings,
                     .title = "Network of the scene",
                     .needs_network = true,
-                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1")},
+                    .twin = "scene-net:prediction=off",
+                    .chart =
+                        METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "prediction=off", "near=0.1,prediction=off")},
     .create = create,
     .solve = solve,
     .destroy = destroy};
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
-    solver->state = make(network, network->sweeps, REST_SWEEPS, near, error);
+    solver->state = make(network, false, network->sweeps, REST_SWEEPS, near, error);
     return solver->state != NULL;
 }

@@ -106,9 +106,9 @@ static void tables_without_a_mark_are_refused(void **state) {
                    "error_mean: '-1' is less than 0");
     expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
     char many[8000] = "";
-    for (int i = 0; i < 25; i++)
+    for (int i = 0; i <= CHART_MAX_LINES; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
-    expect_refused(many, "single", "at most 24 methods");
+    expect_refused(many, "single", "at most 32 methods");
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
@@ -125,10 +125,10 @@ static void a_full_chart_is_drawn(void **state) {
     (void)state;
     Error error = {0};
     char lines[20000] = "";
-    for (int i = 0; i < 24 * 5; i++)
+    for (int i = 0; i < CHART_MAX_LINES * 5; i++)
         snprintf(lines + strlen(lines), 200,
-                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n", i % 24,
-                 i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
+                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
+                 i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
     assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
 }
 
