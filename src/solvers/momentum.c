@@ -68,6 +68,12 @@ float momentum_factor_tuned(int sweep, int count) {
     return rising < most ? rising : most;
 }
 
+float *momentum_factors_make(int count) {
+    float *factors = malloc((size_t)count * sizeof *factors);
+    for (int s = 0; factors != NULL && s < count; s++) factors[s] = momentum_factor_tuned(s, count);
+    return factors;
+}
+
 void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->before.velocities);
@@ -80,10 +86,8 @@ bool momentum_read_rule(Momentum *momentum, const Settings *chosen, Error *error
     StoppingRule *rule = &momentum->rule;
     if (!stopping_read(rule, chosen, error)) return false;
     if (rule->more == 0) return true;
-    momentum->more_factors = malloc((size_t)rule->more * sizeof *momentum->more_factors);
-    if (momentum->more_factors == NULL) return error_memory(error, "momentum");
-    for (int s = 0; s < rule->more; s++) momentum->more_factors[s] = momentum_factor_tuned(s, rule->more);
-    return true;
+    momentum->more_factors = momentum_factors_make(rule->more);
+    return momentum->more_factors != NULL || error_memory(error, "momentum");
 }
 
 bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
@@ -132,14 +136,13 @@ static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
     State *solver = calloc(1, sizeof *solver);
-    if (solver != NULL) solver->factors = malloc((size_t)sweep_count * sizeof *solver->factors);
+    if (solver != NULL) solver->factors = momentum_factors_make(sweep_count);
     if (solver == NULL || solver->factors == NULL) {
         destroy(solver);
         error_memory(error, "momentum");
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_tuned(s, sweep_count);
     if (momentum_read_rule(&solver->momentum, chosen, error)) return solver;
     destroy(solver);
     return NULL;

@@ -17,6 +17,9 @@ void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits,
    the stack and the pyramids together. */
 float momentum_factor_tuned(int sweep, int count);
 
+/* The hand-tuned factors of `count` sweeps; the caller frees them. NULL when memory is short. */
+float *momentum_factors_make(int count);
+
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Momentum {
     Sweeps sweeps;

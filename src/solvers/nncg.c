@@ -46,7 +46,7 @@ static const SettingSpec settings[] = {
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
-    StoppingRule rule;
+    StoppingRule rule = {0};
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
         return NULL;
     Nncg *solver = calloc(1, sizeof *solver);

@@ -40,7 +40,7 @@ static void destroy(void *state) {
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
-    StoppingRule rule;
+    StoppingRule rule = {0};
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
         return NULL;
     Robust *solver = calloc(1, sizeof *solver);

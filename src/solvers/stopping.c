@@ -3,14 +3,12 @@
 
 #include "solvers/residual.h"
 
-enum { MORE_DEFAULT = 48 };
-
 bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error) {
-    *rule = (StoppingRule){.more = 0};
-    if (settings_get(chosen, "near") == NULL)
+    int more = rule->more;
+    if (more == 0 && settings_get(chosen, "near") == NULL)
         return settings_get(chosen, "more") == NULL ||
-               error_input(error, "more", "needs near: more sweeps follow while the residual is at least near");
-    int more = MORE_DEFAULT;
+               error_input(error, "more", "needs near: sweeps follow while the residual is at least near");
+    if (more == 0) more = STOPPING_MORE;
     if (!settings_float(chosen, "near", 0, 1e6f, &rule->near, error) ||
         !settings_int(chosen, "more", 1, SWEEPS_MAX, &more, error))
         return false;

@@ -7,7 +7,10 @@
 #include "common/settings.h"
 #include "sweeps/sweeps.h"
 
-enum { STOPPING_BLOCK = 8 }; /* sweeps between two looks at the residual, which cost about half a sweep each */
+enum {
+    STOPPING_BLOCK = 8, /* sweeps; reading the residual before each block costs about half a sweep */
+    STOPPING_MORE = 48  /* the default of `more` */
+};
 
 /* The rule's settings, for a method's table. */
 #define STOPPING_SETTINGS                                                                                             \
@@ -21,7 +24,8 @@ typedef struct StoppingRule {
     int more;   /* a multiple of STOPPING_BLOCK */
 } StoppingRule;
 
-/* ERROR_INPUT for a value out of range, and for `more` without `near`. */
+/* Overwrites the rule, which has the method's defaults, with the settings. ERROR_INPUT for a value out of range, and
+   for `more` where no rule is. */
 bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error);
 
 /* True if another block must follow the first k sweeps and `done` more. */

@@ -219,6 +219,30 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     chart_csv_free(&table);
 }
 
+/* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
+static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows("stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                  "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
+                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    assert_int_equal(chart.line_count, 3);
+    assert_string_equal(chart.lines[0].name, "momentum");
+    assert_string_equal(chart.lines[1].name, "momentum, near");
+    assert_string_equal(chart.lines[2].name, "scene-net");
+    for (int i = 0; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 2);
+    assert_string_equal(chart.panels[0].marks[3].label, "k=5, near=0.1");
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
 /* Two names that are equal where they are truncated. */
 static void truncated_names_stay_distinct(void **state) {
     (void)state;
@@ -262,6 +286,7 @@ int main(void) {
         cmocka_unit_test(names_cannot_become_commands),
         cmocka_unit_test(texts_become_plain),
         cmocka_unit_test(marks_are_gathered_by_line_and_time),
+        cmocka_unit_test(runs_with_a_stopping_rule_are_a_line_of_their_own),
         cmocka_unit_test(truncated_names_stay_distinct),
         cmocka_unit_test(a_missing_gnuplot_is_named),
     };
