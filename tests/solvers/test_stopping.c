@@ -71,20 +71,23 @@ static int assert_stops_there(const ContactSolverKind *kind, const ContactProble
 /* Odd and even k, on few and many contacts: the schedules of k sweeps and of a block differ. */
 static void sweeps_stop_at_the_first_block_below_near(void **state) {
     (void)state;
+    static const float near[] = {0.3f, 0.002f}; /* m/s */
+    int between = 0, limit = 0;
     for (int kind = 0; kind < IN_PLACE; kind++) {
-        static const float near[] = {0.3f, 0.002f}; /* m/s */
-        int at_once = 0, between = 0, limit = 0;
+        int at_once = 0, runs = 0;
         for (int k = 1; k <= 21; k += 4)
             for (int speed = 0; speed <= 20; speed += 5) {
                 World *world = make_struck((float)speed);
                 const int blocks = assert_stops_there(kinds[kind], world_problem(world), k, near[speed % 2], 3);
                 at_once += blocks == 0;
+                runs++;
                 between += blocks > 0 && blocks < 3;
                 limit += blocks == 3;
                 world_destroy(world);
             }
-        assert_true(at_once > 0 && between > 0 && limit > 0);
+        assert_in_range(at_once, 1, runs - 1);
     }
+    assert_true(between > 10 && limit > 10);
 }
 
 static void random_problems_stop_there_too(void **state) {
