@@ -242,8 +242,8 @@ const ContactSolverKind solver_scene_net = {
                     .title = "Network of the scene",
                     .needs_network = true,
                     .twin = "scene-net:prediction=off",
-                    .chart =
-                        METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "prediction=off", "near=0.1,prediction=off")},
+                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "near=0.1,more=200", "more=200",
+                                         "prediction=off", "more=200,prediction=off")},
     .create = create,
     .solve = solve,
     .destroy = destroy};

@@ -229,14 +229,18 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
                                   "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
                                   "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
                                   "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n");
+                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
+                                  "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
+                                  "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
     assert_ok(chart_csv_read(&table, path, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
-    assert_int_equal(chart.line_count, 3);
+    assert_int_equal(chart.line_count, 5);
     assert_string_equal(chart.lines[0].name, "momentum");
     assert_string_equal(chart.lines[1].name, "momentum, near");
     assert_string_equal(chart.lines[2].name, "scene-net");
+    assert_string_equal(chart.lines[3].name, "momentum, near, more");
+    assert_string_equal(chart.lines[4].name, "scene-net, more");
     for (int i = 0; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 2);
     assert_string_equal(chart.panels[0].marks[3].label, "k=5, near=0.1");
     chart_free(&chart);
