@@ -48,7 +48,7 @@ static const char *rule_of(const ChartRow *row) {
     const MethodDescription *method = method_describe(row->method);
     const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
     const bool more = is_set(row->setting, "more");
-    return near && more ? ", near, more" : near ? ", near" : more ? ", more" : "";
+    return more ? ", more" : near ? ", near" : "";
 }
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {

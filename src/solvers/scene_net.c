@@ -64,7 +64,7 @@ static const SettingSpec settings[] = {
     {"near", "residual, m/s: after those, blocks of 8 follow while it is at least this (default: 0.02)"},
     {"more", "sweeps that may follow, rounded up to whole blocks (default: 48)"},
     {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
-    {"prediction", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)"},
+    {"net", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)"},
     {NULL, NULL}};
 
 static void destroy(void *state) {
@@ -128,7 +128,7 @@ static void *create(const Settings *chosen, Error *error) {
     SceneNet *solver = NULL;
     if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &choice.after, error) &&
         settings_int(chosen, "rest", 1, SWEEPS_MAX, &choice.rest, error) &&
-        settings_bool(chosen, "prediction", &choice.predicts, error) && stopping_read(&choice.rule, chosen, error))
+        settings_bool(chosen, "net", &choice.predicts, error) && stopping_read(&choice.rule, chosen, error))
         solver = make(network, &choice, error);
     if (solver == NULL)
         slot_network_destroy(network);
@@ -241,9 +241,9 @@ const ContactSolverKind solver_scene_net = {
                     .settings = settings,
                     .title = "Network of the scene",
                     .needs_network = true,
-                    .twin = "scene-net:prediction=off",
-                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "near=0.1,more=200", "more=200",
-                                         "prediction=off", "more=200,prediction=off")},
+                    .twin = "scene-net:net=off",
+                    .chart =
+                        METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "near=0.1,more=200", "more=200", "net=off")},
     .create = create,
     .solve = solve,
     .destroy = destroy};

@@ -239,7 +239,7 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     assert_string_equal(chart.lines[0].name, "momentum");
     assert_string_equal(chart.lines[1].name, "momentum, near");
     assert_string_equal(chart.lines[2].name, "scene-net");
-    assert_string_equal(chart.lines[3].name, "momentum, near, more");
+    assert_string_equal(chart.lines[3].name, "momentum, more");
     assert_string_equal(chart.lines[4].name, "scene-net, more");
     for (int i = 0; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 2);
     assert_string_equal(chart.panels[0].marks[3].label, "k=5, near=0.1");

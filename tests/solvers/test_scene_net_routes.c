@@ -142,7 +142,7 @@ static void without_its_prediction_it_is_momentum_with_the_same_stopping_rule(vo
         const char *path = temporary_path("known.npz");
         assert_ok(slot_network_write(known.network, path, &error), error);
         for (int more = 8; more <= MORE; more += 40) {
-            snprintf(text, sizeof text, "network=%s,near=0.05,more=%d,prediction=off", path, more);
+            snprintf(text, sizeof text, "network=%s,near=0.05,more=%d,net=off", path, more);
             solve_with(&solver_scene_net, text, &known.random.problem, &known.found);
             snprintf(text, sizeof text, "k=%d,near=0.05,more=%d", AFTER, more);
             solve_with(&solver_momentum, text, &known.random.problem, &known.expected);
