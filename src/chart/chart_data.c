@@ -37,10 +37,23 @@ static void split_setting(const char *setting, char *numbers, char *words) {
     }
 }
 
+static bool is_set(const char *setting, const char *key) {
+    const char *found = strstr(setting, key);
+    return found != NULL && (found == setting || found[-1] == ',') && found[strlen(key)] == '=';
+}
+
+/* What sets a row apart from those with a fixed number of sweeps, and with the default limit. */
+static const char *rule_of(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
+    const bool more = is_set(row->setting, "more");
+    return more ? ", more" : near ? ", near" : "";
+}
+
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
     split_setting(row->setting, numbers, words);
-    snprintf(key, CHART_KEY_SIZE, "%s%s", row->method, words);
+    snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, rule_of(row), words);
     chart_plain(label, numbers);
 }
 

@@ -6,13 +6,14 @@
 #include <stdbool.h>
 
 enum {
-    CHART_MAX_LINES = 24,
+    CHART_MAX_LINES = 32,
     CHART_TEXT_SIZE = 40,
     CHART_PANELS = 2,
-    CHART_KEY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE
+    CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ", near" + 2 * CHART_SETTING_SIZE
 };
 
-/* A method with its non-numeric settings ("engine, warm=off"). */
+/* A method with its non-numeric settings ("engine, warm=off"). Runs with a fixed number of sweeps, with a stopping rule
+   ("engine, near") and with a limit of its own ("engine, more") are lines of their own. */
 typedef struct ChartLine {
     char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
     char name[CHART_TEXT_SIZE];        /* safe for gnuplot, truncated */

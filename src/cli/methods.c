@@ -17,6 +17,8 @@ bool command_methods(int argc, char **argv, Error *error) {
         printf("%-17s %s\n", method->name, method->summary);
         for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++)
             printf("    %s: %s\n", setting->key, setting->summary);
+        if (method->twin != NULL)
+            printf("    Without its learned part: %s, with the same settings otherwise.\n", method->twin);
     }
     return true;
 }

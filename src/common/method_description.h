@@ -27,6 +27,8 @@ typedef struct MethodDescription {
     const char *caption;         /* in pictures, between the title and the method's text; NULL: nothing */
     MethodRole role;
     bool needs_network;  /* runs only if the setting `network` or the scene names a file */
+    const char *twin;    /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
+                            settings otherwise. NULL: nothing is learned */
     const char *shipped; /* the setting in common use, which charts mark; NULL: none */
     /* What `twinbox chart`, `twinbox chart --quick` and `twinbox stability` run by default. NULL: one run, no settings
        given. METHOD_NO_RUNS: left out unless named, and reported as left out. */

@@ -2,6 +2,7 @@
 /* Block solver: sequential impulses that solve the two normal impulses of a pair together. Method, source and where it
    fails: sweeps/block.c. */
 #include "solvers/solvers.h"
+#include "solvers/stopping.h"
 #include "sweeps/block.h"
 #include "sweeps/sweeps.h"
 
@@ -9,31 +10,41 @@
 
 typedef struct BlockSolver {
     int sweep_count;
+    StoppingRule rule;
     Sweeps sweeps;
 } BlockSolver;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
+    StoppingRule rule = {0};
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
+        return NULL;
     BlockSolver *solver = calloc(1, sizeof *solver);
     if (solver == NULL)
         error_memory(error, "block");
     else
-        solver->sweep_count = sweep_count;
+        *solver = (BlockSolver){.sweep_count = sweep_count, .rule = rule};
     return solver;
+}
+
+static void solve_scalar(const BlockSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
+    block_solve(problem, solver->sweep_count, solution);
+    for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
+        for (int i = 0; i < STOPPING_BLOCK; i++) block_sweep(problem, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     BlockSolver *solver = state;
     if (sweeps_can(SWEEP_AVX2)) {
-        if (!sweeps_begin_blocks(&solver->sweeps, problem) || !sweeps_run_blocks(&solver->sweeps, solver->sweep_count))
+        if (!sweeps_begin_blocks(&solver->sweeps, problem) ||
+            !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run_blocks))
             return error_memory(error, "block");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
-    block_solve(problem, solver->sweep_count, solution);
+    solve_scalar(solver, problem, solution);
     return true;
 }
 

@@ -31,7 +31,8 @@ const ContactSolverKind solver_contact_net = {
                     .summary =
                         "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
                     .settings = settings,
-                    .needs_network = true},
+                    .needs_network = true,
+                    .twin = "constant"},
     .create = create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};

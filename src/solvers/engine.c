@@ -2,6 +2,7 @@
 /* The physics engine: sequential impulses with warm starting, as in Box2D-Lite. Method, source and where it fails:
    sweeps/sequential_impulses.c. */
 #include "solvers/solvers.h"
+#include "solvers/stopping.h"
 #include "sweeps/sequential_impulses.h"
 #include "sweeps/sweeps.h"
 
@@ -9,6 +10,7 @@
 
 typedef struct SequentialImpulses {
     int sweep_count;
+    StoppingRule rule;
     SequentialOptions options;
     SweepKernel kernel;
     Sweeps sweeps;
@@ -18,6 +20,7 @@ static const SettingSpec settings[] = {
     {"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
     {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)"},
     {"warm", "on|off: warm start from the previous step's impulses (default: on)"},
+    STOPPING_SETTINGS,
     {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
@@ -25,7 +28,7 @@ static void *create(const Settings *chosen, Error *error) {
     values.kernel = sweeps_best_kernel();
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
         !settings_bool(chosen, "accumulate", &values.options.accumulate, error) ||
-        !settings_bool(chosen, "warm", &values.options.warm, error))
+        !settings_bool(chosen, "warm", &values.options.warm, error) || !stopping_read(&values.rule, chosen, error))
         return NULL;
     SequentialImpulses *solver = malloc(sizeof *solver);
     if (solver == NULL)
@@ -35,16 +38,22 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
+static void solve_scalar(const SequentialImpulses *solver, const ContactProblem *problem, ContactSolution *solution) {
+    sequential_impulses_solve(problem, &solver->options, solver->sweep_count, solution);
+    for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
+        for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
+}
+
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SequentialImpulses *solver = state;
     const SequentialOptions *options = &solver->options;
     if (options->accumulate) {
         if (!sweeps_begin(&solver->sweeps, solver->kernel, problem, options->warm, options->relaxation) ||
-            !sweeps_run(&solver->sweeps, solver->sweep_count))
+            !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run))
             return error_memory(error, "engine");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
-    sequential_impulses_solve(problem, options, solver->sweep_count, solution);
+    solve_scalar(solver, problem, solution);
     return true;
 }
 
@@ -63,7 +72,7 @@ const ContactSolverKind solver_engine = {
                     .caption = "sequential impulses",
                     .shipped = "k=10",
                     .chart = METHOD_RUNS("k=1", "k=2", "k=4", "k=7", "k=10", "k=20", "k=50", "k=100", "k=10,warm=off",
-                                         "k=20,warm=off", "k=50,warm=off", "k=100,warm=off"),
+                                         "k=20,warm=off", "k=50,warm=off", "k=100,warm=off", "near=0.1", "near=0.02"),
                     .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50", "k=10,warm=off"),
                     .stability = METHOD_RUNS("k=4", "", "k=50"),
                     .stability_place = 1},

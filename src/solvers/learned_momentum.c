@@ -21,6 +21,7 @@ typedef struct LearnedMomentum {
 static const SettingSpec settings[] = {
     {"k", "sweeps over all contacts per step; must be in the file (default: the scene's, else 10)"},
     {"network", "file of the learned factors (default: the scene's)"},
+    STOPPING_SETTINGS,
     {NULL, NULL}};
 
 static void destroy(void *state) {
@@ -53,6 +54,7 @@ static void *create(const Settings *chosen, Error *error) {
     }
     solver->sweep_count = 10;
     if (!settings_int(chosen, "k", 1, MOMENTUM_MAX_SWEEPS, &solver->sweep_count, error) ||
+        !momentum_read_rule(&solver->momentum, chosen, error) ||
         !momentum_schedules_read(&solver->schedules, path, error))
         goto fail;
     solver->factors = momentum_schedules_find(&solver->schedules, solver->sweep_count);
@@ -73,6 +75,7 @@ const ContactSolverKind solver_learned_momentum = {
                     .summary = "momentum with learned factors, one per sweep",
                     .settings = settings,
                     .needs_network = true,
+                    .twin = "momentum",
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10", "k=20"),
                     .stability = METHOD_NO_RUNS},

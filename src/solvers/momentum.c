@@ -68,17 +68,41 @@ float momentum_factor_tuned(int sweep, int count) {
     return rising < most ? rising : most;
 }
 
+float *momentum_factors_make(int count) {
+    float *factors = malloc((size_t)count * sizeof *factors);
+    for (int s = 0; factors != NULL && s < count; s++) factors[s] = momentum_factor_tuned(s, count);
+    return factors;
+}
+
 void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->before.velocities);
     free(momentum->before.impulses);
+    free(momentum->more_factors);
     *momentum = (Momentum){0};
+}
+
+bool momentum_read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
+    StoppingRule *rule = &momentum->rule;
+    if (!stopping_read(rule, chosen, error)) return false;
+    if (rule->more == 0) return true;
+    momentum->more_factors = momentum_factors_make(rule->more);
+    return momentum->more_factors != NULL || error_memory(error, "momentum");
+}
+
+bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
+    for (int done = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
+        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, STOPPING_BLOCK)
+                        : sweeps_continue_momentum(sweeps, factors + done, STOPPING_BLOCK)))
+            return false;
+    return true;
 }
 
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
                     ContactSolution *solution, Error *error) {
     if (!sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) ||
-        !sweeps_run_momentum(&momentum->sweeps, factors, count))
+        !sweeps_run_momentum(&momentum->sweeps, factors, count) ||
+        !momentum_run_more(&momentum->sweeps, problem, &momentum->rule, momentum->more_factors))
         return error_memory(error, "momentum");
     if (sweeps_end(&momentum->sweeps, solution)) return true;
     ContactSolution *before = &momentum->before;
@@ -97,8 +121,8 @@ typedef struct State {
     float *factors; /* [sweep_count] */
 } State;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
 
 static void destroy(void *state) {
     State *solver = state;
@@ -112,15 +136,16 @@ static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
     State *solver = calloc(1, sizeof *solver);
-    if (solver != NULL) solver->factors = malloc((size_t)sweep_count * sizeof *solver->factors);
+    if (solver != NULL) solver->factors = momentum_factors_make(sweep_count);
     if (solver == NULL || solver->factors == NULL) {
         destroy(solver);
         error_memory(error, "momentum");
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    for (int s = 0; s < sweep_count; s++) solver->factors[s] = momentum_factor_tuned(s, sweep_count);
-    return solver;
+    if (momentum_read_rule(&solver->momentum, chosen, error)) return solver;
+    destroy(solver);
+    return NULL;
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -132,7 +157,8 @@ const ContactSolverKind solver_momentum = {
     .description = {.name = "momentum",
                     .summary = "sequential impulses with momentum extrapolation between sweeps",
                     .settings = settings,
-                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.5", "near=0.1", "near=0.02",
+                                         "near=0.1,more=200", "near=0.02,more=200"),
                     .chart_quick = METHOD_RUNS("k=10", "k=20"),
                     .stability = METHOD_RUNS("", "k=20"),
                     .stability_place = 3},

@@ -17,6 +17,7 @@
    Bit-exact: the sweeps are the engine's (sweeps.h), and products are summed in a fixed order. */
 #include "common/array.h"
 #include "solvers/solvers.h"
+#include "solvers/stopping.h"
 #include "sweeps/sweeps.h"
 
 #include <stdlib.h>
@@ -33,23 +34,26 @@ _Static_assert(sizeof(NncgRow) == sizeof((SweepPair){0}).sums, "the sums of a pa
 
 typedef struct Nncg {
     int sweep_count;
+    StoppingRule rule;
     Sweeps sweeps;
     NncgRow *pair_before, *pair_direction; /* [pair_count] p and d */
     NncgRow *body_before, *body_direction; /* [body_count] the same of the velocities */
     size_t pair_capacity[2], body_capacity[2];
 } Nncg;
 
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
+    StoppingRule rule = {0};
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
+        return NULL;
     Nncg *solver = calloc(1, sizeof *solver);
     if (solver == NULL)
         error_memory(error, "nncg");
     else
-        solver->sweep_count = sweep_count;
+        *solver = (Nncg){.sweep_count = sweep_count, .rule = rule};
     return solver;
 }
 
@@ -116,6 +120,13 @@ static void extrapolate(Nncg *solver, float beta) {
         extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i], beta);
 }
 
+/* True after sweep number `sweep`, counted from 1, if none follows. */
+static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem) {
+    const int done = sweep - solver->sweep_count;
+    return done >= 0 && done % STOPPING_BLOCK == 0 &&
+           !stopping_needs_more(&solver->rule, done, &solver->sweeps, problem);
+}
+
 /* False when memory is short. */
 static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
     const Sweeps *sweeps = &solver->sweeps;
@@ -125,8 +136,9 @@ static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem)
         return false;
     restart(solver);
     float squared_before = 0.0f;
-    for (int sweep = 1; sweep < solver->sweep_count; sweep++) {
+    for (int sweep = 1;; sweep++) {
         if (!sweeps_run(&solver->sweeps, 1)) return false;
+        if (is_last(solver, sweep, problem)) return true;
         Slope slope = measure(solver);
         if (slope.along < 0.0f)
             restart(solver);
@@ -134,7 +146,6 @@ static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem)
             extrapolate(solver, slope.squared < squared_before ? slope.squared / squared_before : 1.0f);
         squared_before = slope.squared;
     }
-    return sweeps_run(&solver->sweeps, 1);
 }
 
 /* NaN and infinite numbers may depend on the order of visits; so they are computed one by one, the same everywhere. */
@@ -158,12 +169,13 @@ static void destroy(void *state) {
     free(solver);
 }
 
-const ContactSolverKind solver_nncg = {.description = {.name = "nncg",
-                                                       .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
-                                                       .settings = settings,
-                                                       .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
-                                                       .chart_quick = METHOD_RUNS("k=20"),
-                                                       .stability_place = 5},
-                                       .create = create,
-                                       .solve = solve,
-                                       .destroy = destroy};
+const ContactSolverKind solver_nncg = {
+    .description = {.name = "nncg",
+                    .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.1", "near=0.02"),
+                    .chart_quick = METHOD_RUNS("k=20"),
+                    .stability_place = 5},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -9,6 +9,7 @@
    (2005). Fails as sequential impulses do, somewhat later: an impulse still travels one contact per sweep, and
    later sweeps must correct the overshoot at an impact. */
 #include "solvers/solvers.h"
+#include "solvers/stopping.h"
 #include "sweeps/sequential_impulses.h"
 #include "sweeps/sweeps.h"
 
@@ -16,18 +17,21 @@
 
 typedef struct OverRelaxation {
     int sweep_count;
+    StoppingRule rule;
     SequentialOptions options;
     Sweeps sweeps;
 } OverRelaxation;
 
 static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
                                        {"omega", "factor of every increment, from 0.01 to 1.99 (default: 1.5)"},
+                                       STOPPING_SETTINGS,
                                        {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     OverRelaxation values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
     if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
-        !settings_float(chosen, "omega", 0.01f, 1.99f, &values.options.relaxation, error))
+        !settings_float(chosen, "omega", 0.01f, 1.99f, &values.options.relaxation, error) ||
+        !stopping_read(&values.rule, chosen, error))
         return NULL;
     OverRelaxation *solver = malloc(sizeof *solver);
     if (solver == NULL)
@@ -40,7 +44,7 @@ static void *create(const Settings *chosen, Error *error) {
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     OverRelaxation *solver = state;
     if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, true, solver->options.relaxation) ||
-        !sweeps_run(&solver->sweeps, solver->sweep_count))
+        !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run))
         return error_memory(error, "over-relaxation");
     if (!sweeps_end(&solver->sweeps, solution))
         sequential_impulses_solve(problem, &solver->options, solver->sweep_count, solution);

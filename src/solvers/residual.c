@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solvers/residual.h"
 
-static Vec2 point_velocity(const SweepBody *body, Vec2 arm) {
-    return vec2_add(vec2(body->x, body->y), scalar_cross_vec2(body->spin, arm));
+static Vec2 point_velocity(Vec2 linear, float spin, Vec2 arm) { return vec2_add(linear, scalar_cross_vec2(spin, arm)); }
+
+/* (m/s)^2. normal: the accumulated impulse. Branchless: these branches mispredict. */
+static float squared_residual(float bias, float normal_velocity, float normal) {
+    const float missing = bias - normal_velocity;
+    const float closing = missing > 0 ? missing : 0;
+    const float residual = normal > 0 ? missing : closing;
+    return residual * residual;
 }
 
-/* (m/s)^2. Branchless: these branches mispredict. */
-static float squared_residual(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
+static float squared_of_point(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
-    const Vec2 velocity = vec2_sub(point_velocity(b, point->arm_b), point_velocity(a, point->arm_a));
-    const float missing = point->bias - vec2_dot(velocity, pair->normal);
-    const float closing = missing > 0 ? missing : 0;
-    const float residual = pair->sums[k].normal > 0 ? missing : closing;
-    return residual * residual;
+    const Vec2 velocity = vec2_sub(point_velocity(vec2(b->x, b->y), b->spin, point->arm_b),
+                                   point_velocity(vec2(a->x, a->y), a->spin, point->arm_a));
+    return squared_residual(point->bias, vec2_dot(velocity, pair->normal), pair->sums[k].normal);
 }
 
 bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit) {
@@ -22,10 +25,23 @@ bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit) {
         const SweepPair *pair = &sweeps->pairs[i];
         const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-        const float first = squared_residual(pair, 0, a, b), second = squared_residual(pair, 1, a, b);
+        const float first = squared_of_point(pair, 0, a, b), second = squared_of_point(pair, 1, a, b);
         sum += first;
         sum += sweep_pair_points(pair) == 2 ? second : 0;
         if (sum >= enough) return true;
     }
     return false;
+}
+
+bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit) {
+    const float enough = limit * limit * (float)problem->contact_count;
+    float sum = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const BodyVelocity *a = &solution->velocities[contact->a], *b = &solution->velocities[contact->b];
+        const Vec2 velocity = vec2_sub(point_velocity(b->linear, b->angular, contact->arm_b),
+                                       point_velocity(a->linear, a->angular, contact->arm_a));
+        sum += squared_residual(contact->bias, vec2_dot(velocity, contact->normal), solution->impulses[i].normal);
+    }
+    return problem->contact_count > 0 && sum >= enough;
 }

@@ -8,3 +8,6 @@
 /* True if the root mean square over the contacts of (bias - normal velocity) is at least `limit` (m/s). Separating
    contacts without an impulse do not count as error. */
 bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit);
+
+/* The same of a solution. Where the sweeps visit contacts in the problem's order, with the same answer. */
+bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit);

@@ -12,6 +12,7 @@
    arches, on corners, and while boxes tip or slide; a stack that a blow has shaken may then collapse. */
 #include "solvers/forest.h"
 #include "solvers/solvers.h"
+#include "solvers/stopping.h"
 #include "sweeps/sequential_impulses.h"
 #include "sweeps/sweeps.h"
 
@@ -19,12 +20,15 @@
 
 typedef struct Robust {
     int sweep_count;
+    StoppingRule rule;
     Forest forest;
     Sweeps sweeps;
 } Robust;
 
 static const SettingSpec settings[] = {
-    {"k", "sweeps per step if the direct passes do not solve it (default: the scene's, else 10)"}, {NULL, NULL}};
+    {"k", "sweeps per step if the direct passes do not solve it (default: the scene's, else 10)"},
+    STOPPING_SETTINGS,
+    {NULL, NULL}};
 
 static void destroy(void *state) {
     Robust *solver = state;
@@ -36,12 +40,14 @@ static void destroy(void *state) {
 
 static void *create(const Settings *chosen, Error *error) {
     int sweep_count = 10;
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
+    StoppingRule rule = {0};
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
+        return NULL;
     Robust *solver = calloc(1, sizeof *solver);
     if (solver == NULL)
         error_memory(error, "robust");
     else
-        solver->sweep_count = sweep_count;
+        *solver = (Robust){.sweep_count = sweep_count, .rule = rule};
     return solver;
 }
 
@@ -123,9 +129,10 @@ static bool sweep(Robust *solver, const ContactProblem *problem, bool passes, Co
     Sweeps *sweeps = &solver->sweeps;
     if (!sweeps_begin(sweeps, sweeps_best_kernel(), problem, true, 1.0f)) return false;
     if (passes) move_towards_passes(sweeps, problem, solution);
-    if (!sweeps_run(sweeps, solver->sweep_count)) return false;
+    if (!stopping_run(&solver->rule, sweeps, problem, solver->sweep_count, sweeps_run)) return false;
     if (!has_risen(problem, sweeps, solution->velocities)) return true;
-    return sweeps_begin(sweeps, sweeps->kernel, problem, false, 1.0f) && sweeps_run(sweeps, solver->sweep_count);
+    return sweeps_begin(sweeps, sweeps->kernel, problem, false, 1.0f) &&
+           stopping_run(&solver->rule, sweeps, problem, solver->sweep_count, sweeps_run);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {

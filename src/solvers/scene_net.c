@@ -20,7 +20,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { REST_SWEEPS = 20, MORE_SWEEPS = 48, CALM_MORE = 24, CHECK_EVERY = 8 };
+enum { REST_SWEEPS = 20, CALM_MORE = 24 };
 
 /* More sweeps follow the network while the residual is this large; for a calm step, while it is this share of it. */
 static const float near_default = 0.02f; /* m/s, RMS over the contacts */
@@ -31,7 +31,7 @@ typedef enum Route {
     ROUTE_MOMENTUM, /* `rest` sweeps with momentum */
     ROUTE_CALM,   /* the bomb is there, with the mass of the training, but the residual is below the gate: half as many
                        sweeps, and up to CALM_MORE more while the residual is too large */
-    ROUTE_NETWORK /* the network, `after` sweeps, and up to MORE_SWEEPS more while the residual is too large */
+    ROUTE_NETWORK /* the network, `after` sweeps, and more while the residual is too large */
 } Route;
 
 /* Sweeps cannot correct velocities beyond this: rounding alone would leave errors above 1e-3 m/s. */
@@ -42,19 +42,29 @@ typedef struct SceneNet {
     const SlotNetwork *network; /* the same, or the caller's */
     Momentum momentum;
     ScenePrediction prediction;
-    float near;                           /* m/s */
+    bool predicts;                        /* false: the network is not evaluated */
     int after, rest, half;                /* sweeps after the network, and without it */
+    StoppingRule rule;                    /* after the network; after calm steps a share of it */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_without_momentum;          /* all of them are 0 */
     float *rest_factors, *half_factors;   /* [rest], [half] */
-    float more_factors[MORE_SWEEPS];      /* of the sweeps that follow if the residual is too large */
+    float *more_factors;                  /* [rule.more] of the sweeps that follow if the residual is too large */
 } SceneNet;
+
+/* What settings choose. */
+typedef struct SceneNetChoice {
+    int after, rest;
+    bool predicts;
+    StoppingRule rule;
+} SceneNetChoice;
 
 static const SettingSpec settings[] = {
     {"network", "file of the trained network (default: the scene's)"},
     {"after", "sweeps after the network (default: as in its training)"},
-    {"near", "residual above which more sweeps follow, m/s (default: 0.02)"},
+    {"near", "residual, m/s: after those, blocks of 8 follow while it is at least this (default: 0.02)"},
+    {"more", "sweeps that may follow, rounded up to whole blocks (default: 48)"},
     {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
+    {"net", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)"},
     {NULL, NULL}};
 
 static void destroy(void *state) {
@@ -65,6 +75,7 @@ static void destroy(void *state) {
     scene_prediction_free(&solver->prediction);
     free(solver->rest_factors);
     free(solver->half_factors);
+    free(solver->more_factors);
     free(solver);
 }
 
@@ -73,30 +84,30 @@ static void choose_factors(SceneNet *solver) {
     const SlotNetwork *network = solver->network;
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
+    learned |= !solver->predicts;
     solver->after_without_momentum = !learned;
     for (int s = 0; s < solver->after; s++)
-        solver->after_factors[s] = solver->after == network->sweeps ? network->factors[s]
-                                   : learned                        ? momentum_factor_tuned(s, solver->after)
-                                                                    : 0;
-    for (int s = 0; s < solver->rest; s++) solver->rest_factors[s] = momentum_factor_tuned(s, solver->rest);
-    for (int s = 0; s < solver->half; s++) solver->half_factors[s] = momentum_factor_tuned(s, solver->half);
-    for (int s = 0; s < MORE_SWEEPS; s++) solver->more_factors[s] = momentum_factor_tuned(s, MORE_SWEEPS);
+        solver->after_factors[s] = solver->after == network->sweeps && solver->predicts ? network->factors[s]
+                                   : learned ? momentum_factor_tuned(s, solver->after)
+                                             : 0;
 }
 
-static SceneNet *make(const SlotNetwork *network, int after, int rest, float near, Error *error) {
+static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, Error *error) {
     SceneNet *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         error_memory(error, "scene-net");
         return NULL;
     }
     solver->network = network;
-    solver->after = after;
-    solver->rest = rest;
-    solver->near = near;
-    solver->half = (rest + 1) / 2;
-    solver->rest_factors = malloc((size_t)rest * sizeof *solver->rest_factors);
-    solver->half_factors = malloc((size_t)solver->half * sizeof *solver->half_factors);
-    if (solver->rest_factors == NULL || solver->half_factors == NULL) {
+    solver->predicts = choice->predicts;
+    solver->after = choice->after;
+    solver->rest = choice->rest;
+    solver->rule = choice->rule;
+    solver->half = (choice->rest + 1) / 2;
+    solver->rest_factors = momentum_factors_make(solver->rest);
+    solver->half_factors = momentum_factors_make(solver->half);
+    solver->more_factors = momentum_factors_make(solver->rule.more);
+    if (solver->rest_factors == NULL || solver->half_factors == NULL || solver->more_factors == NULL) {
         destroy(solver);
         error_memory(error, "scene-net");
         return NULL;
@@ -113,13 +124,12 @@ static void *create(const Settings *chosen, Error *error) {
     }
     SlotNetwork *network = slot_network_read(path, error);
     if (network == NULL) return NULL;
-    int after = network->sweeps, rest = REST_SWEEPS;
-    float near = near_default;
+    SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near_default, STOPPING_MORE}};
     SceneNet *solver = NULL;
-    if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &after, error) &&
-        settings_int(chosen, "rest", 1, SWEEPS_MAX, &rest, error) &&
-        settings_float(chosen, "near", 0, 1e6f, &near, error))
-        solver = make(network, after, rest, near, error);
+    if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &choice.after, error) &&
+        settings_int(chosen, "rest", 1, SWEEPS_MAX, &choice.rest, error) &&
+        settings_bool(chosen, "net", &choice.predicts, error) && stopping_read(&choice.rule, chosen, error))
+        solver = make(network, &choice, error);
     if (solver == NULL)
         slot_network_destroy(network);
     else
@@ -164,26 +174,18 @@ static bool run_after(SceneNet *solver) {
                                           : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
 }
 
-/* Sweeps until the residual is below `near`, at most `most` times. The remaining error has long waves, such as a heavy
-   bomb on a whole stack, which need momentum with large factors: so this is one run of sweeps, checked every
-   CHECK_EVERY, not many short ones. */
-static bool run_more(SceneNet *solver, const ContactProblem *problem, float near, int most) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    const float *factors = solver->more_factors;
-    for (int done = 0; done < most && residual_reaches(sweeps, problem->contact_count, near); done += CHECK_EVERY)
-        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, CHECK_EVERY)
-                        : sweeps_continue_momentum(sweeps, factors + done, CHECK_EVERY)))
-            return false;
-    return true;
+static bool run_more(SceneNet *solver, const ContactProblem *problem, const StoppingRule *rule) {
+    return momentum_run_more(&solver->momentum.sweeps, problem, rule, solver->more_factors);
 }
 
 static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
     Sweeps *sweeps = &solver->momentum.sweeps;
+    const StoppingRule *rule = &solver->rule;
+    const StoppingRule calm = {calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
     switch (route) {
     case ROUTE_CALM:
-        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) &&
-               run_more(solver, problem, calm_share * solver->near, CALM_MORE);
-    case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, solver->near, MORE_SWEEPS);
+        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) && run_more(solver, problem, &calm);
+    case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, rule);
     case ROUTE_MOMENTUM: break;
     }
     return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
@@ -219,7 +221,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Route route;
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
-    if (route == ROUTE_NETWORK) {
+    if (route == ROUTE_NETWORK && solver->predicts) {
         scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
@@ -229,7 +231,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     }
     if (!run(solver, problem, route)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
-    solution->fallbacks.not_finite += route == ROUTE_NETWORK;
+    solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->predicts;
     return solve_without(solver, problem, solution, error);
 }
 
@@ -239,13 +241,16 @@ const ContactSolverKind solver_scene_net = {
                     .settings = settings,
                     .title = "Scene network",
                     .needs_network = true,
-                    .chart = METHOD_RUNS("", "near=3", "near=0.5", "near=0.1")},
+                    .twin = "scene-net:net=off",
+                    .chart =
+                        METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "near=0.1,more=200", "more=200", "net=off")},
     .create = create,
     .solve = solve,
     .destroy = destroy};
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
-    solver->state = make(network, network->sweeps, REST_SWEEPS, near, error);
+    const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near, STOPPING_MORE}};
+    solver->state = make(network, &choice, error);
     return solver->state != NULL;
 }

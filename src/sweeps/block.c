@@ -96,7 +96,7 @@ static bool same_pair(const ContactPoint *first, const ContactPoint *second) {
     return first->a == second->a && first->b == second->b;
 }
 
-static void sweep(const ContactProblem *problem, ContactSolution *solution) {
+void block_sweep(const ContactProblem *problem, ContactSolution *solution) {
     const ProblemBody *bodies = problem->bodies;
     BodyVelocity *velocities = solution->velocities;
     for (int i = 0, count; i < problem->contact_count; i += count) {
@@ -115,5 +115,5 @@ static void sweep(const ContactProblem *problem, ContactSolution *solution) {
 void block_solve(const ContactProblem *problem, int count, ContactSolution *solution) {
     const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
     sequential_impulses_begin(problem, &options, solution);
-    for (int i = 0; i < count; i++) sweep(problem, solution);
+    for (int i = 0; i < count; i++) block_sweep(problem, solution);
 }

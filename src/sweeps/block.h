@@ -12,5 +12,8 @@ typedef struct Block {
 /* first, second: points of the same pair. They are solved separately if K is ill-conditioned. */
 Block block_make(const ContactPoint *first, const ContactPoint *second, const ProblemBody *bodies);
 
-/* `count` sweeps over all contacts, after the warm start. */
+/* One sweep over all contacts. */
+void block_sweep(const ContactProblem *problem, ContactSolution *solution);
+
+/* `count` sweeps, after the warm start. */
 void block_solve(const ContactProblem *problem, int count, ContactSolution *solution);

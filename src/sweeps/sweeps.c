@@ -51,7 +51,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     size_t size = (size_t)sweeps->pair_count * sizeof *sweeps->ends;
     if (sweeps->scheduled_count == sweeps->pair_count && memcmp(sweeps->scheduled, sweeps->ends, size) == 0 &&
         sweeps->scheduled_bodies == sweeps->body_count && sweeps->whole.sweeps == at_once &&
-        sweeps->rest.sweeps == rest && sweeps->scheduled_turns == turns)
+        (rest == 0 || sweeps->rest.sweeps == rest) && sweeps->scheduled_turns == turns)
         return true;
     sweeps->scheduled_count = 0;
     if (!sweeps_schedule(&sweeps->whole, sweeps, at_once, turns) ||
@@ -71,6 +71,7 @@ static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
     int most = VISITS_AT_ONCE / sweeps->pair_count;
     if (most > limit) most = limit;
     if (most < 1) most = 1;
+    if (sweeps->block > 0) count = sweeps->block;
     if (count <= most) return count;
     int equal = count / ((count + most - 1) / most);
     return turns ? equal + equal % 2 : equal;
@@ -89,7 +90,7 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     int done = 0;
     for (; done + at_once <= count; done += at_once)
         sweeps_run_avx2(sweeps, &sweeps->whole, turns ? factors + done : NULL);
-    sweeps_run_avx2(sweeps, &sweeps->rest, turns ? factors + done : NULL);
+    if (done < count) sweeps_run_avx2(sweeps, &sweeps->rest, turns ? factors + done : NULL);
     return true;
 }
 
@@ -97,8 +98,9 @@ bool sweeps_run_blocks(Sweeps *sweeps, int count) {
     if (sweeps->pair_count == 0) return true;
     int at_once = sweeps_at_once(sweeps, count, false);
     if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
-    for (int done = 0; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
-    sweeps_run_blocks_avx2(sweeps, &sweeps->rest);
+    int done = 0;
+    for (; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
+    if (done < count) sweeps_run_blocks_avx2(sweeps, &sweeps->rest);
     return true;
 }
 

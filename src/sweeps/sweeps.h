@@ -100,6 +100,8 @@ static inline int32_t sweep_body_at(int32_t end) { return end < 0 ? ~end : end; 
 typedef struct Sweeps {
     SweepKernel kernel;
     int body_count, pair_count;
+    int block;            /* the caller's: more runs of this many sweeps may follow a run, so schedules are made for
+                             them, too; 0: none. No bit depends on it. */
     SweepBody *bodies;    /* [2, body_count + 1]; the second half only with momentum extrapolation */
     SweepPair *pairs;     /* [pair_count + 1] in the order of visits */
     int32_t *first;       /* [pair_count] the first contact of each pair in the problem */

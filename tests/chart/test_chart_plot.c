@@ -107,9 +107,9 @@ static void tables_without_a_mark_are_refused(void **state) {
                    "error_mean: '-1' is less than 0");
     expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
     char many[8000] = "";
-    for (int i = 0; i < 25; i++)
+    for (int i = 0; i <= CHART_MAX_LINES; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
-    expect_refused(many, "single", "at most 24 methods");
+    expect_refused(many, "single", "at most 32 methods");
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
@@ -126,10 +126,10 @@ static void a_full_chart_is_drawn(void **state) {
     (void)state;
     Error error = {0};
     char lines[20000] = "";
-    for (int i = 0; i < 24 * 5; i++)
+    for (int i = 0; i < CHART_MAX_LINES * 5; i++)
         snprintf(lines + strlen(lines), 200,
-                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n", i % 24,
-                 i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
+                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
+                 i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
     assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
 }
 
@@ -220,6 +220,34 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     chart_csv_free(&table);
 }
 
+/* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
+static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows("stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                  "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
+                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
+                                  "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
+                                  "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    assert_int_equal(chart.line_count, 5);
+    assert_string_equal(chart.lines[0].name, "momentum");
+    assert_string_equal(chart.lines[1].name, "momentum, near");
+    assert_string_equal(chart.lines[2].name, "scene-net");
+    assert_string_equal(chart.lines[3].name, "momentum, more");
+    assert_string_equal(chart.lines[4].name, "scene-net, more");
+    for (int i = 0; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 2);
+    assert_string_equal(chart.panels[0].marks[3].label, "k=5, near=0.1");
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
 /* Two names that are equal where they are truncated. */
 static void truncated_names_stay_distinct(void **state) {
     (void)state;
@@ -263,6 +291,7 @@ int main(void) {
         cmocka_unit_test(names_cannot_become_commands),
         cmocka_unit_test(texts_become_plain),
         cmocka_unit_test(marks_are_gathered_by_line_and_time),
+        cmocka_unit_test(runs_with_a_stopping_rule_are_a_line_of_their_own),
         cmocka_unit_test(truncated_names_stay_distinct),
         cmocka_unit_test(a_missing_gnuplot_is_named),
     };

@@ -47,6 +47,7 @@ says "contact-net"
 says "constant"
 says "k:"
 says "network:"
+says "Without its learned part: scene-net:net=off, with the same settings otherwise."
 
 "$twinbox" methods >/dev/full 2>err
 equal "status where standard output is full" $? 3

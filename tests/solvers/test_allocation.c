@@ -19,13 +19,10 @@ static World *make_pyramid(void) {
     return world;
 }
 
-static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
-    Error error = {0};
-    const Settings settings = {0};
+static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char *text) {
     World *world = make_pyramid();
     allocations = 0;
-    ContactSolver solver = {kind, kind->create(&settings, &error)};
-    assert_ok(solver.state != NULL, error);
+    ContactSolver solver = make_solver(kind, text);
     run(world, &solver, 60);
     assert_true(allocations > 10);
     allocations = 0;
@@ -37,13 +34,19 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind) {
 
 static void a_settled_pyramid_steps_without_allocating(void **state) {
     (void)state;
-    steps_allocate_nothing_by(&solver_engine);
-    steps_allocate_nothing_by(&solver_over_relaxation);
-    steps_allocate_nothing_by(&solver_momentum);
-    steps_allocate_nothing_by(&solver_block);
-    steps_allocate_nothing_by(&solver_nncg);
-    steps_allocate_nothing_by(&solver_robust);
-    steps_allocate_nothing_by(&solver_relu_net);
+    steps_allocate_nothing_by(&solver_engine, "");
+    steps_allocate_nothing_by(&solver_engine, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_over_relaxation, "");
+    steps_allocate_nothing_by(&solver_over_relaxation, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_momentum, "");
+    steps_allocate_nothing_by(&solver_momentum, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_block, "");
+    steps_allocate_nothing_by(&solver_block, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_nncg, "");
+    steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_robust, "");
+    steps_allocate_nothing_by(&solver_robust, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_relu_net, "");
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */

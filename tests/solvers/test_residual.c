@@ -48,6 +48,11 @@ static void assert_residual(const ContactProblem *problem, double residual) {
         assert_false(residual_reaches(&sweeps, problem->contact_count, (float)(1.0001 * residual + 1e-5)));
         sweeps_free(&sweeps);
     }
+    ContactSolution warm = make_solution(problem);
+    sequential_impulses_begin(problem, &engine_options, &warm);
+    if (residual > 0) assert_true(residual_reaches_scalar(problem, &warm, (float)(0.9999 * residual)));
+    assert_false(residual_reaches_scalar(problem, &warm, (float)(1.0001 * residual + 1e-5)));
+    free_solution(&warm);
 }
 
 static void the_residual_is_the_root_of_the_mean_square_over_contacts(void **state) {

@@ -176,29 +176,20 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     world_destroy(world);
 }
 
-/* What create() says to these settings. */
-static void assert_refused(const ContactSolverKind *kind, const char *text, const char *message) {
-    Error error = {0};
-    Settings settings;
-    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
-    assert_null(kind->create(&settings, &error));
-    assert_error(error, ERROR_INPUT, message);
-}
-
 static void settings_out_of_range_are_refused(void **state) {
     (void)state;
-    assert_refused(&solver_momentum, "k=0", "k");
-    assert_refused(&solver_over_relaxation, "k=0", "k");
-    assert_refused(&solver_block, "k=0", "k");
-    assert_refused(&solver_nncg, "k=0", "k");
-    assert_refused(&solver_robust, "k=0", "k");
-    assert_refused(&solver_relu_net, "k=0", "k");
-    assert_refused(&solver_nncg, "k=ten", "k");
-    assert_refused(&solver_over_relaxation, "omega=0", "omega");
-    assert_refused(&solver_over_relaxation, "omega=2", "omega");
-    assert_refused(&solver_over_relaxation, "omega=nan", "omega");
-    assert_refused(&solver_engine, "warm=maybe", "warm");
-    assert_refused(&solver_learned_momentum, "", "names no factors");
+    assert_settings_refused(&solver_momentum, "k=0", "k");
+    assert_settings_refused(&solver_over_relaxation, "k=0", "k");
+    assert_settings_refused(&solver_block, "k=0", "k");
+    assert_settings_refused(&solver_nncg, "k=0", "k");
+    assert_settings_refused(&solver_robust, "k=0", "k");
+    assert_settings_refused(&solver_relu_net, "k=0", "k");
+    assert_settings_refused(&solver_nncg, "k=ten", "k");
+    assert_settings_refused(&solver_over_relaxation, "omega=0", "omega");
+    assert_settings_refused(&solver_over_relaxation, "omega=2", "omega");
+    assert_settings_refused(&solver_over_relaxation, "omega=nan", "omega");
+    assert_settings_refused(&solver_engine, "warm=maybe", "warm");
+    assert_settings_refused(&solver_learned_momentum, "", "names no factors");
 }
 
 static const char *write_schedules(void) {
@@ -229,7 +220,7 @@ static void learned_factors_are_those_of_the_file(void **state) {
     free_solution(&by_hand);
     world_destroy(world);
     snprintf(text, sizeof text, "k=10,network=%s", path);
-    assert_refused(&solver_learned_momentum, text, "has no factors for k=10; it has them for 5, 20");
+    assert_settings_refused(&solver_learned_momentum, text, "has no factors for k=10; it has them for 5, 20");
 }
 
 int main(void) {

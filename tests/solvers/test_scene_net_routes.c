@@ -127,8 +127,40 @@ static void a_network_that_says_nothing_changes_nothing(void **state) {
     assert_in_range(twice, 1, RUNS - 1);
 }
 
+/* The network's file has factors and outputs that must not matter. */
+static void without_its_prediction_it_is_momentum_with_the_same_stopping_rule(void **state) {
+    (void)state;
+    Error error = {0};
+    char text[400];
+    static Known known;
+    uint32_t seed = 10;
+    int other = 0;
+    for (int run = 0; run < RUNS; run++) {
+        make_known(&known, &seed, run, 0.7f);
+        for (int s = 1; s < AFTER && run % 2 == 1; s++) known.network->factors[s] = 0.5f;
+        known.network->gate = 0.7f * (float)residual_of(&known.random.problem);
+        const char *path = temporary_path("known.npz");
+        assert_ok(slot_network_write(known.network, path, &error), error);
+        for (int more = 8; more <= MORE; more += 40) {
+            snprintf(text, sizeof text, "network=%s,near=0.05,more=%d,net=off", path, more);
+            solve_with(&solver_scene_net, text, &known.random.problem, &known.found);
+            snprintf(text, sizeof text, "k=%d,near=0.05,more=%d", AFTER, more);
+            solve_with(&solver_momentum, text, &known.random.problem, &known.expected);
+            assert_same_bits(&known.random.problem, &known.found, &known.expected, "without prediction");
+            assert_int_equal(known.found.fallbacks.outside_cone, 0);
+        }
+        snprintf(text, sizeof text, "network=%s,near=0.05", path);
+        solve_with(&solver_scene_net, text, &known.random.problem, &known.found);
+        other += !same_bits(&known);
+        free_known(&known);
+    }
+    assert_in_range(other, RUNS - 5, RUNS);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_calm_step_takes_half_the_sweeps),
-                                       cmocka_unit_test(a_network_that_says_nothing_changes_nothing)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_calm_step_takes_half_the_sweeps),
+        cmocka_unit_test(a_network_that_says_nothing_changes_nothing),
+        cmocka_unit_test(without_its_prediction_it_is_momentum_with_the_same_stopping_rule)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,6 +76,23 @@ static void a_run_in_parts_has_the_bits_of_one(void **state) {
     free_kernels(sweeps);
 }
 
+/* Of the same pairs, as solvers with more than one number of sweeps have it: the odd sweep needs its own schedule. */
+static void schedules_fit_when_the_number_of_sweeps_changes(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 21;
+    Sweeps sweeps[SWEEP_KERNELS] = {0};
+    float factors[40];
+    for (int k = 0; k < 40; k++) factors[k] = 0.5f;
+    make_random(&random, &seed, 60, 0.2f, 2);
+    const int counts[] = {8, 7, 8, 3, 14, 33, 2};
+    for (int i = 0; i < 7; i++) assert_momentum_kernels_agree(sweeps, &random.problem, true, factors, counts[i]);
+    for (int i = 0; i < 7; i++) assert_kernels_agree(sweeps, &random.problem, &engine_options, counts[i]);
+    for (int kernel = 0; kernel < SWEEP_KERNELS; kernel++) sweeps[kernel].block = 8;
+    for (int i = 0; i < 7; i++) assert_kernels_agree(sweeps, &random.problem, &engine_options, counts[i]);
+    free_kernels(sweeps);
+}
+
 static void momentum_of_factor_zero_has_the_bits_of_the_engine(void **state) {
     (void)state;
     static RandomProblem random;
@@ -166,6 +183,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
                                        cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
                                        cmocka_unit_test(a_run_in_parts_has_the_bits_of_one),
+                                       cmocka_unit_test(schedules_fit_when_the_number_of_sweeps_changes),
                                        cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
                                        cmocka_unit_test(a_kept_schedule_serves_the_same_pairs),
                                        cmocka_unit_test(no_contacts_leave_the_velocities),

@@ -18,6 +18,15 @@ static inline ContactSolver make_solver(const ContactSolverKind *kind, const cha
     return solver;
 }
 
+/* create() refuses these settings, with a message that contains the text. */
+static inline void assert_settings_refused(const ContactSolverKind *kind, const char *text, const char *message) {
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
+    assert_null(kind->create(&settings, &error));
+    assert_error(error, ERROR_INPUT, message);
+}
+
 static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }

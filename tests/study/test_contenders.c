@@ -94,9 +94,33 @@ static void a_method_without_its_network_is_left_out(void **state) {
     scene_destroy(scene);
 }
 
+/* The ablation that a chart must show beside it. */
+static void every_learned_method_has_a_twin_that_is_charted(void **state) {
+    (void)state;
+    ContenderList all = parse(NULL);
+    int learned = 0;
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        assert_int_equal(method->twin != NULL, method->needs_network && method->role == METHOD_COMPETES);
+        if (method->twin == NULL) continue;
+        Error error = {0};
+        Method twin;
+        assert_ok(method_parse(&twin, method->twin, &error), error);
+        int found = 0;
+        for (int i = 0; i < all.count; i++) found += strcmp(all.items[i].method.text, method->twin) == 0;
+        for (int i = 0; i < all.count && strchr(method->twin, ':') == NULL; i++)
+            found += strcmp(all.items[i].name, method->twin) == 0;
+        assert_true(found > 0);
+        learned++;
+    }
+    assert_int_equal(learned, 4);
+    contenders_free(&all);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_comma_separates_methods_or_settings),
                                        cmocka_unit_test(a_name_alone_stands_for_all_its_settings),
+                                       cmocka_unit_test(every_learned_method_has_a_twin_that_is_charted),
                                        cmocka_unit_test(the_engine_as_shipped_is_always_there),
                                        cmocka_unit_test(bad_lists_are_refused),
                                        cmocka_unit_test(a_method_without_its_network_is_left_out)};
