@@ -8,7 +8,7 @@
 #include "sweeps/sweeps.h"
 
 enum {
-    STOPPING_BLOCK = 8, /* sweeps; reading the residual before each block costs about half a sweep */
+    STOPPING_BLOCK = 8, /* sweeps; the residual is read before each block */
     STOPPING_MORE = 48  /* the default of `more` */
 };
 
