@@ -11,7 +11,21 @@ figures() {
     done
 }
 
-run 0 paper -o quick --quick --scenes "$scenes"
+# await FOLDER PART: until the study in the background has done the part, or ended.
+await() {
+    until ls "$1"/parts-*/"$2" >/dev/null 2>&1; do
+        kill -0 $study 2>/dev/null || break
+        sleep 0.01
+    done
+}
+
+# While it goes on, what it has done by then is copied, to be continued below.
+"$twinbox" paper -o quick --quick --scenes "$scenes" >out 2>err </dev/null &
+study=$!
+await quick network-optimizer-lm
+cp -r quick part
+wait $study
+equal "exit status of the study" $? 0
 says "quick/report.html"
 equal "header of table1" "$(head -1 quick/table1.csv)" "network,target,optimizer,iteration,test,train,constant"
 equal "header of rates" "$(head -1 quick/rates.csv)" \
@@ -55,17 +69,7 @@ html = open("quick/report.html").read()
 assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/)', html)
 PYTHON
 
-# What is cut off goes on where it stopped, to the same figures.
-"$twinbox" paper -o part --quick --scenes "$scenes" >out 2>err </dev/null &
-for _ in $(seq 3000); do
-    ls part/parts-*/network-target-net >/dev/null 2>&1 && break
-    sleep 0.01
-done
-kill -INT $!
-wait $!
-equal "exit status of a study cut off" $? 2
-complains "stopped"
-[ -e part/report.html ] && fail "a study cut off has a report"
+# A study continues from the parts that are done, to the same tables.
 kept=$(echo part/parts-*)
 sed -i 's/^table1:baseline,pair,adam,0,[^,]*/table1:baseline,pair,adam,0,0.5/' "$kept/network-baseline"
 run 0 paper -o part --quick --scenes "$scenes"
@@ -73,6 +77,17 @@ figures quick >figures.csv
 figures part | diff - figures.csv >difference
 equal "figures changed by hand that stay" "$(grep -c '^< baseline,pair,adam,0,0.5,' difference)" 1
 equal "other differences" "$(grep -c '^[<>]' difference)" 2
+
+# An interrupted one keeps them.
+"$twinbox" paper -o cut --quick --scenes "$scenes" >out 2>err </dev/null &
+study=$!
+await cut network-baseline
+kill -INT $study
+wait $study
+equal "exit status of an interrupted study" $? 2
+complains "stopped"
+ls cut/parts-*/network-baseline >/dev/null 2>&1 || fail "what was done is gone"
+[ -e cut/report.html ] && fail "an interrupted study has a report"
 
 run 2 paper
 complains "-o DIR is needed"

@@ -1,0 +1,19 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Studies by one thread and by three give the same tables. Small, for the thread sanitizer.
+. "$(dirname "$0")/checks.sh"
+
+for threads in 1 3; do
+    export OMP_NUM_THREADS=$threads
+    run 0 chart "$scenes/single.yaml" --quick --methods engine:k=10,momentum:k=20,pair-net -o chart$threads
+    "$sources/golden/without_times" chart$threads/chart.csv >chart$threads.csv
+    run 0 stability --scenes "$scenes" --quick --study bomb_speed --study speed_thickness \
+        --methods engine:k=4,engine:k=10,robust -o stability$threads
+done
+equal "rows of the chart" "$(wc -l <chart1.csv)" 19
+cmp -s chart1.csv chart3.csv || fail "three threads chart other numbers"
+equal "borders" "$(wc -l <stability1/stability.csv)" 4
+for table in stability maps rest; do
+    cmp -s stability1/$table.csv stability3/$table.csv || fail "three threads write another $table.csv"
+done
+finish

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tables of rates and of closed loops: a row for each network, definition and phase, the same by one thread and by
+   three, but for times. */
+#include "testing.h"
+
+#include "paper/study/pair_rates.h"
+#include "paper/study/paper_scores.h"
+
+#include <omp.h>
+
+enum { NETWORKS = 2, TABLE_SIZE = 1 << 14 };
+
+static const PaperNetwork networks[NETWORKS] = {{.name = "pair-net", .target = TARGET_PAIR},
+                                                {.name = "contact-net", .target = TARGET_POINTS}};
+static const PaperScoring scoring = {.path = SOURCE_DIR "/scenes/single.yaml",
+                                     .folder = SOURCE_DIR "/scenes/networks",
+                                     .networks = networks,
+                                     .count = NETWORKS,
+                                     .rate_launches = 3,
+                                     .closed_launches = 2,
+                                     .sampling = {.after = 30, .rest = 200},
+                                     .repetitions = 1};
+
+typedef bool (*WriteTable)(void *context, FILE *lines, const Progress *progress, Error *error);
+
+static void write_table(WriteTable write, int threads, char table[TABLE_SIZE]) {
+    Error error = {0};
+    const int before = omp_get_max_threads();
+    FILE *lines = fmemopen(table, TABLE_SIZE, "w");
+    assert_non_null(lines);
+    omp_set_num_threads(threads);
+    assert_ok(write((void *)&scoring, lines, NULL, &error), error);
+    omp_set_num_threads(before);
+    assert_int_equal(fclose(lines), 0);
+}
+
+/* Ends each line before its two times. */
+static void cut_times(char *table) {
+    char *to = table;
+    for (char *line = strtok(table, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        for (int i = 0; i < 2; i++) *strrchr(line, ',') = '\0';
+        size_t length = strlen(line);
+        memmove(to, line, length);
+        to += length;
+        *to++ = '\n';
+    }
+    *to = '\0';
+}
+
+static int count_lines(const char *table, const char *beginning) {
+    int count = 0;
+    for (const char *at = strstr(table, beginning); at != NULL; at = strstr(at + 1, beginning)) count++;
+    return count;
+}
+
+static void threads_rate_alike(void **state) {
+    (void)state;
+    char one[TABLE_SIZE], three[TABLE_SIZE];
+    write_table(paper_rates_write, 1, one);
+    write_table(paper_rates_write, 3, three);
+    assert_string_equal(one, three);
+    for (int i = 0; i < NETWORKS + 1; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "rates:%s,single,", i < NETWORKS ? networks[i].name : "warm-start");
+        assert_int_equal(count_lines(one, beginning), RATE_DEFINITIONS * RATE_PHASES);
+    }
+}
+
+static void threads_close_the_loop_alike(void **state) {
+    (void)state;
+    char one[TABLE_SIZE], three[TABLE_SIZE];
+    write_table(paper_closed_loop_write, 1, one);
+    write_table(paper_closed_loop_write, 3, three);
+    cut_times(one);
+    cut_times(three);
+    assert_string_equal(one, three);
+    assert_int_equal(count_lines(one, "closed_loop:pair-net,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:contact-net,single,"), 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_rate_alike),
+        cmocka_unit_test(threads_close_the_loop_alike),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
