@@ -3,6 +3,9 @@
 
 #include "common/parallel.h"
 
+#include <omp.h>
+#include <stdatomic.h>
+
 enum { PIECES = 1000 };
 
 static bool add_one(void *context, int i, Error *error) {
@@ -50,9 +53,35 @@ static void progress_can_stop_it(void **state) {
     assert_true(count >= 10 && count < PIECES);
 }
 
+/* Every thread does a piece, because none goes on before all have begun one. */
+static bool meet_the_others(void *context, int i, Error *error) {
+    (void)i, (void)error;
+    atomic_int *begun = context;
+    atomic_fetch_add(begun, 1);
+    while (atomic_load(begun) < omp_get_num_threads()) continue;
+    return true;
+}
+
+static bool count_call(void *context, double done, double total) {
+    (void)total;
+    int *calls = context;
+    assert_true(done == ++*calls);
+    return true;
+}
+
+static void progress_is_reported_by_one_thread_at_a_time(void **state) {
+    (void)state;
+    atomic_int begun = 0;
+    int calls = 0;
+    Error error = {0};
+    const Progress progress = {count_call, &calls};
+    assert_ok(parallel_for(&(ParallelWork){meet_the_others, &begun}, PIECES, "test", &progress, &error), error);
+    assert_int_equal(calls, PIECES);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_piece_is_done_once),
-                                       cmocka_unit_test(an_error_stops_the_rest),
-                                       cmocka_unit_test(progress_can_stop_it)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_piece_is_done_once), cmocka_unit_test(an_error_stops_the_rest),
+        cmocka_unit_test(progress_can_stop_it), cmocka_unit_test(progress_is_reported_by_one_thread_at_a_time)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
