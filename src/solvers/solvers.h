@@ -22,7 +22,8 @@
     SOLVER(constant)              \
     STEPPING(playback)            \
     SOLVER(reference)             \
-    SOLVER(relu_net)
+    SOLVER(relu_net)              \
+    SOLVER(interior)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;
