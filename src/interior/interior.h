@@ -42,6 +42,7 @@ enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
 typedef struct InteriorGroup {
     Vec4 mass_normal, mass_tangent, friction, bias;
     Vec4 inverse_normal, inverse_tangent; /* 1/kg, of the effective masses; 0 without a contact */
+    Vec4 depth;                           /* m, overlap */
     Vec4 weight;                          /* 1 for a contact, else 0 */
     Vec4 l, t, z, p, q;                   /* N s and m/s, see above */
     Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
@@ -103,10 +104,13 @@ void interior_free(Interior *interior);
 
 /* Loads the impulses and velocities of sweeps over the problem, and sets `residual` to theirs. The residual is the root
    mean square over contacts of what one more visit would change: normal and tangent velocity, |change of impulse| /
-   effective mass. A contact that touches by less than half the slop aims to close by `closing` (m/s): at exactly zero
-   rounding would part boxes that rest on each other. False when memory is short. */
+   effective mass. False when memory is short. */
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
-                   const ContactProblem *problem, double closing);
+                   const ContactProblem *problem);
+
+/* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
+   that rest on each other would part. */
+void interior_close(Interior *interior, double speed, double depth);
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down. */

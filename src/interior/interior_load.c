@@ -91,8 +91,8 @@ static Vec4 row_of(const SweepPoint *point, Vec2 direction) {
 
 static double over(float x) { return x != 0 ? 1 / (double)x : 0; }
 
-static void load_slot(InteriorGroup *group, int slot, InteriorPair *rows, int k, const SweepPair *pair, double closing,
-                      Vec4 now, Vec4 before) {
+static void load_slot(InteriorGroup *group, int slot, InteriorPair *rows, int k, const SweepPair *pair, Vec4 now,
+                      Vec4 before) {
     const SweepPoint *point = &pair->points[k];
     const Vec4 normal = row_of(point, pair->normal), tangent = row_of(point, vec2_cross_scalar(pair->normal, 1.0f));
     const double friction = (double)pair->friction;
@@ -104,7 +104,7 @@ static void load_slot(InteriorGroup *group, int slot, InteriorPair *rows, int k,
     group->inverse_normal[slot] = over(point->mass_normal);
     group->inverse_tangent[slot] = over(point->mass_tangent);
     group->friction[slot] = friction > friction_min ? friction : friction_min;
-    group->bias[slot] = (double)point->bias - closing;
+    group->bias[slot] = (double)point->bias;
     group->l[slot] = group->answer_normal[slot] = (double)pair->sums[k].normal;
     group->t[slot] = group->answer_tangent[slot] = (double)pair->sums[k].tangent;
     group->normal[slot] = dot(normal, now);
@@ -119,7 +119,7 @@ static void clear_group(InteriorGroup *group) {
     *group = (InteriorGroup){.friction = one, .l = one, .z = one, .p = one, .q = one};
 }
 
-static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactProblem *problem, double closing) {
+static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactProblem *problem) {
     static const InteriorPair none = {0};
     const SweepPair *pair = &sweeps->pairs[i];
     const int a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
@@ -138,25 +138,30 @@ static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactPro
                          (double)old_b->velocity.y - (double)old_a->velocity.y, (double)old_b->angular_velocity,
                          (double)old_a->angular_velocity};
     for (int k = 0; k < sweep_pair_points(pair); k++) {
-        const bool shallow = problem->contacts[sweeps->first[i] + k].separation > -0.5f * CONTACT_SLOP;
-        load_slot(&s->groups[i / GROUP_PAIRS], i % GROUP_PAIRS * 2 + k, rows, k, pair, shallow ? closing : 0, now,
-                  before);
+        load_slot(&s->groups[i / GROUP_PAIRS], i % GROUP_PAIRS * 2 + k, rows, k, pair, now, before);
+        s->groups[i / GROUP_PAIRS].depth[i % GROUP_PAIRS * 2 + k] =
+            -(double)problem->contacts[sweeps->first[i] + k].separation;
         s->contact_count++;
     }
 }
 
-bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem,
-                   double closing) {
+bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem) {
     if (!reserve(s, sweeps) || !analyse(s, sweeps, problem)) return false;
     load_bodies(s, sweeps, problem);
     s->group_count = (sweeps->pair_count + GROUP_PAIRS - 1) / GROUP_PAIRS;
     s->contact_count = 0;
     for (int i = 0; i < s->group_count; i++) clear_group(&s->groups[i]);
-    for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem, closing);
+    for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem);
     if (sweeps->pair_count % GROUP_PAIRS != 0)
         s->pairs[sweeps->pair_count] = (InteriorPair){
             .a = s->lu.count, .b = s->lu.count, .place = {block_lu_spare(&s->lu), block_lu_spare(&s->lu)}};
     s->residual = kernels->residual(s);
     s->iterations = 0;
     return true;
+}
+
+void interior_close(Interior *s, double speed, double depth) {
+    for (int i = 0; i < s->group_count; i++)
+        for (int k = 0; k < GROUP_SLOTS; k++)
+            if (s->groups[i].depth[k] < depth) s->groups[i].bias[k] -= speed;
 }

@@ -21,9 +21,10 @@ enum {
     CHECK_EVERY = 8
 };
 
-/* Where the residual at the start is below `rest_below`, the tolerance is this share of `near`: errors of boxes at rest
-   add up along a stack, and from step to step. A step of gravity alone adds 0.17 m/s. */
-static const double rest_share = 0.05, rest_below = 0.2; /* m/s */
+/* A step is at rest if the residual at the start is below `rest_below`; a step of gravity alone adds 0.17 m/s. Then the
+   tolerance is at most `rest_near`, as errors of boxes at rest add up along a stack and from step to step. Shallow
+   contacts aim to close by the same speed: it exceeds the rounding of positions. */
+static const double rest_below = 0.2, rest_near = 0.001; /* m/s */
 
 typedef struct State {
     Interior interior;
@@ -61,12 +62,13 @@ static void *create(const Settings *chosen, Error *error) {
 static bool iterate(State *solver, const ContactProblem *problem) {
     const InteriorKernels *kernels = interior_best();
     Sweeps *sweeps = &solver->momentum.sweeps;
-    const double near = (double)solver->near, at_rest = rest_share * near;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) || !sweeps_run(sweeps, START_SWEEPS) ||
-        !interior_load(&solver->interior, kernels, sweeps, problem, at_rest))
+        !interior_load(&solver->interior, kernels, sweeps, problem))
         return false;
-    interior_iterate(&solver->interior, kernels, solver->interior.residual < rest_below ? at_rest : near,
-                     ITERATIONS_MAX);
+    const double near = (double)solver->near, least = near < rest_near ? near : rest_near;
+    const bool rests = solver->interior.residual < rest_below;
+    interior_close(&solver->interior, least, CONTACT_SLOP / 2);
+    interior_iterate(&solver->interior, kernels, rests ? least : near, ITERATIONS_MAX);
     return true;
 }
 
@@ -88,7 +90,7 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
                       Error *error) {
     const double before = solver->interior.residual;
     Sweeps *sweeps = &solver->momentum.sweeps;
-    if (!sweep(solver, problem) || !interior_load(&solver->interior, interior_best(), sweeps, problem, 0))
+    if (!sweep(solver, problem) || !interior_load(&solver->interior, interior_best(), sweeps, problem))
         return error_memory(error, "interior");
     if (finite && before <= solver->interior.residual) return true;
     solution->fallbacks.by_sweeps = 1;
