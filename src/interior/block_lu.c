@@ -39,9 +39,17 @@ static bool reserve_nodes(BlockLu *lu, int count, int edge_count) {
 static void set_bit(uint64_t *row, int bit) { row[bit / WORD] |= (uint64_t)1 << (bit % WORD); }
 static void clear_bit(uint64_t *row, int bit) { row[bit / WORD] &= ~((uint64_t)1 << (bit % WORD)); }
 
+/* Inline: not every CPU has an instruction for it, and a call of the compiler's library takes longer. */
+static int bits_in(uint64_t word) {
+    word -= word >> 1 & UINT64_C(0x5555555555555555);
+    word = (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
+    word = (word + (word >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+    return (int)(word * UINT64_C(0x0101010101010101) >> 56);
+}
+
 static int bits_of(const uint64_t *row, size_t words) {
     int bits = 0;
-    for (size_t w = 0; w < words; w++) bits += __builtin_popcountll(row[w]);
+    for (size_t w = 0; w < words; w++) bits += bits_in(row[w]);
     return bits;
 }
 

@@ -52,7 +52,7 @@ typedef struct InteriorGroup {
     Vec4 dn, dt, s;                       /* D_n, D_t, s */
     Vec4 aim_normal, aim_tangent;         /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
     Vec4 rn, rt;                          /* r_n, r_t */
-    Vec4 upper, lower;                    /* 1 / (mu l - t), 1 / (mu l + t) */
+    Vec4 upper, lower, over_z;            /* 1 / (mu l - t), 1 / (mu l + t), 1 / z */
     Vec4 impulse_normal, impulse_tangent; /* l + r_n and t + r_t + s r_n: the right-hand side */
     Vec4 change_normal, change_tangent;   /* J_n dv and J_t dv */
     Vec4 second_p, second_q;              /* products of the corrector */

@@ -26,11 +26,12 @@ static void linearise(Interior *s, double target) {
     const Vec4 tau2 = all4(target), softest = all4(1 / stiffest);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        const Vec4 bound = g->friction * g->l, over_z = 1 / g->z;
+        const Vec4 bound = g->friction * g->l;
+        g->over_z = 1 / g->z;
         g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
         g->aim_tangent = larger(tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
-        g->dn = g->l * over_z;
-        g->rn = g->aim_normal * over_z - g->l - g->dn * (g->normal - g->bias - g->z);
+        g->dn = g->l * g->over_z;
+        g->rn = g->aim_normal * g->over_z - g->l - g->dn * (g->normal - g->bias - g->z);
         g->upper = 1 / (bound - g->t);
         g->lower = 1 / (bound + g->t);
         const Vec4 p = g->p * g->upper, q = g->q * g->lower;
@@ -148,9 +149,10 @@ static void correct(Interior *s) {
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         const Changes by = changes_of(g, all4(0), all4(0));
-        g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) / g->z;
-        g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p / g->upper));
-        g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q / g->lower));
+        const Vec4 bound = g->friction * g->l;
+        g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) * g->over_z;
+        g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p * (bound - g->t)));
+        g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q * (bound + g->t)));
         g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
         g->impulse_normal = g->l + g->rn;
         g->impulse_tangent = g->t + g->rt + g->s * g->rn;
