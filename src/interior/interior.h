@@ -20,7 +20,8 @@
    opens. A second solve with the same factors corrects for the products dl dz, dp dt, dq dt (Mehrotra's corrector).
    Impulses and slips keep a share of their value in an iteration, each by itself. tau^2 falls by a fixed factor, but not
    far below the square of the residual: else iterations cycle between sets of closed contacts. The answer of an
-   iteration is its full step, projected into the cones, with the velocities that these impulses make.
+   iteration is its full step, projected into the cones, with the velocities that these impulses make. The velocities of
+   the linearised step are closer to the solution, but only impulses outside the cones would make them.
 
    Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
    Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,

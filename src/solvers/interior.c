@@ -3,8 +3,9 @@
    sweeps make the start. Ends when the residual is at most `near`. If it never is, sweeps with momentum solve the step
    instead, unless their residual is larger; the solution counts this as a fallback.
 
-   Converges quadratically, so that a hundred times the accuracy costs some iterations more. Fails by its time: an
-   iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies. */
+   The residual falls about sevenfold with each of the last iterations: a hundred times the accuracy costs two or three
+   more. Fails by its time: an iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies;
+   a frozen impact of scenes/pyramid_settled takes twelve iterations, one of scenes/stack five. */
 #include "interior/interior.h"
 
 #include "solvers/momentum.h"
@@ -85,7 +86,7 @@ static bool sweep(State *solver, const ContactProblem *problem) {
     return true;
 }
 
-/* The solution of the iterations is stored. Replaces it if sweeps are better. */
+/* The solution of the iterations is stored. Replaces it if the residual of sweeps is smaller. */
 static bool fall_back(State *solver, bool finite, const ContactProblem *problem, ContactSolution *solution,
                       Error *error) {
     const double before = solver->interior.residual;
