@@ -109,6 +109,10 @@ void interior_free(Interior *interior);
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
                    const ContactProblem *problem);
 
+/* m/s: how fast the contacts would miss their targets without any impulse, root mean square. A step of gravity makes
+   0.17 at rest, whatever the masses. */
+double interior_approach(const Interior *interior);
+
 /* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);

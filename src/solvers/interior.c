@@ -22,10 +22,10 @@ enum {
     CHECK_EVERY = 8
 };
 
-/* A step is at rest if the residual at the start is below `rest_below`; a step of gravity alone adds 0.17 m/s. Then the
-   tolerance is at most `rest_near`, as errors of boxes at rest add up along a stack and from step to step. Shallow
-   contacts aim to close by the same speed: it exceeds the rounding of positions. */
-static const double rest_below = 0.2, rest_near = 0.001; /* m/s */
+/* A step is at rest if contacts approach by less than `rest_below`. Then the tolerance is at most `rest_near`, as errors
+   of boxes at rest add up along a stack and from step to step. Shallow contacts aim to close by the same speed: it
+   exceeds the rounding of positions. */
+static const double rest_below = 0.5, rest_near = 0.001; /* m/s */
 
 typedef struct State {
     Interior interior;
@@ -67,7 +67,7 @@ static bool iterate(State *solver, const ContactProblem *problem) {
         !interior_load(&solver->interior, kernels, sweeps, problem))
         return false;
     const double near = (double)solver->near, least = near < rest_near ? near : rest_near;
-    const bool rests = solver->interior.residual < rest_below;
+    const bool rests = interior_approach(&solver->interior) < rest_below;
     interior_close(&solver->interior, least, CONTACT_SLOP / 2);
     interior_iterate(&solver->interior, kernels, rests ? least : near, ITERATIONS_MAX);
     return true;
