@@ -55,11 +55,13 @@ typedef struct ContactImpulse {
     float normal, tangent; /* N s, accumulated over the step; b gets +, a gets - */
 } ContactImpulse;
 
-/* Network outputs of a step that were discarded or corrected, counted by contact or pair. */
+/* What a method solved by simpler means than its own. The first two count network outputs that were discarded or
+   corrected, by contact or pair. */
 typedef struct NetworkFallbacks {
     int not_finite;      /* NaN, infinite or out of bounds; discarded */
     int outside_cone;    /* impulses that were clamped to the friction cone */
     int beyond_training; /* steps without the network, because the gate found them unlike its training data */
+    int by_sweeps;       /* steps that sweeps solved, because the residual of interior-point steps stayed high */
 } NetworkFallbacks;
 
 /* What a solver fills in; the arrays are the caller's. */
@@ -69,5 +71,5 @@ typedef struct ContactSolution {
     /* N s: momentum that the method created: the sum over pairs of moving bodies of |ma dva + mb dvb|; 0 for a method
        that applies impulses; of avbd the sum over bodies of the momentum that its impulses do not account for */
     float momentum_error;
-    NetworkFallbacks fallbacks; /* zeros without a network */
+    NetworkFallbacks fallbacks; /* zeros for most methods */
 } ContactSolution;

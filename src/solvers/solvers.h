@@ -24,7 +24,8 @@
     SOLVER(reference)             \
     SOLVER(relu_net)              \
     STEPPING(soft_step)           \
-    STEPPING(avbd)
+    STEPPING(avbd)                \
+    SOLVER(interior)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;

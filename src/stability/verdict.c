@@ -122,6 +122,7 @@ static void add_fallbacks(NetworkFallbacks *sum, const NetworkFallbacks *step) {
     sum->not_finite += step->not_finite;
     sum->outside_cone += step->outside_cone;
     sum->beyond_training += step->beyond_training;
+    sum->by_sweeps += step->by_sweeps;
 }
 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,

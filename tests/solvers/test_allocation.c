@@ -47,6 +47,7 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_robust, "");
     steps_allocate_nothing_by(&solver_robust, "k=7,near=1e-4");
     steps_allocate_nothing_by(&solver_relu_net, "");
+    steps_allocate_nothing_by(&solver_interior, "");
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */

@@ -22,13 +22,24 @@ static int judge_block(void **state) {
     return 0;
 }
 
+static int judge_interior(void **state) {
+    (void)state;
+    judged = &solver_interior;
+    return 0;
+}
+
+/* The settings of the judged solver: those given, which are numbers of sweeps, or a tight tolerance. */
+static ContactSolver make_judged(const char *sweeps) {
+    return make_solver(judged, judged == &solver_interior ? "near=1e-6" : sweeps);
+}
+
 /* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
 static void a_free_box_falls_as_it_should(void **state) {
     (void)state;
     World *world = make_world();
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
-    ContactSolver solver = make_solver(judged, "");
+    ContactSolver solver = make_judged("");
     const int k = 120;
     run(world, &solver, k);
     const Body *box = world_bodies(world);
@@ -72,7 +83,7 @@ static void a_pair_impulse_keeps_momentum_and_angular_momentum(void **state) {
                                .position = {1.3f, 10.4f},
                                .angle = 0.3f,
                                .velocity = {-6, 0}});
-    ContactSolver solver = make_solver(judged, "");
+    ContactSolver solver = make_judged("");
     run(world, &solver, 1);
     const ContactProblem *problem = world_problem(world);
     const ContactSolution *solution = world_solution(world);
@@ -95,7 +106,7 @@ static float slide(float angle, float mu, int steps) {
     Vec2 up = mat22_rotation(angle).column2;
     Vec2 start = vec2_scale(1.5f - 0.005f, up);
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = mu, .position = start, .angle = angle});
-    ContactSolver solver = make_solver(judged, "");
+    ContactSolver solver = make_judged("");
     run(world, &solver, steps);
     Vec2 moved = vec2_sub(world_bodies(world)[1].position, start);
     free_solver(&solver);
@@ -123,7 +134,7 @@ static void a_resting_stacks_impulses_carry_its_weight(void **state) {
     add_ground(world, 0.2f);
     for (int i = 0; i < BOXES; i++)
         add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    ContactSolver solver = make_solver(judged, "k=30");
+    ContactSolver solver = make_judged("k=30");
     run(world, &solver, 1200);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -143,7 +154,7 @@ static void a_landing_box_stops(void **state) {
     add_ground(world, 0.2f);
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 4, .friction = 0.2f, .position = {0, 0.495f}, .velocity = {0, -3}});
-    ContactSolver solver = make_solver(judged, "");
+    ContactSolver solver = make_judged("");
     run(world, &solver, 1);
     const ContactImpulse *impulses = world_solution(world)->impulses;
     assert_near(impulses[0].normal + impulses[1].normal, 4 * (3 + 10 * world_dt), 1e-4f);
@@ -159,7 +170,7 @@ static void friction_stays_in_its_cone(void **state) {
     add_ground(world, 0.5f);
     add_body(world,
              &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
-    ContactSolver solver = make_solver(judged, "k=200");
+    ContactSolver solver = make_judged("k=200");
     run(world, &solver, 1);
     assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);
     const ContactProblem *problem = world_problem(world);
@@ -210,5 +221,6 @@ int main(void) {
     return cmocka_run_group_tests_name("engine", laws, judge_engine, NULL) +
            cmocka_run_group_tests_name("block", laws, judge_block, NULL) +
            cmocka_run_group_tests_name("robust", laws, judge_robust, NULL) +
+           cmocka_run_group_tests_name("interior", laws, judge_interior, NULL) +
            cmocka_run_group_tests(of_the_engine, NULL, NULL);
 }

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The numbers of the factorization; included by interior_code.h, which is compiled once for each instruction set. All
+   perform the same operations in the same order, so they have the same bits. */
+#include "interior/block_lu.h"
+
+static inline Vec4 vec4(double x, double y, double z, double w) { return (Vec4){x, y, z, w}; }
+
+/* block times the first three numbers of `by`. */
+static inline Vec4 block_times(const Block3 *block, const Vec4 *by) {
+    const double *x = (const double *)by;
+    return block->column[0] * x[0] + block->column[1] * x[1] + block->column[2] * x[2];
+}
+
+/* *target -= left right */
+static inline void block_subtract(Block3 *target, const Block3 *left, const Block3 *right) {
+    for (int c = 0; c < 3; c++) target->column[c] -= block_times(left, &right->column[c]);
+}
+
+/* A pivot P = L U by elimination: L has ones on its diagonal and is stored below it, U above it, and the inverses of
+   U's diagonal on it. Not by the inverse of P: its rounding errors would grow with the square of the condition. */
+static inline Block3 pivot_make(const Block3 *block) {
+    const double *x = (const double *)&block->column[0], *y = (const double *)&block->column[1],
+                 *z = (const double *)&block->column[2];
+    const double over0 = 1 / x[0], l10 = x[1] * over0, l20 = x[2] * over0;
+    const double over1 = 1 / (y[1] - l10 * y[0]), u12 = z[1] - l10 * z[0];
+    const double l21 = (y[2] - l20 * y[0]) * over1;
+    const double over2 = 1 / (z[2] - l20 * z[0] - l21 * u12);
+    return (Block3){{vec4(over0, l10, l20, 0), vec4(y[0], over1, l21, 0), vec4(z[0], u12, over2, 0)}};
+}
+
+/* L^-1 x */
+static inline Vec4 pivot_lower(const Block3 *pivot, Vec4 x) {
+    const double *first = (const double *)&pivot->column[0], *second = (const double *)&pivot->column[1];
+    x -= vec4(0, first[1], first[2], 0) * x[0];
+    return x - vec4(0, 0, second[2], 0) * x[1];
+}
+
+/* U^-1 x */
+static inline Vec4 pivot_upper(const Block3 *pivot, Vec4 x) {
+    const double *first = (const double *)&pivot->column[0], *second = (const double *)&pivot->column[1],
+                 *third = (const double *)&pivot->column[2];
+    const double z = x[2] * third[2], y = (x[1] - third[1] * z) * second[1];
+    return vec4((x[0] - third[0] * z - second[0] * y) * first[0], y, z, 0);
+}
+
+/* block U^-1 */
+static inline Block3 over_pivot(const Block3 *block, const Block3 *pivot) {
+    const double *first = (const double *)&pivot->column[0], *second = (const double *)&pivot->column[1],
+                 *third = (const double *)&pivot->column[2];
+    Block3 over;
+    over.column[0] = block->column[0] * first[0];
+    over.column[1] = (block->column[1] - over.column[0] * second[0]) * second[1];
+    over.column[2] = (block->column[2] - over.column[0] * third[0] - over.column[1] * third[1]) * third[2];
+    return over;
+}
+
+/* Replaces A by L and U with A = L U: L has ones on its diagonal. */
+static void block_lu_factor(BlockLu *lu) {
+    Block3 *diagonal = lu->blocks, *lower = block_lu_lower(lu), *upper = block_lu_upper(lu);
+    for (int k = 0; k < lu->count; k++) {
+        const Block3 pivot = pivot_make(&diagonal[k]);
+        diagonal[k] = pivot;
+        for (int x = lu->column[k]; x < lu->column[k + 1]; x++) {
+            lower[x] = over_pivot(&lower[x], &pivot);
+            for (int c = 0; c < 3; c++) upper[x].column[c] = pivot_lower(&pivot, upper[x].column[c]);
+            block_subtract(&diagonal[lu->row[x]], &lower[x], &upper[x]);
+        }
+        for (int u = lu->update[k]; u < lu->update[k + 1]; u++) {
+            const BlockUpdate update = lu->updates[u];
+            block_subtract(&lower[update.target], &lower[update.left], &upper[update.right]);
+            block_subtract(&upper[update.target], &lower[update.right], &upper[update.left]);
+        }
+    }
+}
+
+/* x[count], by position: on entry the right-hand side. After block_lu_factor(). */
+static void block_lu_solve(const BlockLu *lu, Vec4 *x) {
+    const Block3 *diagonal = lu->blocks, *lower = block_lu_lower(lu), *upper = block_lu_upper(lu);
+    for (int k = 0; k < lu->count; k++) {
+        const Vec4 mine = x[k] = pivot_lower(&diagonal[k], x[k]);
+        for (int i = lu->column[k]; i < lu->column[k + 1]; i++) x[lu->row[i]] -= block_times(&lower[i], &mine);
+    }
+    for (int k = lu->count - 1; k >= 0; k--) {
+        Vec4 rest = x[k];
+        for (int i = lu->column[k]; i < lu->column[k + 1]; i++) rest -= block_times(&upper[i], &x[lu->row[i]]);
+        x[k] = pivot_upper(&diagonal[k], rest);
+    }
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step's contacts by interior-point steps with a sparse direct solve over the bodies.
+
+   Each contact has a normal impulse l >= 0 and a gap velocity z >= 0, a tangent impulse t inside |t| <= mu l, and
+   sliding velocities p, q >= 0 in the two directions. With M the masses, v' the velocities before the contacts, J_n and
+   J_t the rows of normal and tangent velocities, b the bias:
+
+       M (v - v') = J_n^T l + J_t^T t
+       z = J_n v - b,        l z = tau^2 m_n
+       J_t v = q - p,        p (mu l - t) = q (mu l + t) = tau^2 m_t mu
+
+   For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
+   an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
+
+       dl = r_n - D_n J_n dv,   dt = r_t + s dl - D_t J_t dv,   D_n = l / z,   s = mu (p / (mu l - t) - q / (mu l + t)) D_t,
+
+   which leaves (M + J_n^T D_n J_n + J_t^T (s D_n J_n + D_t J_t)) dv = r, with 3 x 3 blocks for the bodies in contact
+   (block_lu.h). The matrix is not symmetric, as the friction bound follows the normal impulse. The direct solve carries
+   a shock through all bodies at once, and D is a soft active set: large where a contact closes, near zero where it
+   opens. A second solve with the same factors corrects for the products dl dz, dp dt, dq dt (Mehrotra's corrector).
+   Impulses and slips keep a share of their value in an iteration, each by itself. tau^2 falls by a fixed factor, but not
+   far below the square of the residual: else iterations cycle between sets of closed contacts. The answer of an
+   iteration is its full step, projected into the cones, with the velocities that these impulses make. The velocities of
+   the linearised step are closer to the solution, but only impulses outside the cones would make them.
+
+   Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
+   Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,
+   Armand, Nguyen, Shpakovych, "Second-Order Cone Programming for Frictional Contact Mechanics Using Interior Point
+   Algorithm" (2024), which solve conic programs with a symmetric matrix. Constants are hand-tuned.
+
+   Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
+   shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
+   factorization grows faster than the number of contacts. Same bits on every instruction set: double, a fixed order of
+   operations, no fused multiply-add. */
+#pragma once
+#include "dynamics/contact_problem.h"
+#include "interior/block_lu.h"
+#include "sweeps/sweeps.h"
+
+enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
+
+/* Four contact slots: two of each of two pairs. A slot without a contact has zero rows and weight. */
+typedef struct InteriorGroup {
+    Vec4 mass_normal, mass_tangent, friction, bias;
+    Vec4 inverse_normal, inverse_tangent; /* 1/kg, of the effective masses; 0 without a contact */
+    Vec4 depth;                           /* m, overlap */
+    Vec4 weight;                          /* 1 for a contact, else 0 */
+    Vec4 l, t, z, p, q;                   /* N s and m/s, see above */
+    Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
+    Vec4 normal, tangent;                 /* J_n v and J_t v of the answer, m/s */
+    Vec4 free_normal, free_tangent;       /* the same of v' */
+    /* of an iteration */
+    Vec4 dn, dt, s;                       /* D_n, D_t, s */
+    Vec4 aim_normal, aim_tangent;         /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
+    Vec4 rn, rt;                          /* r_n, r_t */
+    Vec4 upper, lower, over_z;            /* 1 / (mu l - t), 1 / (mu l + t), 1 / z */
+    Vec4 impulse_normal, impulse_tangent; /* l + r_n and t + r_t + s r_n: the right-hand side */
+    Vec4 change_normal, change_tangent;   /* J_n dv and J_t dv */
+    Vec4 second_p, second_q;              /* products of the corrector */
+} InteriorGroup;
+
+/* The rows of a pair's slots in the coordinates (linear velocity of b minus that of a, spin of b, spin of a), and
+   where its bodies and blocks are. */
+typedef struct InteriorPair {
+    Vec4 normal[2], tangent[2];
+    int32_t a, b; /* positions of the bodies in the elimination, also of their diagonal blocks; `count` for a body that
+                         does not move */
+    BlockPlace place; /* of the blocks that couple them */
+} InteriorPair;
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Interior {
+    BlockLu lu;
+    int group_count, contact_count; /* contact_count: that act on a moving body */
+    InteriorGroup *groups;
+    InteriorPair *pairs; /* [2 group_count] */
+    /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused */
+    Vec4 *velocities, *start, *masses, *inverses, *changes;
+    int32_t *bodies;  /* [lu.count] */
+    int32_t *nodes;   /* [body_count] -1 for bodies without contact */
+    BlockEdge *edges; /* [pair_count] */
+    int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
+    double residual;  /* m/s, of the answer */
+    int iterations;   /* of the last solve */
+    size_t group_capacity, pair_capacity, velocity_capacity, start_capacity, mass_capacity, inverse_capacity,
+        change_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
+} Interior;
+
+/* The parts that are compiled for several instruction sets. */
+typedef struct InteriorKernels {
+    const char *name;
+    void (*factor)(BlockLu *lu);
+    void (*solve)(const BlockLu *lu, Vec4 *x);
+    /* One iteration towards tau^2 = target, (m/s)^2. Returns the residual of the answer. */
+    double (*iterate)(Interior *interior, double target);
+    double (*residual)(const Interior *interior);
+} InteriorKernels;
+
+extern const InteriorKernels interior_scalar, interior_avx2;
+
+/* The fastest that the processor supports. */
+const InteriorKernels *interior_best(void);
+
+void interior_free(Interior *interior);
+
+/* Loads the impulses and velocities of sweeps over the problem, and sets `residual` to theirs. The residual is the root
+   mean square over contacts of what one more visit would change: normal and tangent velocity, |change of impulse| /
+   effective mass. False when memory is short. */
+bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
+                   const ContactProblem *problem);
+
+/* m/s: how fast the contacts would miss their targets without any impulse, root mean square. A step of gravity makes
+   0.17 at rest, whatever the masses. */
+double interior_approach(const Interior *interior);
+
+/* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
+   that rest on each other would part. */
+void interior_close(Interior *interior, double speed, double depth);
+
+/* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
+   and `iterations`. The residual is infinite or NaN if the iterations broke down. */
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, double near, int most);
+
+/* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
+   NaN or infinite. */
+bool interior_end(const Interior *interior, const Sweeps *sweeps, const ContactProblem *problem,
+                  ContactSolution *solution);

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sparse factorization of blocks against a dense solve. */
+#include "random_blocks.h"
+
+static RandomBlocks blocks;
+
+static void the_solution_is_that_of_a_dense_solve(void **state) {
+    (void)state;
+    const InteriorKernels *kernels[2];
+    const int kernel_count = list_kernels(kernels);
+    BlockLu lu = {0};
+    uint32_t seed = 1;
+    Vec4 x[NODES_MAX];
+    for (int run = 0; run < 60; run++) {
+        make_blocks(&blocks, &seed, 1 + run, run % 3 == 0 ? 0.02f : 0.1f);
+        assert_true(block_lu_analyse(&lu, blocks.count, blocks.edges, blocks.edge_count));
+        for (int k = 0; k < kernel_count; k++) {
+            load_blocks(&lu, &blocks, x);
+            kernels[k]->factor(&lu);
+            kernels[k]->solve(&lu, x);
+        }
+        solve_dense(&blocks);
+        for (int i = 0; i < blocks.count; i++)
+            for (int r = 0; r < 3; r++) assert_near(x[lu.position[i]][r], blocks.right[3 * i + r], 1e-14);
+    }
+    block_lu_free(&lu);
+}
+
+static void kernels_have_the_same_bits(void **state) {
+    (void)state;
+    const InteriorKernels *kernels[2];
+    if (list_kernels(kernels) < 2) skip();
+    BlockLu lu = {0};
+    uint32_t seed = 5;
+    Vec4 scalar[NODES_MAX], wide[NODES_MAX];
+    for (int run = 0; run < 40; run++) {
+        make_blocks(&blocks, &seed, 20 + run, 0.08f);
+        assert_true(block_lu_analyse(&lu, blocks.count, blocks.edges, blocks.edge_count));
+        load_blocks(&lu, &blocks, scalar);
+        kernels[0]->factor(&lu);
+        kernels[0]->solve(&lu, scalar);
+        load_blocks(&lu, &blocks, wide);
+        kernels[1]->factor(&lu);
+        kernels[1]->solve(&lu, wide);
+        for (int i = 0; i < blocks.count; i++) assert_memory_equal(&scalar[i], &wide[i], 3 * sizeof(double));
+    }
+    block_lu_free(&lu);
+}
+
+/* stiff (n n^T + m m^T) for the two contacts of a face: it resists motion along (0.6, 0.8) and spin. */
+static Block3 stiffness_of_face(double stiff) {
+    static const double n[3] = {0.6, 0.8, 0.5}, m[3] = {0.6, 0.8, -0.5};
+    Block3 block = {0};
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) block.column[c][r] = stiff * (n[r] * n[c] + m[r] * m[c]);
+    return block;
+}
+
+/* A stack of closed contacts: stiffness 1e9 beside masses of 1. A pull on its end moves all links alike, by its size
+   over their number; along the faces only the last link moves. The inverse of a pivot would lose these digits. */
+static void a_stiff_chain_moves_as_one(void **state) {
+    (void)state;
+    enum { LINKS = 20 };
+    const Block3 face = stiffness_of_face(1e9);
+    BlockLu lu = {0};
+    BlockEdge edges[LINKS - 1];
+    Vec4 x[LINKS] = {{0}};
+    for (int i = 0; i + 1 < LINKS; i++) edges[i] = (BlockEdge){i, i + 1};
+    assert_true(block_lu_analyse(&lu, LINKS, edges, LINKS - 1));
+    assert_int_equal(lu.below, LINKS - 1); /* minimum degree: no fill in a chain */
+    memset(lu.blocks, 0, (LINKS + 2 * LINKS + 1) * sizeof *lu.blocks);
+    for (int i = 0; i < LINKS; i++)
+        for (int c = 0; c < 3; c++) lu.blocks[lu.position[i]].column[c][c] = 1;
+    for (int i = 0; i + 1 < LINKS; i++)
+        for (int c = 0; c < 3; c++) {
+            lu.blocks[lu.position[i]].column[c] += face.column[c];
+            lu.blocks[lu.position[i + 1]].column[c] += face.column[c];
+            lu.blocks[lu.places[i].row_a].column[c] -= face.column[c];
+            lu.blocks[lu.places[i].row_b].column[c] -= face.column[c];
+        }
+    x[lu.position[LINKS - 1]] = (Vec4){0.6 - 3 * 0.8, 0.8 + 3 * 0.6, 0, 0};
+    interior_best()->factor(&lu);
+    interior_best()->solve(&lu, x);
+    for (int i = 0; i < LINKS; i++) {
+        const double along = i == LINKS - 1 ? 3 : 0;
+        assert_near(x[lu.position[i]][0], 0.6 / LINKS - 0.8 * along, 1e-5);
+        assert_near(x[lu.position[i]][1], 0.8 / LINKS + 0.6 * along, 1e-5);
+        assert_near(x[lu.position[i]][2], 0, 1e-5);
+    }
+    block_lu_free(&lu);
+}
+
+/* A star, whose hub must come last: any other order fills in. */
+static void the_hub_of_a_star_is_eliminated_last(void **state) {
+    (void)state;
+    enum { RAYS = 30 };
+    BlockLu lu = {0};
+    BlockEdge edges[RAYS];
+    for (int i = 0; i < RAYS; i++) edges[i] = (BlockEdge){0, i + 1};
+    assert_true(block_lu_analyse(&lu, RAYS + 1, edges, RAYS));
+    assert_int_equal(lu.below, RAYS);
+    assert_true(lu.position[0] >= RAYS - 1);
+    block_lu_free(&lu);
+}
+
+static void an_empty_matrix_is_no_error(void **state) {
+    (void)state;
+    BlockLu lu = {0};
+    assert_true(block_lu_analyse(&lu, 0, NULL, 0));
+    interior_best()->factor(&lu);
+    interior_best()->solve(&lu, NULL);
+    assert_true(block_lu_analyse(&lu, 3, NULL, 0));
+    assert_int_equal(lu.below, 0);
+    block_lu_free(&lu);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_solution_is_that_of_a_dense_solve), cmocka_unit_test(kernels_have_the_same_bits),
+        cmocka_unit_test(a_stiff_chain_moves_as_one), cmocka_unit_test(the_hub_of_a_star_is_eliminated_last),
+        cmocka_unit_test(an_empty_matrix_is_no_error)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

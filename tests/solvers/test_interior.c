@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The method interior: its solution against the reference, and what it must keep whatever the problem is. */
+#include "kernels.h"
+#include "random_problem.h"
+#include "reference_worlds.h"
+
+#include "common/hash.h"
+#include "interior/interior.h"
+#include "reference/solution_error.h"
+#include "sweeps/contact_velocity.h"
+
+static Reference reference;
+
+/* The contact problem that the world's next step meets. The engine makes the step. */
+static const ContactProblem *next_problem(World *world) {
+    ContactSolver engine = make_engine("k=1");
+    run(world, &engine, 1);
+    free_solver(&engine);
+    return world_problem(world);
+}
+
+static double error_of(const char *settings, const ContactProblem *problem, const ReferenceVelocity *expected) {
+    ContactSolution found = make_solution(problem);
+    solve_with(&solver_interior, settings, problem, &found);
+    const double error = solution_error(problem, found.velocities, expected).rms;
+    free_solution(&found);
+    return error;
+}
+
+/* A stack that a box of 10 times the mass has just hit. */
+static World *make_struck_stack(int steps) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < 10; i++)
+        add_body(world,
+                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + 0.98f * (float)i}});
+    add_body(world, &(BodyDef){.size = {1, 1},
+                               .mass = 10,
+                               .friction = 0.2f,
+                               .position = {0.2f, 10.3f},
+                               .angle = 0.1f,
+                               .velocity = {-3, -8}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, steps);
+    free_solver(&engine);
+    return world;
+}
+
+static World *make_struck_pyramid(int steps) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int row = 0; row < 6; row++)
+        for (int i = row; i < 6; i++) {
+            const float x = 1.125f * ((float)i - 0.5f * (float)row);
+            add_body(
+                world,
+                &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.49f + 0.98f * (float)row}});
+        }
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 50, .friction = 0.2f, .position = {2.6f, 6.6f}, .velocity = {1, -15}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, steps);
+    free_solver(&engine);
+    return world;
+}
+
+/* Root mean square over the contacts of what one visit would change, m/s. */
+static double residual_of(const ContactProblem *problem, const ContactSolution *found) {
+    double sum = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+        const Vec2 v =
+            contact_relative_velocity(&found->velocities[contact->a], &found->velocities[contact->b], contact);
+        const double l = (double)found->impulses[i].normal, t = (double)found->impulses[i].tangent;
+        const double gap = (double)(vec2_dot(v, contact->normal) - contact->bias);
+        const double mass = (double)contact->mass_tangent, bound = (double)contact->friction * l;
+        const double normal = fmin(l / (double)contact->mass_normal, gap);
+        const double tangential = (t - fmin(fmax(t - mass * (double)vec2_dot(v, tangent), -bound), bound)) / mass;
+        sum += normal * normal + tangential * tangential;
+    }
+    return sqrt(sum / problem->contact_count);
+}
+
+/* The error of the velocities follows `near`. */
+static void impacts_have_the_reference_solution(void **state) {
+    (void)state;
+    World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_heap(4), make_heap(9)};
+    for (int i = 0; i < 4; i++) {
+        Error error = {0};
+        const ContactProblem *problem = next_problem(worlds[i]);
+        assert_ok(reference_solve(&reference, problem, 1e-8, VISITS, NULL, &error), error);
+        assert_true(reference.residual <= 1e-6);
+        assert_true(error_of("near=0.02", problem, reference.velocities) < 0.02);
+        assert_true(error_of("near=1e-3", problem, reference.velocities) < 1e-3);
+        assert_true(error_of("near=1e-6", problem, reference.velocities) < 1e-5);
+        world_destroy(worlds[i]);
+    }
+}
+
+/* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close by
+   up to 1 mm/s. */
+static void impacts_of_a_pyramid_are_solved_to_the_tolerance(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double most;
+    } settings[] = {{"near=0.5", 0.5}, {"near=0.02", 0.02}, {"near=0.005", 0.005}};
+    int fallbacks = 0;
+    for (int i = 0; i < 15; i++) {
+        World *world = make_struck_pyramid(1 + i / 3);
+        const ContactProblem *problem = next_problem(world);
+        ContactSolution found = make_solution(problem);
+        solve_with(&solver_interior, settings[i % 3].text, problem, &found);
+        fallbacks += found.fallbacks.by_sweeps;
+        if (found.fallbacks.by_sweeps == 0) assert_true(residual_of(problem, &found) <= settings[i % 3].most + 1.1e-3);
+        free_solution(&found);
+        world_destroy(world);
+    }
+    assert_true(fallbacks <= 1);
+}
+
+/* Random normals, arms and masses: effective masses that fit, as the residual is in their units. Where the friction is
+   low, the solution is unique. */
+static void fit_masses(RandomProblem *random) {
+    for (int i = 0; i < random->problem.contact_count; i++) {
+        ContactPoint *contact = &random->contacts[i];
+        const ProblemBody *a = &random->bodies[contact->a], *b = &random->bodies[contact->b];
+        const float an = vec2_cross(contact->arm_a, contact->normal), bn = vec2_cross(contact->arm_b, contact->normal);
+        const float at = vec2_dot(contact->arm_a, contact->normal), bt = vec2_dot(contact->arm_b, contact->normal);
+        const float mass = a->inv_mass + b->inv_mass;
+        const float normal = mass + a->inv_inertia * an * an + b->inv_inertia * bn * bn;
+        const float tangent = mass + a->inv_inertia * at * at + b->inv_inertia * bt * bt;
+        contact->mass_normal = normal > 0 ? 1 / normal : 1;
+        contact->mass_tangent = tangent > 0 ? 1 / tangent : 1;
+        contact->friction *= 0.2f;
+        contact->bias *= 0.1f;
+    }
+}
+
+/* Some random problems have no solution, or the reference does not find it; most have. */
+static void random_problems_have_the_reference_solution(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 3;
+    int compared = 0, agree = 0;
+    for (int run = 0; run < 60; run++) {
+        Error error = {0};
+        make_random(&random, &seed, 3 + run % 12, 0.25f, 1);
+        fit_masses(&random);
+        assert_ok(reference_solve(&reference, &random.problem, 1e-9, VISITS / 20, NULL, &error), error);
+        if (!(reference.residual <= 1e-9)) continue;
+        compared++;
+        agree += error_of("near=1e-7", &random.problem, reference.velocities) < 1e-4;
+    }
+    if (compared < 40 || agree < compared * 9 / 10) fail_msg("%d of %d agree", agree, compared);
+}
+
+/* As assert_consistent(), in double: relative to the sum of the impulses of a body, as redundant contacts may have large
+   ones that cancel. */
+static void assert_velocities_fit(const ContactProblem *problem, const ContactSolution *found) {
+    const double rounding = found->fallbacks.by_sweeps > 0 ? 1e-4 : 1e-6; /* sweeps add up float changes */
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        double x = (double)body->velocity.x, y = (double)body->velocity.y, sum = fabs(x) + fabs(y) + 1;
+        for (int k = 0; k < problem->contact_count; k++) {
+            const ContactPoint *contact = &problem->contacts[k];
+            if (contact->a != i && contact->b != i) continue;
+            const double inverse = contact->a == i ? -(double)body->inv_mass : (double)body->inv_mass;
+            const double l = inverse * (double)found->impulses[k].normal,
+                         t = inverse * (double)found->impulses[k].tangent;
+            x += l * (double)contact->normal.x + t * (double)contact->normal.y;
+            y += l * (double)contact->normal.y - t * (double)contact->normal.x;
+            sum += fabs(l) + fabs(t);
+        }
+        assert_near(found->velocities[i].linear.x, x, rounding * sum);
+        assert_near(found->velocities[i].linear.y, y, rounding * sum);
+    }
+}
+
+/* For any problem: impulses inside the cone, velocities that are those of the impulses. */
+static void cone_and_velocities_fit(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 11;
+    for (int run = 0; run < 60; run++) {
+        make_random(&random, &seed, 2 + run, 0.15f, 0);
+        fit_masses(&random);
+        ContactSolution found = make_solution(&random.problem);
+        solve_with(&solver_interior, run % 2 == 0 ? "" : "near=1e-4", &random.problem, &found);
+        for (int i = 0; i < random.problem.contact_count; i++) {
+            const ContactImpulse p = found.impulses[i];
+            assert_true(p.normal >= 0);
+            assert_true(fabsf(p.tangent) <= random.contacts[i].friction * p.normal);
+        }
+        assert_velocities_fit(&random.problem, &found);
+        free_solution(&found);
+    }
+}
+
+/* The rounding of the velocities to float is all that is lost: 2^-24 of each. */
+static void momentum_is_exact(void **state) {
+    (void)state;
+    World *world = make_struck_stack(3);
+    const ContactProblem *problem = next_problem(world);
+    ContactProblem free = *problem;
+    ProblemBody bodies[16];
+    memcpy(bodies, problem->bodies, (size_t)problem->body_count * sizeof *bodies);
+    bodies[0].inv_mass = bodies[0].inv_inertia = 1e-4f; /* a heavy floating ground */
+    free.bodies = bodies;
+    ContactSolution found = make_solution(&free);
+    solve_with(&solver_interior, "", &free, &found);
+    double before[2] = {0}, after[2] = {0}, rounding = 0;
+    for (int i = 0; i < free.body_count; i++) {
+        const double mass = 1 / (double)bodies[i].inv_mass;
+        const Vec2 v = found.velocities[i].linear;
+        before[0] += mass * (double)bodies[i].velocity.x;
+        before[1] += mass * (double)bodies[i].velocity.y;
+        after[0] += mass * (double)v.x;
+        after[1] += mass * (double)v.y;
+        rounding += mass * fmax(fabs((double)v.x), fabs((double)v.y)) * ldexp(1, -24);
+    }
+    for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+static uint64_t bits_of_a_run(int steps) {
+    World *world = make_struck_pyramid(0);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, steps);
+    const uint64_t hash = hash_xxh3(world_bodies(world), (size_t)world_body_count(world) * sizeof *world_bodies(world));
+    free_solver(&solver);
+    world_destroy(world);
+    return hash;
+}
+
+/* Made by this test; any processor and compiler must give it. */
+static void a_run_has_these_bits(void **state) {
+    (void)state;
+    const uint64_t expected = UINT64_C(0x917ca24ce1b27f07), found = bits_of_a_run(60);
+    if (found != expected) fail_msg("%016llx", (unsigned long long)found);
+}
+
+static void kernels_agree(const ContactProblem *problem) {
+    Sweeps sweeps = {0};
+    Interior interior[2];
+    memset(interior, 0, sizeof interior);
+    const InteriorKernels *const kernels[2] = {&interior_scalar, interior_best()};
+    ContactSolution found[2] = {make_solution(problem), make_solution(problem)};
+    assert_true(sweeps_begin_coloured(&sweeps, SWEEP_ONE_BY_ONE, problem) && sweeps_run(&sweeps, 2));
+    for (int k = 0; k < 2; k++) {
+        assert_true(interior_load(&interior[k], kernels[k], &sweeps, problem));
+        interior_iterate(&interior[k], kernels[k], 1e-3, 20);
+        interior_end(&interior[k], &sweeps, problem, &found[k]);
+    }
+    assert_same_bits(problem, &found[1], &found[0], "interior");
+    for (int k = 0; k < 2; k++) {
+        interior_free(&interior[k]);
+        free_solution(&found[k]);
+    }
+    sweeps_free(&sweeps);
+}
+
+static void kernels_have_the_bits_of_the_scalar_one(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 21;
+    for (int run = 0; run < 50; run++) {
+        make_random(&random, &seed, 2 + run, 0.15f, 1);
+        fit_masses(&random);
+        kernels_agree(&random.problem);
+    }
+    World *world = make_struck_pyramid(2);
+    kernels_agree(next_problem(world));
+    world_destroy(world);
+}
+
+/* The same problem gives the same bits whatever the solver has solved before. */
+static void earlier_problems_leave_no_trace(void **state) {
+    (void)state;
+    Error error = {0};
+    World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
+    const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
+    ContactSolution fresh = make_solution(second), used = make_solution(second), other = make_solution(first);
+    solve_with(&solver_interior, "", second, &fresh);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    for (int i = 0; i < 2; i++) {
+        assert_ok(solver.kind->solve(solver.state, first, &other, &error), error);
+        assert_ok(solver.kind->solve(solver.state, second, &used, &error), error);
+        assert_same_bits(second, &used, &fresh, "used");
+    }
+    free_solver(&solver);
+    free_solution(&fresh);
+    free_solution(&used);
+    free_solution(&other);
+    world_destroy(pyramid);
+    world_destroy(stack);
+}
+
+static void without_contacts_bodies_keep_their_velocities(void **state) {
+    (void)state;
+    const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
+    const ContactProblem problem = {.body_count = 1, .bomb = -1, .dt = world_dt, .bodies = &body};
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "", &problem, &found);
+    const BodyVelocity expected = {{1, 2}, 3};
+    assert_memory_equal(&found.velocities[0], &expected, sizeof expected);
+    assert_int_equal(found.fallbacks.by_sweeps, 0);
+    free_solution(&found);
+}
+
+/* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
+static void two_static_bodies_are_no_obstacle(void **state) {
+    (void)state;
+    const ProblemBody bodies[] = {
+        {.velocity = {0, 0}}, {.velocity = {0, -1}}, {.inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}}};
+    ContactPoint contacts[] = {
+        {.a = 0, .b = 1, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1},
+        {.a = 0, .b = 2, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1, .friction = 0.5f}};
+    const ContactProblem problem = {
+        .body_count = 3, .contact_count = 2, .bomb = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "near=1e-6", &problem, &found);
+    assert_near(found.velocities[1].linear.y, -1, 0);
+    assert_near(found.velocities[2].linear.y, 0, 1e-5);
+    assert_near(found.impulses[1].normal, 1, 1e-5);
+    assert_int_equal(found.fallbacks.by_sweeps, 0);
+    free_solution(&found);
+}
+
+/* A million to one. */
+static void a_huge_mass_ratio_is_solved(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.495f}});
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1e6f, .friction = 0.2f, .position = {0, 1.49f}});
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, 300);
+    assert_near(world_bodies(world)[1].position.y, 0.49f, 0.01f);
+    assert_near(world_bodies(world)[2].position.y, 1.48f, 0.02f);
+    free_solver(&solver);
+    world_destroy(world);
+}
+
+/* Sweeps solve a problem with a NaN, and say so: with their bits, whatever these are. */
+static void a_nan_ends_in_the_fallback(void **state) {
+    (void)state;
+    World *world = make_struck_stack(3);
+    ContactProblem problem = *next_problem(world);
+    ContactPoint contacts[64];
+    assert_in_range(problem.contact_count, 3, 64);
+    memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
+    contacts[2].bias = NAN;
+    problem.contacts = contacts;
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "", &problem, &found);
+    assert_int_equal(found.fallbacks.by_sweeps, 1);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+/* Twenty boxes, and 1000:1 on one: momentum with 20 sweeps loses both. */
+static void tall_and_heavy_stacks_stand(void **state) {
+    (void)state;
+    World *tall = make_world(), *heavy = make_world();
+    add_ground(tall, 0.2f);
+    for (int i = 0; i < 20; i++)
+        add_body(tall, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    add_ground(heavy, 0.2f);
+    for (int i = 0; i < 2; i++)
+        add_body(heavy, &(BodyDef){.size = {1, 1},
+                                   .mass = i == 0 ? 1.0f : 1000.0f,
+                                   .friction = 0.2f,
+                                   .position = {0, 0.5f + (float)i}});
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(tall, &solver, 1200);
+    run(heavy, &solver, 1200);
+    /* Each contact may close to the slop of 0.01 m. */
+    assert_near(world_bodies(tall)[20].position.y, 19.5f, 0.2f);
+    assert_near(world_bodies(tall)[20].position.x, 0, 0.02f);
+    assert_near(world_bodies(heavy)[2].position.y, 1.5f, 0.02f);
+    assert_near(world_bodies(heavy)[2].position.x, 0, 0.001f);
+    free_solver(&solver);
+    world_destroy(tall);
+    world_destroy(heavy);
+}
+
+static void settings_out_of_range_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {"near=0", "near=-1", "near=nan", "near=x"};
+    for (int i = 0; i < 4; i++) {
+        Error error = {0};
+        Settings settings;
+        assert_ok(settings_parse(&settings, texts[i], solver_interior.description.settings, "interior", &error), error);
+        assert_null(solver_interior.create(&settings, &error));
+        assert_error(error, ERROR_INPUT, "near");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(impacts_have_the_reference_solution),
+                                       cmocka_unit_test(impacts_of_a_pyramid_are_solved_to_the_tolerance),
+                                       cmocka_unit_test(random_problems_have_the_reference_solution),
+                                       cmocka_unit_test(cone_and_velocities_fit),
+                                       cmocka_unit_test(momentum_is_exact),
+                                       cmocka_unit_test(a_run_has_these_bits),
+                                       cmocka_unit_test(kernels_have_the_bits_of_the_scalar_one),
+                                       cmocka_unit_test(earlier_problems_leave_no_trace),
+                                       cmocka_unit_test(without_contacts_bodies_keep_their_velocities),
+                                       cmocka_unit_test(two_static_bodies_are_no_obstacle),
+                                       cmocka_unit_test(a_huge_mass_ratio_is_solved),
+                                       cmocka_unit_test(a_nan_ends_in_the_fallback),
+                                       cmocka_unit_test(tall_and_heavy_stacks_stand),
+                                       cmocka_unit_test(settings_out_of_range_are_refused)};
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    reference_free(&reference);
+    return failed;
+}
