@@ -109,7 +109,8 @@ static bool reserve_blocks(BlockLu *lu) {
     if (!array_reserve((void **)&lu->row, &lu->row_capacity, (size_t)lu->below + 1, sizeof *lu->row) ||
         !array_reserve(&lu->memory, &lu->block_capacity, blocks + 1, sizeof *lu->blocks))
         return false;
-    lu->blocks = (Block3 *)(((uintptr_t)lu->memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+    const size_t beyond = (uintptr_t)lu->memory % CACHE_LINE;
+    lu->blocks = (Block3 *)((char *)lu->memory + (beyond > 0 ? CACHE_LINE - beyond : 0));
     return true;
 }
 
