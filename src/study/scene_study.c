@@ -23,7 +23,7 @@ static bool choose_launches(SceneStudy *study, const char *path, Error *error) {
     bool ok = launches != NULL && study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
     if (!ok) error_memory(error, "study");
     if (ok && path != NULL) ok = launches_for(&table, study->scene, launches, error);
-    if (ok && path == NULL) launches_for_scoring(study->scene, study->launch_count, launches);
+    if (ok && path == NULL) ok = launches_for_scoring(study->scene, study->launch_count, launches, error);
     for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
     free(launches);
     launches_free(&table);
