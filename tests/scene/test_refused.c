@@ -153,7 +153,7 @@ static const Refused families[] = {
      "7:52: error: frame must be a whole number from 0 to 1000000 (got a mapping)"},
     /* The end of the family that is farthest away is the fastest. */
     {FAMILY("{from: -5, to: 9000}", "mass: 50, velocity: {times_position: -1.5}"),
-     "7:75: error: the bomb's start velocity is (-13500, -22.5) m/s; the largest allowed component is 10000"},
+     "7:74: error: the bomb's start velocity is (-13500, -22.5) m/s; the largest allowed component is 10000"},
 };
 
 static const Refused networks[] = {
