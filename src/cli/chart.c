@@ -34,8 +34,8 @@ static const Option option_table[] = {
      "methods left out are reported)",
      OPTION_TEXT(Options, study.methods)},
     {"--launches", 0, "N|FILE.csv",
-     "Launches to score on: N held-out launches of the scene's family (default: 40), or a table with any of the columns "
-     "x,rotation,spin,mass,frame",
+     "Launches to score on: N held-out launches of the scene's family (default: 40), or a table with any of the "
+     "columns x,rotation,spin,mass,frame",
      OPTION_READ(read_launches, Options, study.launches)},
     {"--bomb-x", 0, "A:B:STEP", "Launches to score on: x from A to B in steps of STEP, m",
      OPTION_RANGE(Options, study.launches.bomb_x)},

@@ -13,7 +13,7 @@ static void sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
 Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error) {
     LaunchTable table = {0};
     if (choice->table != NULL && !launches_read(&table, choice->table, error)) return NULL;
-    *count = choice->table != NULL        ? table.count
+    *count = choice->table != NULL      ? table.count
              : choice->bomb_x.count > 0 ? choice->bomb_x.count
              : choice->count > 0        ? choice->count
                                         : standard;

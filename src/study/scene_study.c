@@ -25,8 +25,8 @@ static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error
     return ok;
 }
 
-bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders, const LaunchChoice *launches,
-                       const StudySize *size, Error *error) {
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
+                       const LaunchChoice *launches, const StudySize *size, Error *error) {
     *study = (SceneStudy){.scene = scene_read(path, error), .size = size};
     bool ok = study->scene != NULL && (study->scene->bomb.present || error_input(error, path, "the scene has no bomb"));
     if (ok) {
