@@ -27,9 +27,9 @@ static inline Block3 pivot_make(const Block3 *block) {
     const double y2 = x[0] * y[2] - x[2] * y[0], z2 = y1 * (x[0] * z[2] - x[2] * z[0]) - y2 * z1;
     const double over0 = 1 / x[0], over1 = 1 / y1, over2 = x[0] / z2;
     const double l10 = x[1] * over0, l20 = x[2] * over0, l21 = y2 * over1;
-    const double u02 = (y[0] * z[1] - y[1] * z[0]) * over2;
-    return (Block3){{vec4(over0, -l10, l10 * l21 - l20, 0), vec4(-y[0] * over1, x[0] * over1, -l21, 0),
-                     vec4(u02, -z1 * over2, y1 * over2, 0)}};
+    const double u12 = -z1 * over2, u22 = y1 * over2, u02 = -(y[0] * u12 + z[0] * u22) * over0;
+    return (Block3){
+        {vec4(over0, -l10, l10 * l21 - l20, 0), vec4(-y[0] * over1, x[0] * over1, -l21, 0), vec4(u02, u12, u22, 0)}};
 }
 
 /* L^-1 x */
