@@ -6,9 +6,9 @@
 #include <math.h>
 
 /* Hand-tuned, for the fewest iterations at impacts of the stack and the pyramids. The scale of velocities is 4 times the
-   residual at the start plus `calm` (m/s); impulses and slips start at half of it beyond their values, and tau^2 at
-   `first` times its square. tau^2 falls to `shrink` of itself, or to `follow` times the squared residual. */
-static const double scale_of_residual = 4, calm = 0.01, inside = 0.5, first = 0.25, shrink = 0.15, follow = 0.05;
+   residual at the start plus `least_scale`; impulses and slips start at half of it beyond their values, and tau^2 at `first`
+   times its square. tau^2 falls to `shrink` of itself, or to `follow` times the squared residual. */
+static const double scale_of_residual = 4, inside = 0.5, first = 0.25, shrink = 0.15, follow = 0.05;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
@@ -36,8 +36,8 @@ static void begin(Interior *s, double scale) {
     }
 }
 
-void interior_iterate(Interior *s, const InteriorKernels *kernels, double near, int most) {
-    const double scale = scale_of_residual * s->residual + calm;
+void interior_iterate(Interior *s, const InteriorKernels *kernels, double least_scale, double near, int most) {
+    const double scale = scale_of_residual * s->residual + least_scale;
     begin(s, scale);
     double target = first * scale * scale;
     for (s->iterations = 0; s->iterations < most;) {
