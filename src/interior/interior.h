@@ -118,17 +118,17 @@ static inline bool interior_pair_moves(const Interior *interior, const InteriorP
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
                    const ContactProblem *problem);
 
-/* m/s: how fast the contacts would miss their targets without any impulse, root mean square. A step of gravity makes
-   0.17 at rest, whatever the masses. */
-double interior_approach(const Interior *interior);
-
 /* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
-   and `iterations`. The residual is infinite or NaN if the iterations broke down. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, double near, int most);
+   and `iterations`. The residual is infinite or NaN if the iterations broke down.
+
+   least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
+   slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
+   suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, double least_scale, double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

@@ -11,3 +11,11 @@ bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit);
 
 /* The same of a solution. Where the sweeps visit contacts in the problem's order, with the same answer. */
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit);
+
+/* True if the root mean square over the contacts of what one more visit would change, normal and tangent velocity, is at
+   least `limit` (m/s), or NaN. This is the residual of interior/interior.h. */
+bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit);
+
+/* True if the normal velocities by which contacts would approach without any impulse have a root mean square of at least
+   `limit` (m/s). A step of gravity makes 0.17 at rest, whatever the masses. */
+bool residual_approach_reaches(const ContactProblem *problem, float limit);
