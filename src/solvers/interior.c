@@ -14,6 +14,7 @@
    a frozen impact of scenes/pyramid_settled takes twelve iterations, one of scenes/stack five. */
 #include "interior/interior.h"
 
+#include "interior/islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
@@ -25,7 +26,10 @@ enum {
     START_SWEEPS = 2,
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
-    CHECK_EVERY = 8
+    CHECK_EVERY = 8,
+    LOOPS_MAX = 700, /* of an island that is not left to sweeps */
+    LARGE_SWEEPS = 20,
+    LARGE_MORE = 200
 };
 
 /* m/s. A step is at rest if bodies approach each other by less than `rest_below`, root mean square; a step of gravity
@@ -46,9 +50,11 @@ static const struct {
 
 typedef struct State {
     Interior interior;
+    Islands islands;
     Momentum momentum;
     float near; /* m/s */
     float factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
+    float large_factors[LARGE_SWEEPS], large_more_factors[LARGE_MORE];
 } State;
 
 static const SettingSpec settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
@@ -58,6 +64,7 @@ static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
+    islands_free(&solver->islands);
     momentum_free(&solver->momentum);
     free(solver);
 }
@@ -73,6 +80,8 @@ static void *create(const Settings *chosen, Error *error) {
     solver->near = near;
     for (int s = 0; s < FALLBACK_SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, FALLBACK_SWEEPS);
     for (int s = 0; s < FALLBACK_MORE; s++) solver->more_factors[s] = momentum_factor_tuned(s, FALLBACK_MORE);
+    for (int s = 0; s < LARGE_SWEEPS; s++) solver->large_factors[s] = momentum_factor_tuned(s, LARGE_SWEEPS);
+    for (int s = 0; s < LARGE_MORE; s++) solver->large_more_factors[s] = momentum_factor_tuned(s, LARGE_MORE);
     return solver;
 }
 
@@ -122,8 +131,27 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
            momentum_solve(&solver->momentum, problem, solver->factors, FALLBACK_SWEEPS, solution, error);
 }
 
+/* An iteration in an island of so many loops takes as long as 30 sweeps or more, so sweeps with momentum are as accurate
+   in the same time. */
+static bool solve_large(State *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    const StoppingRule rule = {.near = solver->near, .more = LARGE_MORE};
+    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) ||
+        !sweeps_run_momentum(sweeps, solver->large_factors, LARGE_SWEEPS) ||
+        !momentum_run_more(sweeps, problem, &rule, solver->large_more_factors))
+        return error_memory(error, "interior");
+    solution->fallbacks.by_sweeps = 1;
+    return sweeps_end(sweeps, solution) ||
+           momentum_solve(&solver->momentum, problem, solver->large_factors, LARGE_SWEEPS, solution, error);
+}
+
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
+    if (problem->contact_count > LOOPS_MAX) {
+        const int loops = islands_most_loops(&solver->islands, problem);
+        if (loops < 0) return error_memory(error, "interior");
+        if (loops > LOOPS_MAX) return solve_large(solver, problem, solution, error);
+    }
     const Sweeps *sweeps = &solver->momentum.sweeps;
     if (!start(solver, problem)) return error_memory(error, "interior");
     const bool rests = !residual_approach_reaches(problem, rest_below);
