@@ -52,21 +52,32 @@ static inline Block3 over_pivot(const Block3 *block, const Block3 *pivot) {
                      block->column[0] * third[0] + block->column[1] * third[1] + block->column[2] * third[2]}};
 }
 
-/* Replaces A by L and U with A = L U: L has ones on its diagonal. */
+/* Subtracts from column j and row j what the columns before it contribute. */
+static inline void block_lu_gather(BlockLu *lu, Block3 *lower, Block3 *upper, int j) {
+    const int32_t *find = lu->find, *row = lu->row;
+    for (int i = lu->row_start[j]; i < lu->row_start[j + 1]; i++) {
+        const int right = lu->in_row[i].block, end = lu->in_row[i].end;
+        block_subtract(&lu->blocks[j], &lower[right], &upper[right]);
+        for (int left = right + 1; left < end; left++) {
+            const int target = find[row[left]];
+            block_subtract(&lower[target], &lower[left], &upper[right]);
+            block_subtract(&upper[target], &lower[right], &upper[left]);
+        }
+    }
+}
+
+/* Replaces A by L and U with A = L U: L has ones on its diagonal. Column by column: all changes of a block follow each
+   other, while it is in the cache. */
 static void block_lu_factor(BlockLu *lu) {
     Block3 *diagonal = lu->blocks, *lower = block_lu_lower(lu), *upper = block_lu_upper(lu);
-    for (int k = 0; k < lu->count; k++) {
-        const Block3 pivot = pivot_make(&diagonal[k]);
-        diagonal[k] = pivot;
-        for (int x = lu->column[k]; x < lu->column[k + 1]; x++) {
+    for (int j = 0; j < lu->count; j++) {
+        const int begin = lu->column[j], end = lu->column[j + 1];
+        for (int x = begin; x < end; x++) lu->find[lu->row[x]] = x;
+        block_lu_gather(lu, lower, upper, j);
+        const Block3 pivot = diagonal[j] = pivot_make(&diagonal[j]);
+        for (int x = begin; x < end; x++) {
             lower[x] = over_pivot(&lower[x], &pivot);
             for (int c = 0; c < 3; c++) upper[x].column[c] = pivot_lower(&pivot, upper[x].column[c]);
-            block_subtract(&diagonal[lu->row[x]], &lower[x], &upper[x]);
-        }
-        for (int u = lu->update[k]; u < lu->update[k + 1]; u++) {
-            const BlockUpdate update = lu->updates[u];
-            block_subtract(&lower[update.target], &lower[update.left], &upper[update.right]);
-            block_subtract(&upper[update.target], &lower[update.right], &upper[update.left]);
         }
     }
 }

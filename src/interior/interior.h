@@ -31,7 +31,7 @@
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
-   factorization grows faster than the number of contacts. Same bits on every instruction set: double, a fixed order of
+   factorization grows faster than the number of contacts (block_lu.h). Same bits on every instruction set: double, a fixed order of
    operations, no fused multiply-add. */
 #pragma once
 #include "dynamics/contact_problem.h"
