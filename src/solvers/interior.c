@@ -1,20 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in interior/interior.h. Two
+/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in interior/interior.h. A few
    sweeps make the start. Ends when the residual is at most `near`. If it never is, sweeps with momentum solve the step
    instead, unless their residual is larger; the solution counts this as a fallback.
 
    At rest errors add up from step to step: boxes creep at the speed of the error, until a card slides out of a house of
-   cards or a stack leans. So the tolerance is smaller there. A step counts as at rest by how fast bodies approach each
-   other, whatever the bias: boxes that overlap and are pushed apart need the small tolerance, too, as an error makes them
-   spin. If the two sweeps leave no more than rounding errors, the step ends with them: so it does in walls and pyramids
-   at rest, and in stacks of few boxes.
+   cards or a stack leans. So the tolerance is smaller there. A step counts as at rest if no bodies move fast relative to
+   each other where they touch, whatever the bias: boxes that overlap and are pushed apart need the small tolerance,
+   too, as an error makes them spin. If the sweeps leave no more than rounding errors, the step ends with them: so it
+   does in walls and pyramids at rest, and in stacks of few boxes.
+
+   Elsewhere sweeps with momentum make the start: each saves as much of an iteration as it costs.
 
    The residual falls about sevenfold with each of the last iterations: a hundred times the accuracy costs two or three
-   more. Fails by its time: an iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies;
+   more. Fails by its time: an iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies,
+   so large islands are left to sweeps (large_islands.h);
    a frozen impact of scenes/pyramid_settled takes twelve iterations, one of scenes/stack five. */
 #include "interior/interior.h"
 
-#include "interior/islands.h"
+#include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
@@ -23,18 +26,20 @@
 #include <stdlib.h>
 
 enum {
-    START_SWEEPS = 2,
+    REST_SWEEPS = 2,
+    IMPACT_SWEEPS = 6,    /* with momentum */
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
-    CHECK_EVERY = 8,
-    LOOPS_MAX = 700, /* of an island that is not left to sweeps */
-    LARGE_SWEEPS = 20,
-    LARGE_MORE = 200
+    CHECK_EVERY = 8
 };
 
-/* m/s. A step is at rest if bodies approach each other by less than `rest_below`, root mean square; a step of gravity
-   makes 0.17, and 0.5 at 20 Hz. Then the tolerance is at most `rest_near`. */
-static const float rest_below = 0.6f, rest_near = 1e-4f;
+/* m/s. A step is at rest if all bodies move by less than `rest_below` relative to each other where they touch; a step of
+   gravity makes 0.17, and 0.5 at 20 Hz. Not their mean: it is small if a bomb strikes one of many boxes. At rest the
+   tolerance is at most `rest_near`. */
+static const float rest_below = 1.0f, rest_near = 1e-4f;
+/* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which exceed
+   the residual more than those of iterations. */
+static const float trusted = 0.3f;
 /* m/s: the residual of velocities near 1 m/s that are correct but for half a rounding, 2^-25. */
 static const float rounding = 3e-8f;
 /* An interior point leaves each contact a little open, and boxes that rest on each other would part. So contacts that
@@ -50,11 +55,10 @@ static const struct {
 
 typedef struct State {
     Interior interior;
-    Islands islands;
+    LargeIslands large;
     Momentum momentum;
     float near; /* m/s */
-    float factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
-    float large_factors[LARGE_SWEEPS], large_more_factors[LARGE_MORE];
+    float start_factors[IMPACT_SWEEPS], factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
 } State;
 
 static const SettingSpec settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
@@ -64,7 +68,7 @@ static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
-    islands_free(&solver->islands);
+    large_islands_free(&solver->large);
     momentum_free(&solver->momentum);
     free(solver);
 }
@@ -78,18 +82,20 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->near = near;
+    large_islands_init(&solver->large);
+    for (int s = 0; s < IMPACT_SWEEPS; s++) solver->start_factors[s] = momentum_factor_tuned(s, IMPACT_SWEEPS);
     for (int s = 0; s < FALLBACK_SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, FALLBACK_SWEEPS);
     for (int s = 0; s < FALLBACK_MORE; s++) solver->more_factors[s] = momentum_factor_tuned(s, FALLBACK_MORE);
-    for (int s = 0; s < LARGE_SWEEPS; s++) solver->large_factors[s] = momentum_factor_tuned(s, LARGE_SWEEPS);
-    for (int s = 0; s < LARGE_MORE; s++) solver->large_more_factors[s] = momentum_factor_tuned(s, LARGE_MORE);
     return solver;
 }
 
 static float smaller(float x, float y) { return x < y ? x : y; }
 
-static bool start(State *solver, const ContactProblem *problem) {
+static bool start(State *solver, const ContactProblem *problem, bool rests) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && sweeps_run(sweeps, START_SWEEPS);
+    return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) &&
+           (rests ? sweeps_run(sweeps, REST_SWEEPS)
+                  : sweeps_run_momentum(sweeps, solver->start_factors, IMPACT_SWEEPS));
 }
 
 /* False when memory is short. */
@@ -98,7 +104,7 @@ static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
     for (int i = 0; i < 2; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
-        interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
+        if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
         interior_iterate(&solver->interior, kernels, attempts[i].least_scale, (double)near, attempts[i].iterations);
         if (solver->interior.residual <= (double)near) return true;
     }
@@ -131,32 +137,17 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
            momentum_solve(&solver->momentum, problem, solver->factors, FALLBACK_SWEEPS, solution, error);
 }
 
-/* An iteration in an island of so many loops takes as long as 30 sweeps or more, so sweeps with momentum are as accurate
-   in the same time. */
-static bool solve_large(State *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    const StoppingRule rule = {.near = solver->near, .more = LARGE_MORE};
-    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) ||
-        !sweeps_run_momentum(sweeps, solver->large_factors, LARGE_SWEEPS) ||
-        !momentum_run_more(sweeps, problem, &rule, solver->large_more_factors))
-        return error_memory(error, "interior");
-    solution->fallbacks.by_sweeps = 1;
-    return sweeps_end(sweeps, solution) ||
-           momentum_solve(&solver->momentum, problem, solver->large_factors, LARGE_SWEEPS, solution, error);
-}
-
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
-    if (problem->contact_count > LOOPS_MAX) {
-        const int loops = islands_most_loops(&solver->islands, problem);
-        if (loops < 0) return error_memory(error, "interior");
-        if (loops > LOOPS_MAX) return solve_large(solver, problem, solution, error);
-    }
     const Sweeps *sweeps = &solver->momentum.sweeps;
-    if (!start(solver, problem)) return error_memory(error, "interior");
-    const bool rests = !residual_approach_reaches(problem, rest_below);
-    if (rests && !residual_of_visits_reaches(sweeps, problem->contact_count, smaller(solver->near, rounding)) &&
-        sweeps_end(sweeps, solution))
+    bool left_to_sweeps;
+    if (!large_islands_find(&solver->large, problem, &left_to_sweeps, error)) return false;
+    if (left_to_sweeps)
+        return large_islands_solve(&solver->large, &solver->momentum, solver->near, problem, solution, error);
+    const bool rests = !residual_motion_reaches(problem, rest_below);
+    if (!start(solver, problem, rests)) return error_memory(error, "interior");
+    const float enough = rests ? smaller(solver->near, rounding) : trusted * solver->near;
+    if (!residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution))
         return true;
     if (!iterate(solver, problem, rests)) return error_memory(error, "interior");
     const bool finite = interior_end(&solver->interior, sweeps, problem, solution);
