@@ -7,7 +7,7 @@
 
        M (v - v') = J_n^T l + J_t^T t
        z = J_n v - b,        l z = tau^2 m_n
-       J_t v = q - p,        p (mu l - t) = q (mu l + t) = tau^2 m_t mu
+       J_t v = q - p,        p (mu l - t) = q (mu l + t) = 4 tau^2 m_t mu
 
    For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
    an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
@@ -27,7 +27,7 @@
    Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
    Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,
    Armand, Nguyen, Shpakovych, "Second-Order Cone Programming for Frictional Contact Mechanics Using Interior Point
-   Algorithm" (2024), which solve conic programs with a symmetric matrix. Constants are hand-tuned.
+   Algorithm" (2024), which solve conic programs with a symmetric matrix.
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
