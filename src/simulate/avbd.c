@@ -134,6 +134,7 @@ const SteppingKind stepping_avbd = {
                     .settings = settings,
                     .title = "AVBD",
                     .caption = "augmented vertex block descent",
+                    .no_push_out = true,
                     .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},

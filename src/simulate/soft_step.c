@@ -175,6 +175,7 @@ const SteppingKind stepping_soft_step = {
                     .settings = settings,
                     .title = "Soft step",
                     .caption = "the solver of Box2D v3",
+                    .no_push_out = true,
                     .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=8", "substeps=16"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},

@@ -11,6 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether methods are scored against converged velocities without push-out. */
+static bool scores_without_push_out(const SceneStudy *study) {
+    for (int i = 0; i < study->contender_count; i++)
+        if (study->contenders[i]->method.kind->description->no_push_out) return true;
+    return false;
+}
+
 static bool choose_launches(SceneStudy *study, const char *path, Error *error) {
     LaunchTable table = {0};
     if (path != NULL && !launches_read(&table, path, error)) return false;
@@ -24,7 +31,10 @@ static bool choose_launches(SceneStudy *study, const char *path, Error *error) {
     if (!ok) error_memory(error, "study");
     if (ok && path != NULL) ok = launches_for(&table, study->scene, launches, error);
     if (ok && path == NULL) launches_for_scoring(study->scene, study->launch_count, launches);
-    for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
+    for (int i = 0; ok && i < study->launch_count; i++) {
+        study->launches[i] = launch_scene(study->scene, &launches[i]);
+        study->snapshots[i].no_push_out = scores_without_push_out(study);
+    }
     free(launches);
     launches_free(&table);
     return ok;
