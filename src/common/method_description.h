@@ -28,6 +28,7 @@ typedef struct MethodDescription {
     MethodRole role;
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
+    bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
                             settings otherwise. NULL: nothing is learned */
