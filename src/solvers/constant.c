@@ -22,8 +22,7 @@ const ContactSolverKind solver_constant = {
                         "baseline: predicts the mean of the training data of pair-net or contact-net for every pair",
                     .settings = settings,
                     .role = METHOD_BASELINE,
-                    .needs_network = true,
-                    .stability = METHOD_NO_RUNS},
+                    .needs_network = true},
     .create = create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};

@@ -13,12 +13,18 @@
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 
-static const SettingSpec settings[] = {{"network", "file of a network with the target points (default: the scene's)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"network", "file of a network with the target points (default: the scene's)"},
+    {"net", "on|off: off predicts the mean of the training data for every pair (default: on)"},
+    {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
+    bool predicts = true;
+    if (!settings_bool(chosen, "net", &predicts, error)) return NULL;
     PairSolver *solver = pair_solver_create("contact-net", chosen, error);
-    if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
+    if (solver == NULL) return NULL;
+    solver->network.constant = !predicts;
+    if (solver->network.target == TARGET_POINTS) return solver;
     error_input(error, settings_get(chosen, "network"),
                 "the network has the target %s, which is for pair-net; contact-net needs the target points",
                 pair_target_names[solver->network.target]);
@@ -32,7 +38,10 @@ const ContactSolverKind solver_contact_net = {
                         "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
                     .settings = settings,
                     .needs_network = true,
-                    .twin = "constant"},
+                    .twin = "contact-net:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
     .create = create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};
