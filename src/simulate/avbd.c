@@ -136,7 +136,7 @@ const SteppingKind stepping_avbd = {
                     .caption = "augmented vertex block descent",
                     .no_push_out = true,
                     .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
-                    .chart_quick = METHOD_NO_RUNS,
+                    .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .step = step,

@@ -14,17 +14,11 @@
 #include "solvers/solvers.h"
 
 static const SettingSpec settings[] = {
-    {"network", "file of a network with the target points (default: the scene's)"},
-    {"net", "on|off: off predicts the mean of the training data for every pair (default: on)"},
-    {NULL, NULL}};
+    {"network", "file of a network with the target points (default: the scene's)"}, PAIR_SOLVER_NET, {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
-    bool predicts = true;
-    if (!settings_bool(chosen, "net", &predicts, error)) return NULL;
     PairSolver *solver = pair_solver_create("contact-net", chosen, error);
-    if (solver == NULL) return NULL;
-    solver->network.constant = !predicts;
-    if (solver->network.target == TARGET_POINTS) return solver;
+    if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
     error_input(error, settings_get(chosen, "network"),
                 "the network has the target %s, which is for pair-net; contact-net needs the target points",
                 pair_target_names[solver->network.target]);
