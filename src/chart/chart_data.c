@@ -42,12 +42,11 @@ static bool is_set(const char *setting, const char *key) {
     return found != NULL && (found == setting || found[-1] == ',') && found[strlen(key)] == '=';
 }
 
-/* What sets a row apart from those with a fixed number of sweeps, and with the default limit. */
+/* What sets a row apart from those with a fixed number of sweeps. */
 static const char *rule_of(const ChartRow *row) {
     const MethodDescription *method = method_describe(row->method);
     const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
-    const bool more = is_set(row->setting, "more");
-    return more ? ", more" : near ? ", near" : "";
+    return near ? ", near" : "";
 }
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
@@ -73,6 +72,8 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
+        const MethodDescription *method = method_describe(table->rows[i].method);
+        line->no_push_out = method != NULL && method->no_push_out;
     }
     return true;
 }

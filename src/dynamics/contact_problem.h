@@ -65,6 +65,13 @@ typedef struct NetworkFallbacks {
                             problem is too large for them */
 } NetworkFallbacks;
 
+static inline void network_fallbacks_add(NetworkFallbacks *sum, const NetworkFallbacks *step) {
+    sum->not_finite += step->not_finite;
+    sum->outside_cone += step->outside_cone;
+    sum->beyond_training += step->beyond_training;
+    sum->by_sweeps += step->by_sweeps;
+}
+
 /* What a solver fills in; the arrays are the caller's. */
 typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */

@@ -160,6 +160,7 @@ const ContactSolverKind solver_interior = {
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
                     .settings = settings,
                     .title = "Interior point",
+                    .falls_back = true,
                     .chart = METHOD_RUNS("near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},

@@ -11,6 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether methods are scored against converged velocities without push-out. */
+static bool scores_without_push_out(const SceneStudy *study) {
+    for (int i = 0; i < study->contender_count; i++)
+        if (study->contenders[i]->method.kind->description->no_push_out) return true;
+    return false;
+}
+
 static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error *error) {
     Launch *launches = launch_choice_make(choice, study->scene, study->size->launches, &study->launch_count, error);
     if (launches == NULL) return false;
@@ -20,7 +27,10 @@ static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error
     study->snapshots = calloc(count, sizeof *study->snapshots);
     bool ok = study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
     if (!ok) error_memory(error, "study");
-    for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
+    for (int i = 0; ok && i < study->launch_count; i++) {
+        study->launches[i] = launch_scene(study->scene, &launches[i]);
+        study->snapshots[i].no_push_out = scores_without_push_out(study);
+    }
     free(launches);
     return ok;
 }
