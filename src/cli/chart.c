@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
+#include "chart/equal_time_plot.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/options.h"
@@ -73,6 +74,9 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
+    bool drawn;
+    if (!equal_time_plot(csv, options->folder, &drawn, error)) return false;
+    printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", options->folder, drawn ? ", equal_time.png, .svg, .pdf" : "");
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
