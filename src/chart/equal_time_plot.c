@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* mm */
-static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55,
-                    name_slope = 1.15, foot = 13, bar_height = 2.6, bar_width = 62, note_width = 76;
+static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55, name_slope = 1.15,
+                    foot = 15, bar_height = 2.6, bar_width = 62, note_width = 76;
 static const double degrees = 40;
 static const double strongest = 300; /* ratio, and its inverse, with the full colour */
 
@@ -59,8 +59,7 @@ static void name_colour(char colour[8], double ratio) {
     static const double less[] = {0x21, 0x66, 0xAC}, even[] = {0xF4, 0xF4, 0xF4}, more[] = {0xB3, 0x58, 0x06};
     const double t = strength(ratio);
     int parts[3];
-    for (int i = 0; i < 3; i++)
-        parts[i] = (int)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
+    for (int i = 0; i < 3; i++) parts[i] = (int)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
     snprintf(colour, 8, "#%02X%02X%02X", (unsigned)parts[0], (unsigned)parts[1], (unsigned)parts[2]);
 }
 
@@ -120,7 +119,7 @@ static void draw_scale(const Layout *layout) {
     static const double marks[] = {1.0 / 300, 1.0 / 30, 1, 30, 300};
     enum { STEPS = 61 };
     GnuplotPage *page = layout->page;
-    const double bottom = 5.2;
+    const double bottom = 7.6;
     char text[24], colour[8], note[CHART_TEXT_SIZE + 64];
     for (int i = 0; i < STEPS; i++) {
         name_colour(colour, pow(strongest, 2 * (i + 0.5) / STEPS - 1));
@@ -135,6 +134,7 @@ static void draw_scale(const Layout *layout) {
     gnuplot_text(page, layout->left + bar_width + 6, bottom + bar_height / 2, "left", 8,
                  "error at the impact / error of the best rival,");
     gnuplot_text(page, layout->left + bar_width + 6, bottom - 2, "left", 8, note);
+    gnuplot_text(page, layout->left + bar_width + 6, bottom - 5.5, "left", 8, "– slower than that, or lost the scene");
 }
 
 static void draw_grid(const EqualTimeGrid *grid, GnuplotPage *page) {

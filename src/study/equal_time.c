@@ -74,22 +74,21 @@ static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStati
     const BestRival rival = rival_curves_best(curves, curves->family[i], row->phase, statistic, row->us_solver);
     const ChartRow *momentum = find_run(curves, row->phase, "momentum", "k=20");
     const ChartRow *net = find_run(curves, row->phase, "scene-net", "");
-    return (EqualTimeRow){
-        .scene = row->scene,
-        .method = row->method,
-        .setting = row->setting,
-        .phase = row->phase,
-        .statistic = statistic,
-        .launches = row->launches,
-        .us_solver = row->us_solver,
-        .error = error,
-        .rival = name_rival(curves, &rival),
-        .reach = rival.reach,
-        .rival_error = rival.error,
-        .ratio = curves->lost[i] ? NAN : floored(error) / rival.error,
-        .time_momentum_20 = momentum == NULL ? NAN : row->us_solver / momentum->us_solver,
-        .error_scene_net = net == NULL ? NAN : floored(error) / floored(curve_error(net, statistic)),
-        .time_scene_net = net == NULL ? NAN : row->us_solver / net->us_solver};
+    return (EqualTimeRow){.scene = row->scene,
+                          .method = row->method,
+                          .setting = row->setting,
+                          .phase = row->phase,
+                          .statistic = statistic,
+                          .launches = row->launches,
+                          .us_solver = row->us_solver,
+                          .error = error,
+                          .rival = name_rival(curves, &rival),
+                          .reach = rival.reach,
+                          .rival_error = rival.error,
+                          .ratio = curves->lost[i] ? NAN : floored(error) / rival.error,
+                          .time_momentum_20 = momentum == NULL ? NAN : row->us_solver / momentum->us_solver,
+                          .error_scene_net = net == NULL ? NAN : floored(error) / floored(curve_error(net, statistic)),
+                          .time_scene_net = net == NULL ? NAN : row->us_solver / net->us_solver};
 }
 
 /* The most sweeps of momentum, of these, that were run somewhere. */

@@ -24,9 +24,9 @@ typedef struct EqualTimeRow {
 typedef struct EqualMethodRow {
     const char *scene, *method; /* method: its family */
     double us_solver;           /* the time, microseconds */
-    CurveReach reach;           /* where the time lies on the method's curve; before: it takes longer, or lost the scene */
-    double error;               /* m/s, at that time; NaN before */
-    const char *rival;          /* "": none */
+    CurveReach reach;  /* where the time lies on the method's curve; before: it takes longer, or lost the scene */
+    double error;      /* m/s, at that time; NaN before */
+    const char *rival; /* "": none */
     double rival_error, ratio;
     int family; /* index into families */
 } EqualMethodRow;

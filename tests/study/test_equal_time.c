@@ -9,17 +9,17 @@
 /* A row of the impact in closed loop; median and 95th percentile are half and twice the mean. */
 #define IMPACT(method, setting, us, mean, half, twice) \
     "tower," method "," setting ",closed,impact,5," us "," us "," us ",9,," mean "," half "," twice ",1,1,0,,0,\n"
-#define DRIFT(method, setting, drift) "tower," method "," setting ",closed,rest,5,1,1,1,9,,0.1,0.1,0.1,1,1,0," drift ",0,0\n"
+#define DRIFT(method, setting, drift) \
+    "tower," method "," setting ",closed,rest,5,1,1,1,9,,0.1,0.1,0.1,1,1,0," drift ",0,0\n"
 
-static const char chart[] =
-    IMPACT("engine", "k=10", "4", "2", "1", "4") IMPACT("engine", "k=40", "16", "1", "0.5", "2")
+static const char chart[] = IMPACT("engine", "k=10", "4", "2", "1", "4") IMPACT("engine", "k=40", "16", "1", "0.5", "2")
     IMPACT("momentum", "k=20", "8", "0.8", "0.4", "1.6") IMPACT("momentum", "k=50", "20", "0.2", "0.1", "0.4")
-    IMPACT("learned-momentum", "k=20", "8", "0.4", "0.2", "0.8")
-    IMPACT("scene-net", "", "10", "0.1", "0.05", "0.2") IMPACT("scene-net", "net=off", "10", "0.5", "0.25", "1")
-    IMPACT("interior", "near=0.02", "16", "0.01", "0.005", "0.02")
+        IMPACT("learned-momentum", "k=20", "8", "0.4", "0.2", "0.8") IMPACT("scene-net", "", "10", "0.1", "0.05", "0.2")
+            IMPACT("scene-net", "net=off", "10", "0.5", "0.25", "1")
+                IMPACT("interior", "near=0.02", "16", "0.01", "0.005", "0.02")
     /* What no method may be compared with. */
     IMPACT("reference", "", "2", "0.0001", "0.0001", "0.0001") IMPACT("playback", "", "1", "0.01", "0.01", "0.01")
-    IMPACT("block", "k=5", "1", "0.01", "0.01", "0.01") DRIFT("block", "k=5", "0.6") DRIFT("engine", "k=10", "0.4");
+        IMPACT("block", "k=5", "1", "0.01", "0.01", "0.01") DRIFT("block", "k=5", "0.6") DRIFT("engine", "k=10", "0.4");
 
 static ChartTable read_chart(void) {
     ChartTable table;
@@ -92,9 +92,12 @@ static void methods_are_compared_at_one_time(void **state) {
         const char *method, *rival;
         double error, ratio;
     } methods[] = {
-        {"engine", "interior", 1, 100},         {"momentum", "interior", 0.2, 20},
-        {"learned-momentum", "interior", 0.4, 40}, {"scene-net", "interior", 0.1, 10},
-        {"scene-net, net=off", "interior", 0.5, 50}, {"interior", "momentum", 0.01, 0.05},
+        {"engine", "interior", 1, 100},
+        {"momentum", "interior", 0.2, 20},
+        {"learned-momentum", "interior", 0.4, 40},
+        {"scene-net", "interior", 0.1, 10},
+        {"scene-net, net=off", "interior", 0.5, 50},
+        {"interior", "momentum", 0.01, 0.05},
         {"block", "interior", NAN, NAN}, /* lost the scene */
     };
     ChartTable rows = read_chart();
