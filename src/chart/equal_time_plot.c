@@ -13,7 +13,7 @@
 
 /* mm */
 static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55, name_slope = 1.15,
-                    foot = 15, bar_height = 2.6, bar_width = 62, note_width = 76;
+                    foot = 16, bar_height = 2.6, bar_width = 62, note_width = 76;
 static const double degrees = 40;
 static const double strongest = 300; /* ratio, and its inverse, with the full colour */
 
@@ -70,12 +70,14 @@ static void draw_box(GnuplotPage *page, GnuplotBox box, const char *colour) {
     gnuplot_series_end(page, &look);
 }
 
-/* Two digits: "1/52", "1/3.1", "1", "×2.4". */
+/* Two digits: "1/52", "1/3.1", "1", "×2.4"; what is beyond a factor of 9999 does not fit into a cell. */
 static void name_ratio(char text[24], double ratio) {
     const double factor = ratio < 1 ? 1 / ratio : ratio;
     const char *before = ratio < 1 ? "1/" : "×";
     if (factor < 1.05)
         strcpy(text, "1");
+    else if (!(factor < 9995))
+        strcpy(text, ratio < 1 ? "<1/9999" : ">×9999");
     else if (factor < 9.95)
         snprintf(text, 24, "%s%.1f", before, factor);
     else
@@ -119,7 +121,7 @@ static void draw_scale(const Layout *layout) {
     static const double marks[] = {1.0 / 300, 1.0 / 30, 1, 30, 300};
     enum { STEPS = 61 };
     GnuplotPage *page = layout->page;
-    const double bottom = 7.6;
+    const double bottom = 8.8;
     char text[24], colour[8], note[CHART_TEXT_SIZE + 64];
     for (int i = 0; i < STEPS; i++) {
         name_colour(colour, pow(strongest, 2 * (i + 0.5) / STEPS - 1));
