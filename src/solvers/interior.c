@@ -28,7 +28,7 @@
 enum {
     REST_SWEEPS = 2,
     IMPACT_SWEEPS = 6,    /* with momentum */
-    MANY_BODIES = 128,    /* an iteration takes as long as 15 sweeps or more, */
+    MANY_BODIES = 128,    /* more: an iteration takes as long as 15 sweeps or more, */
     MANY_SWEEPS = 12,     /* and these save more than they cost */
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
@@ -48,12 +48,17 @@ static const float rounding = 3e-8f;
    overlap by less than `shallow` (m) aim to close by up to `closing` (m/s): both exceed the rounding of positions. */
 static const double shallow = (double)CONTACT_SLOP / 20, closing = 0.001;
 
-/* Iterations from the start of the sweeps, near the bounds first. If these cycle, it is better to start from there again,
-   further inside, than from where they are. */
-static const struct {
+/* Iterations from the start of the sweeps, near the bounds first. At rest, if these cycle, it is better to start from
+   there again, further inside, than from where they are. */
+typedef struct Attempt {
     double least_scale; /* m/s */
     int iterations;
-} attempts[2] = {{1e-6, 10}, {0.1, 40}};
+} Attempt;
+
+enum { ATTEMPTS = 2 };
+static const Attempt at_rest[ATTEMPTS] = {{7e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {0.1, 0}};
+/* Impacts of more than MANY_BODIES cycle more often. */
+static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 14}, {0.3, 20}};
 
 typedef struct State {
     Interior interior;
@@ -107,7 +112,8 @@ static bool start(State *solver, const ContactProblem *problem, bool rests) {
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
-    for (int i = 0; i < 2; i++) {
+    const Attempt *attempts = rests ? at_rest : problem->body_count > MANY_BODIES ? at_impact_of_many : at_impact;
+    for (int i = 0; i < ATTEMPTS && attempts[i].iterations > 0; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
         interior_iterate(&solver->interior, kernels, attempts[i].least_scale, (double)near, attempts[i].iterations);
@@ -166,7 +172,7 @@ const ContactSolverKind solver_interior = {
                     .settings = settings,
                     .title = "Interior point",
                     .falls_back = true,
-                    .chart = METHOD_RUNS("near=0.02", "near=0.001"),
+                    .chart = METHOD_RUNS("near=0.1", "near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,
