@@ -84,8 +84,9 @@ static bool start(State *solver, const ContactProblem *problem) {
 }
 
 /* False when memory is short. */
-static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
+static bool iterate(State *solver, const ContactProblem *problem) {
     const InteriorKernels *kernels = interior_best();
+    const bool rests = !residual_approach_reaches(problem, rest_below);
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
     for (int i = 0; i < 2; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
@@ -126,11 +127,10 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     State *solver = state;
     const Sweeps *sweeps = &solver->momentum.sweeps;
     if (!start(solver, problem)) return error_memory(error, "interior");
-    const bool rests = !residual_approach_reaches(problem, rest_below);
-    if (rests && !residual_of_visits_reaches(sweeps, problem->contact_count, smaller(solver->near, rounding)) &&
+    if (!residual_of_visits_reaches(sweeps, problem->contact_count, smaller(solver->near, rounding)) &&
         sweeps_end(sweeps, solution))
         return true;
-    if (!iterate(solver, problem, rests)) return error_memory(error, "interior");
+    if (!iterate(solver, problem)) return error_memory(error, "interior");
     const bool finite = interior_end(&solver->interior, sweeps, problem, solution);
     if (finite && solver->interior.residual <= (double)solver->near) return true;
     return fall_back(solver, finite, problem, solution, error);
