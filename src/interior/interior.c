@@ -9,7 +9,7 @@
    residual at the start plus `least_scale`; impulses and slips start at half of it beyond their values, and tau^2 at `first`
    times its square. tau^2 falls to `shrink` of itself, or to `follow` times the squared residual. */
 static const double scale_of_residual = 4, inside = 0.5, first = 0.25, shrink = 0.15, follow = 0.05;
-/* Iterations have broken down, as in a problem without a solution, if the residual is this multiple of the scale. */
+/* Iterations have broken down, as in a problem without a solution, if the residual exceeds the scale by this, m/s. */
 static const double lost = 1e6;
 
 const InteriorKernels *interior_best(void) {
@@ -47,12 +47,12 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, double least_
         target = next < target ? next : target;
         s->residual = estimate = kernels->iterate(s, target);
         s->iterations++;
-        if (!(estimate < lost * scale)) break;
+        if (!(estimate < lost + scale)) break;
         if (estimate > near && s->iterations < most) continue;
         s->residual = kernels->answer(s);
         if (!(s->residual > near)) return;
     }
-    if (!(estimate < lost * scale)) s->residual = INFINITY;
+    if (!(estimate < lost + scale)) s->residual = INFINITY;
 }
 
 static bool store_bodies(const Interior *s, const ContactProblem *problem, ContactSolution *solution) {

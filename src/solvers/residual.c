@@ -76,16 +76,14 @@ bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float l
     return false;
 }
 
-bool residual_approach_reaches(const ContactProblem *problem, float limit) {
-    const float enough = limit * limit * (float)problem->contact_count;
-    float sum = 0;
+bool residual_motion_reaches(const ContactProblem *problem, float limit) {
+    bool reaches = false;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
         const Vec2 velocity = vec2_sub(point_velocity(b->velocity, b->angular_velocity, contact->arm_b),
                                        point_velocity(a->velocity, a->angular_velocity, contact->arm_a));
-        const float closing = -vec2_dot(velocity, contact->normal);
-        sum += closing <= 0 ? 0 : closing * closing; /* a NaN remains */
+        reaches |= !(vec2_dot(velocity, velocity) < limit * limit);
     }
-    return problem->contact_count > 0 && !(sum < enough);
+    return reaches;
 }

@@ -16,6 +16,6 @@ bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolutio
    least `limit` (m/s), or NaN. This is the residual of interior/interior.h. */
 bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit);
 
-/* True if the normal velocities by which contacts would approach without any impulse have a root mean square of at least
-   `limit` (m/s). A step of gravity makes 0.17 at rest, whatever the masses. */
-bool residual_approach_reaches(const ContactProblem *problem, float limit);
+/* True if the bodies of a contact move relative to each other by at least `limit` (m/s) there without any impulse, in any
+   direction, or by NaN. A step of gravity makes 0.17 at rest, whatever the masses. */
+bool residual_motion_reaches(const ContactProblem *problem, float limit);

@@ -162,8 +162,8 @@ static void slip_counts_as_far_as_friction_can_brake_it(void **state) {
     sweeps_free(&sweeps);
 }
 
-/* Before any impulse, and without the bias. Contacts that open count as 0. */
-static void the_approach_is_that_of_the_bodies(void **state) {
+/* Before any impulse, in any direction. */
+static void the_motion_is_that_of_the_bodies(void **state) {
     (void)state;
     Boxes boxes;
     make_boxes(&boxes, -3, 5);
@@ -171,13 +171,13 @@ static void the_approach_is_that_of_the_bodies(void **state) {
         boxes.contacts[k].warm_normal = 2;
         boxes.contacts[k].bias = 9;
     }
-    const float approach = sqrtf(2 * 3 * 3 / 4.0f);
-    assert_true(residual_approach_reaches(&boxes.problem, 0.9999f * approach));
-    assert_false(residual_approach_reaches(&boxes.problem, 1.0001f * approach));
+    const float speed = sqrtf(7 * 7 + 5 * 5); /* of the box on the right */
+    assert_true(residual_motion_reaches(&boxes.problem, 0.9999f * speed));
+    assert_false(residual_motion_reaches(&boxes.problem, 1.0001f * speed));
     boxes.bodies[2].velocity.y = NAN;
-    assert_true(residual_approach_reaches(&boxes.problem, 1e6f));
+    assert_true(residual_motion_reaches(&boxes.problem, 1e6f));
     boxes.problem.contact_count = 0;
-    assert_false(residual_approach_reaches(&boxes.problem, 0.1f));
+    assert_false(residual_motion_reaches(&boxes.problem, 0.1f));
 }
 
 int main(void) {
@@ -188,7 +188,7 @@ int main(void) {
         cmocka_unit_test(the_residual_is_measured_from_the_bias),
         cmocka_unit_test(spin_counts_at_the_arm),
         cmocka_unit_test(slip_counts_as_far_as_friction_can_brake_it),
-        cmocka_unit_test(the_approach_is_that_of_the_bodies),
+        cmocka_unit_test(the_motion_is_that_of_the_bodies),
         cmocka_unit_test(random_problems_have_the_residual_of_the_definition),
         cmocka_unit_test(sweeps_reduce_the_residual),
     };
