@@ -153,7 +153,6 @@ const ContactSolverKind solver_interior = {
                     .title = "Interior point",
                     .chart = METHOD_RUNS("near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
-                    .stability = METHOD_RUNS("", "near=0.001"),
                     .stability_place = 2},
     .create = create,
     .solve = solve,
