@@ -12,10 +12,12 @@
    Elsewhere sweeps with momentum make the start: each saves as much of an iteration as it costs.
 
    Fails by its time: an iteration costs as much as 5 sweeps on scenes/stack and as 12 on scenes/pyramid_settled, and
-   more beyond some hundred bodies. An impact takes about four iterations to 0.02 m/s and two more to 0.001 m/s, but ten
-   to thirty from poor impulses of the step before, or where friction jams a pile. */
+   more beyond some hundred bodies, so large islands are left to sweeps (large_islands.h). An impact takes about four
+   iterations to 0.02 m/s and two more to 0.001 m/s, but ten to thirty from poor impulses of the step before, or where
+   friction jams a pile. */
 #include "interior/interior.h"
 
+#include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
@@ -56,6 +58,7 @@ static const Attempt at_rest[ATTEMPTS] = {{7e-6, 10}, {0.1, 40}}, at_impact[ATTE
 
 typedef struct State {
     Interior interior;
+    LargeIslands large;
     Momentum momentum;
     float near; /* m/s */
     float start_factors[IMPACT_SWEEPS], factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
@@ -68,6 +71,7 @@ static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
+    large_islands_free(&solver->large);
     momentum_free(&solver->momentum);
     free(solver);
 }
@@ -81,6 +85,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->near = near;
+    large_islands_init(&solver->large);
     for (int s = 0; s < IMPACT_SWEEPS; s++) solver->start_factors[s] = momentum_factor_tuned(s, IMPACT_SWEEPS);
     for (int s = 0; s < FALLBACK_SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, FALLBACK_SWEEPS);
     for (int s = 0; s < FALLBACK_MORE; s++) solver->more_factors[s] = momentum_factor_tuned(s, FALLBACK_MORE);
@@ -139,6 +144,10 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Sweeps *sweeps = &solver->momentum.sweeps;
+    bool left_to_sweeps;
+    if (!large_islands_find(&solver->large, problem, &left_to_sweeps, error)) return false;
+    if (left_to_sweeps)
+        return large_islands_solve(&solver->large, &solver->momentum, solver->near, problem, solution, error);
     const bool rests = !residual_motion_reaches(problem, rest_below);
     if (!start(solver, problem, rests)) return error_memory(error, "interior");
     const float enough = rests ? smaller(solver->near, rounding) : trusted * solver->near;
@@ -155,6 +164,7 @@ const ContactSolverKind solver_interior = {
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
                     .settings = settings,
                     .title = "Interior point",
+                    .falls_back = true,
                     .chart = METHOD_RUNS("near=0.1", "near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability_place = 2},
