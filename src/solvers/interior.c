@@ -60,8 +60,8 @@ typedef struct Attempt {
 
 enum { ATTEMPTS = 2 };
 static const Attempt at_rest[ATTEMPTS] = {{7e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {1, 40}};
-/* Impacts of more than MANY_BODIES cycle more often. */
-static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 14}, {0.3, 20}};
+/* Impacts of more than MANY_BODIES cycle more often, from any start; those that do not converge soon are left to sweeps. */
+static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 14}, {0, 0}};
 
 typedef struct State {
     Interior interior;
@@ -116,7 +116,7 @@ static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
     const Attempt *attempts = rests ? at_rest : problem->body_count > MANY_BODIES ? at_impact_of_many : at_impact;
-    for (int i = 0; i < ATTEMPTS; i++) {
+    for (int i = 0; i < ATTEMPTS && attempts[i].iterations > 0; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
         interior_iterate(&solver->interior, kernels, attempts[i].least_scale, (double)near, attempts[i].iterations);
