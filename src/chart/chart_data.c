@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_data.h"
 
-#include "common/parse.h"
 #include "simulate/method.h"
+#include "study/chart_rows.h"
 #include "study/pareto.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double lost_drift = 0.5; /* m, half a box */
 
 char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
 
@@ -20,21 +18,6 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     if (cut) length = room - 3;
     for (size_t i = 0; i < length; i++) out[i] = chart_plain_letter(text[i]);
     strcpy(out + length, cut ? "..." : "");
-}
-
-/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off", appended to empty texts. */
-static void split_setting(const char *setting, char *numbers, char *words) {
-    while (*setting != '\0') {
-        size_t length = strcspn(setting, ",");
-        char item[CHART_SETTING_SIZE];
-        snprintf(item, sizeof item, "%.*s", (int)length, setting);
-        const char *value = strchr(item, '=');
-        double number;
-        bool is_number = value != NULL && parse_double(value + 1, &number);
-        if (!is_number || numbers[0] != '\0') strcat(is_number ? numbers : words, ", ");
-        strcat(is_number ? numbers : words, item);
-        setting += length + (setting[length] == ',');
-    }
 }
 
 static bool is_set(const char *setting, const char *key) {
@@ -51,7 +34,7 @@ static const char *rule_of(const ChartRow *row) {
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
-    split_setting(row->setting, numbers, words);
+    chart_split_setting(row->setting, numbers, words);
     snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, rule_of(row), words);
     chart_plain(label, numbers);
 }
@@ -82,17 +65,6 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
 static int panel_of(const ChartRow *row, const char *scene) {
     if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
     return row->phase == PHASE_IMPACT ? 0 : 1;
-}
-
-/* Whether the boxes had drifted before the bomb came. */
-static bool is_lost(const ChartTable *table, const ChartRow *row) {
-    for (int i = 0; i < table->count; i++) {
-        const ChartRow *rest = &table->rows[i];
-        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
-            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
-            return true;
-    }
-    return false;
 }
 
 static bool can_be_drawn(const ChartRow *row) {
@@ -145,7 +117,7 @@ static void add_rows(Chart *chart, const ChartTable *table, const char *scene, C
         char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
         if (panel_of(&table->rows[i], scene) < 0) continue;
         name_row(&table->rows[i], key, label);
-        if (is_lost(table, &table->rows[i]))
+        if (chart_row_lost(table->rows, table->count, &table->rows[i]))
             chart->lines[find_line(chart, key)].lost++;
         else
             rows[count++] = table->rows[i];
