@@ -12,7 +12,7 @@
 #include "interior/islands.h"
 #include "solvers/momentum.h"
 
-enum { LARGE_SWEEPS = 20, LARGE_MORE = 240 }; /* sweeps, and those that may follow while the residual is too large */
+enum { LARGE_SWEEPS = 20, LARGE_MORE = 96 }; /* sweeps, and those that may follow while the residual is too large */
 
 /* Zero-initialise. */
 typedef struct LargeIslands {
