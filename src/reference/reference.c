@@ -1,69 +1,66 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NNCG: nonsmooth nonlinear conjugate gradients over sweeps of projected Gauss-Seidel.
+/* Interior points with a sparse direct solve over the bodies (interior/block_lu.h), run to the end.
 
-   One sweep of projected Gauss-Seidel over all contacts, in double, maps impulses p to p'. Its step serves as the
-   gradient of a Fletcher-Reeves conjugate gradient method:
+   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
+      sliding) are those of a solution, a linear solve finds it (reference_active.c): nearly always at rest.
+   2. Else the central path is followed to the solution (reference_path.c), also where it turns back (reference_arc.c).
+   3. If the path is lost, again from another distance.
 
-       g = p - p',  beta = |g|^2 / |g of the previous sweep|^2,  d' = beta d - g,  p = p' + beta d.
+   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
+   on the start. */
+#include "reference/reference_parts.h"
 
-   Velocities are linear in the impulses, so the same recursion holds for them. Source: Silcowitz, Niebuhr, Poulsen,
-   Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force Problems" (2010). The paper
-   restarts (d' = -g, p = p') if beta > 1. This implementation restarts if a step points against d, and limits beta to
-   1: redundant contacts drift at constant speed, beta = 1, until one slips or separates, and the published rule stops
-   every second step of that (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). A third to
-   a tenth of the sweeps for the same error.
+enum { START_SWEEPS = 2, MOST = 200 };
 
-   Fails by slow convergence if such a drift is long; the residual shows it. */
-#include "reference/reference_units.h"
-#include "sweeps/sweeps.h"
+/* Distances of the start from its bounds, times its residual. */
+static const double scales[] = {3, 30, 0.3, 300};
 
-#include <string.h>
-
-static void swap_sums(Reference *r) {
-    ReferenceNumbers *sums = r->sums;
-    r->sums = r->sums_before;
-    r->sums_before = sums;
-}
-
-static ReferenceSweep sweep(Reference *r, double beta) {
-    swap_sums(r);
-    r->sweeps++;
-    bool lanes = !r->scalar && sweeps_can(SWEEP_AVX2);
-    return lanes ? reference_sweep_avx2(r, beta) : reference_sweep_scalar(r, beta);
-}
-
-/* Ends with a plain sweep from the current impulses: its change is their residual, and the impulses before it are the
-   result. */
-static void iterate(Reference *r, double tolerance, int max_sweeps) {
-    double before = 0, beta = 0;
-    for (;;) {
-        bool from_sweep = r->sweeps > 0 && beta == 0;
-        ReferenceSweep now = sweep(r, beta);
-        bool converged = !(now.change > tolerance);
-        if (from_sweep && (converged || r->sweeps >= max_sweeps)) {
-            r->residual = now.change;
-            swap_sums(r);
-            return;
-        }
-        bool last_is_next = converged || r->sweeps + 1 >= max_sweeps;
-        beta = last_is_next || !(now.along > 0) ? 0 : now.squared < before ? now.squared / before : 1;
-        before = now.squared;
+static void keep_start(Reference *r) {
+    for (int i = 0; i < r->group_count; i++) {
+        r->groups[i].start_normal = r->groups[i].normal;
+        r->groups[i].start_tangent = r->groups[i].tangent;
+        r->groups[i].best_normal = r->groups[i].normal;
+        r->groups[i].best_tangent = r->groups[i].tangent;
     }
 }
 
-bool reference_solve(Reference *reference, const ContactProblem *problem, double tolerance, int max_visits,
-                     const ContactImpulse *start, Error *error) {
-    if (!reference_load(reference, problem)) return error_memory(error, "reference");
-    reference_start(reference, problem, start);
-    iterate(reference, tolerance, problem->contact_count > 0 ? max_visits / problem->contact_count : 0);
-    reference_store(reference, problem);
+static void take_best(Reference *r) {
+    for (int i = 0; i < r->group_count; i++) {
+        r->groups[i].normal = r->groups[i].best_normal;
+        r->groups[i].tangent = r->groups[i].best_tangent;
+    }
+    reference_apply(r);
+}
+
+static void run(Reference *r) {
+    const int scale_count = (int)(sizeof scales / sizeof *scales);
+    for (int i = 0; i < START_SWEEPS; i++) reference_sweep(r);
+    reference_apply(r);
+    keep_start(r);
+    if (reference_polish(r, REFERENCE_TOLERANCE / 10) <= REFERENCE_TOLERANCE / 10) return;
+    r->best = INFINITY;
+    for (bool solved = false; !solved && r->attempts < scale_count; r->attempts++) {
+        reference_begin(r, scales[r->attempts]);
+        solved = reference_follow(r, MOST);
+    }
+    take_best(r);
+}
+
+bool reference_solve(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
+    if (!reference_load(r, problem)) return error_memory(error, "reference");
+    reference_start(r, problem, start);
+    reference_apply(r);
+    run(r);
+    reference_store(r, problem);
+    r->residual = reference_sweep(r);
     return true;
 }
 
-bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,
-                        double *residual, Error *error) {
-    if (!reference_load(reference, problem)) return error_memory(error, "reference");
-    reference_start(reference, problem, impulses);
-    *residual = sweep(reference, 0).change;
+bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
+                        Error *error) {
+    if (!reference_load(r, problem)) return error_memory(error, "reference");
+    reference_start(r, problem, impulses);
+    reference_apply(r);
+    *residual = reference_sweep(r);
     return true;
 }

@@ -15,7 +15,7 @@ static void *create(const Settings *chosen, Error *error) {
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reference_solve(reference, problem, NULL, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *velocity = &reference->velocities[i];
         solution->velocities[i] = (BodyVelocity){vec2((float)velocity->x, (float)velocity->y), (float)velocity->spin};

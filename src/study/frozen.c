@@ -30,7 +30,7 @@ static bool store(SnapshotList *list, const Scene *scene, const World *before, c
     size_t size = (size_t)problem->body_count * sizeof(ReferenceVelocity);
     if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
         return error_memory(error, "study");
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reference_solve(reference, problem, NULL, error)) return false;
     if (reference->residual > list->residual) list->residual = reference->residual;
     Snapshot *snapshot = &list->items[list->count++];
     *snapshot = (Snapshot){scene, empty_world(scene, error), frame, phase, malloc(size)};

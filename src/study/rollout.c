@@ -42,7 +42,7 @@ void rollout_free(Rollout *rollout) {
 static bool score(Rollout *rollout, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     Reference *reference = &rollout->reference;
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reference_solve(reference, problem, NULL, error)) return false;
     rollout->solves++;
     rollout->unconverged += reference->residual > SOLVE_CONVERGED;
     if (step_scores_add(scores, problem, world_solution(rollout->world)->velocities, reference->velocities))

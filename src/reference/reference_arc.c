@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* With friction the central path may turn back: its target rises for a while before it falls again, and Newton's method
+   ends at the fold. So the path is followed by its length, with the target as one more unknown. At a fold the
+   determinant changes its sign, which tells in what direction to go on. Lengths are measured in the logarithms of the
+   point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990), Euler-Newton
+   with orientation by the determinant. */
+#include "reference/reference_parts.h"
+
+#include <string.h>
+
+enum { CORRECTIONS = 3, GOOD_STEPS = 3 };
+
+static const double bound_share = 0.9; /* of the way to the nearest bound that a step may go */
+static const double near_path = 0.5, lost = 3; /* distances from the path, in its length */
+static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
+
+typedef struct Tracker {
+    Reference *r;
+    double log_target, length; /* of the next step along the path */
+    double off_before;
+    int corrections, good;
+} Tracker;
+
+/* Product of two directions, per bound. */
+static double product(const Reference *r, bool with_itself) {
+    Vec4 sum = reference_all(0);
+    for (int i = 0; i < r->group_count; i++) {
+        const ReferencePoint *now = &r->groups[i].now, *x = &r->groups[i].step;
+        const ReferencePoint *y = with_itself ? x : &r->groups[i].along;
+        const Vec4 normal = x->l * y->l / (now->l * now->l) + x->z * y->z / (now->z * now->z);
+        const Vec4 up = x->u * y->u / (now->u * now->u) + x->p * y->p / (now->p * now->p);
+        sum += normal + up + x->w * y->w / (now->w * now->w) + x->q * y->q / (now->q * now->q);
+    }
+    return reference_sum(sum) / (3 * r->contact_count);
+}
+
+static ReferencePoint combine(const ReferencePoint *x, double share, const ReferencePoint *y) {
+    return (ReferencePoint){x->l + share * y->l, x->t + share * y->t, x->u + share * y->u, x->w + share * y->w,
+                            x->z + share * y->z, x->p + share * y->p, x->q + share * y->q};
+}
+
+static void solve_towards(Reference *r, double target) {
+    reference_towards(r, target, 0);
+    reference_right_side(r);
+    reference_solve_changes(r);
+    reference_direction(r);
+}
+
+/* Newton's step at the present target into `along`, and the derivative by the logarithm of the target into `step`.
+   Returns the square of the former's length. */
+static double find_directions(Reference *r, double target) {
+    const size_t bodies = (size_t)r->lu.count;
+    reference_linearise(r);
+    reference_factor(r);
+    r->left--;
+    solve_towards(r, target);
+    const double squared = product(r, true);
+    for (int i = 0; i < r->group_count; i++) r->groups[i].along = r->groups[i].step;
+    memcpy(r->first_changes, r->changes, bodies * sizeof *r->changes);
+    solve_towards(r, 2 * target); /* linear in the target */
+    for (int i = 0; i < r->group_count; i++)
+        r->groups[i].step = combine(&r->groups[i].step, -1, &r->groups[i].along);
+    for (size_t k = 0; k < bodies; k++) r->changes[k] -= r->first_changes[k];
+    return squared;
+}
+
+/* Back to the last point on the path, for shorter steps. False if they are too short already. */
+static bool go_back(Tracker *tracker) {
+    tracker->log_target = reference_back(tracker->r, KEPT_ON_PATH);
+    tracker->length *= 0.25;
+    tracker->corrections = 0;
+    tracker->off_before = INFINITY;
+    return tracker->length >= length_least;
+}
+
+/* Newton's step plus `by` times the derivative. Returns the share of it that the bounds allow. */
+static double move(Tracker *tracker, double by) {
+    Reference *r = tracker->r;
+    for (int i = 0; i < r->group_count; i++)
+        r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
+    for (int k = 0; k < r->lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
+    const double room = bound_share * reference_room(r), share = room < 1 ? room : 1;
+    reference_move(r, share);
+    tracker->log_target += share * by;
+    return share;
+}
+
+static void choose_length(Tracker *tracker, double share, double off) {
+    if (share >= 1 && off < 0.3)
+        tracker->length = 2 * tracker->length < length_most ? 2 * tracker->length : length_most;
+    else if (share < 0.7)
+        tracker->length *= 0.5;
+}
+
+/* False at the end: the path falls again, or is lost. */
+static bool track(Tracker *tracker) {
+    Reference *r = tracker->r;
+    const double newton = find_directions(r, exp(tracker->log_target)), along = product(r, false);
+    const double norm = product(r, true) + 1, squared = newton - along * along / norm;
+    const double off = squared > 0 ? sqrt(squared) : squared <= 0 ? 0 : INFINITY;
+    const bool forward = reference_forward(r), on_path = off <= near_path;
+    if (on_path) {
+        reference_keep(r, KEPT_ON_PATH, tracker->log_target);
+        tracker->corrections = 0;
+        tracker->off_before = INFINITY;
+    } else {
+        if (++tracker->corrections > CORRECTIONS || off > lost || off > tracker->off_before) return go_back(tracker);
+        tracker->off_before = off;
+    }
+    const double ahead = on_path ? tracker->length / sqrt(norm) : 0;
+    const double by = (forward ? -ahead : ahead) - along / norm, share = move(tracker, by);
+    if (on_path) choose_length(tracker, share, off);
+    tracker->good = forward && on_path && share >= 0.9 && by < -0.3 ? tracker->good + 1 : 0;
+    return tracker->good < GOOD_STEPS && isfinite(tracker->log_target);
+}
+
+void reference_pass_fold(Reference *r) {
+    reference_back(r, KEPT_ON_WAY);
+    for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
+    Tracker tracker = {.r = r, .log_target = log(reference_mean(r, 0)), .length = length_first, .off_before = INFINITY};
+    reference_keep(r, KEPT_ON_PATH, tracker.log_target);
+    while (r->left > 0 && track(&tracker)) {}
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference's workspace and the parts of a solve. Only the files of the reference include this. */
+#pragma once
+#include "interior/interior.h"
+#include "reference/reference.h"
+
+#include <math.h>
+
+enum { REFERENCE_SLOTS = 4, REFERENCE_PAIRS = 2 };
+
+/* A point strictly inside all bounds, or a change of one. u and w are kept beside l and t: as differences they would
+   lose all digits where a contact slides. */
+typedef struct ReferencePoint {
+    Vec4 l, t; /* N s, normal and tangent impulse */
+    Vec4 u, w; /* N s, mu l - t and mu l + t */
+    Vec4 z;    /* m/s, normal velocity above the target */
+    Vec4 p, q; /* m/s, sliding along +t (u is 0 at the solution) and -t (w is 0) */
+} ReferencePoint;
+
+/* Four contacts: two of each of two pairs. A slot without a contact has weight 0, rows of zeros, and ones in `now`. */
+struct ReferenceGroup {
+    Vec4 weight, mass_normal, mass_tangent, inverse_normal, inverse_tangent; /* kg and 1/kg, effective masses */
+    Vec4 friction;                  /* mu */
+    Vec4 free_normal, free_tangent; /* m/s: velocities before the contacts along the rows; normal: minus the bias */
+    Vec4 start_normal, start_tangent, normal, tangent, best_normal, best_tangent; /* N s, impulses inside the cone */
+    Vec4 gap, slip;                        /* m/s: velocities along the rows, normal: minus the bias */
+    ReferencePoint now;                    /* of the interior point */
+    Vec4 missing_normal, missing_tangent;  /* m/s: gap - z and slip - (q - p) */
+    Vec4 over_z, dn, dt, s, rn, rt;        /* linear system, see reference_newton.c */
+    Vec4 push_normal, push_tangent;        /* N s: impulses of its right-hand side */
+    Vec4 change_normal, change_tangent;    /* m/s: the solution along the rows */
+    Vec4 wanted_n, wanted_p, wanted_q;     /* wanted changes of the products l z, u p, w q */
+    ReferencePoint step, along;            /* directions */
+};
+
+/* Rows of a pair's slots in the coordinates (linear velocity of b minus that of a, spin of b, spin of a). */
+struct ReferencePair {
+    Vec4 normal[2], tangent[2];
+    int32_t a, b;     /* positions of the bodies in the elimination; `count` for a body that does not move */
+    BlockPlace place; /* of the blocks that couple them */
+    int first, count; /* contacts in the problem */
+};
+
+/* Points that a solve may go back to: before it got stuck; before a step along the path. */
+enum { KEPT_ON_WAY, KEPT_ON_PATH, KEPT };
+
+static inline Vec4 reference_all(double x) { return (Vec4){x, x, x, x}; }
+static inline double reference_sum(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
+typedef long long ReferenceMask __attribute__((vector_size(32), aligned(16), may_alias));
+static inline Vec4 reference_choose(ReferenceMask mask, Vec4 x, Vec4 y) {
+    return (Vec4)((mask & (ReferenceMask)x) | (~mask & (ReferenceMask)y));
+}
+static inline Vec4 reference_larger(Vec4 x, Vec4 y) { return reference_choose((ReferenceMask)(x > y), x, y); }
+static inline Vec4 reference_clamp(Vec4 x, Vec4 limit) {
+    const Vec4 low = reference_larger(x, -limit);
+    return reference_choose((ReferenceMask)(low < limit), low, limit);
+}
+
+/* reference_load.c: the problem; then the warm start or the given impulses as `normal` and `tangent`. */
+bool reference_load(Reference *r, const ContactProblem *problem);
+void reference_start(Reference *r, const ContactProblem *problem, const ContactImpulse *start);
+void reference_store(Reference *r, const ContactProblem *problem);
+
+/* reference_sweep.c: one sweep of plain Gauss-Seidel. Returns the largest change, m/s. */
+double reference_sweep(Reference *r);
+
+/* reference_newton.c. Velocities are relative to those before the contacts. */
+void reference_apply(Reference *r);             /* velocities of the impulses `normal` and `tangent` */
+void reference_look(Reference *r);              /* gap and slip of the velocities */
+double reference_miss(Reference *r, double *rms); /* m/s: how far the impulses miss the law of contact, at most and
+                                                   root mean square. NaN if any is. */
+void reference_factor(Reference *r); /* with dn, dt, s of all groups */
+void reference_solve_changes(Reference *r); /* with push_normal and push_tangent: changes, change_normal, change_tangent */
+
+/* reference_active.c: from the impulses, tries to guess which contacts are open, stick and slide, and solves for that. */
+double reference_polish(Reference *r, double aim);
+
+/* reference_path.c: follows the central path. */
+void reference_begin(Reference *r, double scale);
+bool reference_follow(Reference *r, int most);
+/* Shared with reference_arc.c */
+void reference_linearise(Reference *r);
+void reference_towards(Reference *r, double target, double second);
+void reference_right_side(Reference *r);
+void reference_direction(Reference *r);
+double reference_room(const Reference *r); /* share of `step` that leads to the nearest bound */
+double reference_mean(const Reference *r, double share);
+void reference_move(Reference *r, double share);
+void reference_keep(Reference *r, int place, double log_target);
+double reference_back(Reference *r, int place);
+bool reference_forward(const Reference *r);
+
+/* reference_arc.c: past the folds of the path. */
+void reference_pass_fold(Reference *r);
