@@ -10,15 +10,23 @@
    on the start. */
 #include "reference/reference_parts.h"
 
-enum { START_SWEEPS = 2, MOST = 200 };
+enum { START_SWEEPS = 2, MOST = 200, ATTEMPTS = 6, CARELESS = 3 };
 
-/* Distances of the start from its bounds, times its residual. */
-static const double scales[] = {3, 30, 0.3, 300};
+/* Distances of the start from its bounds, times its residual. The last attempts follow the path by its length. */
+static const double scales[ATTEMPTS] = {3, 30, 300, 30, 300, 3};
+static const double look_ahead[] = {1e3, 1e6, 1e9}, near_solution = 1e-5; /* m/s */
 
 static void keep_start(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         r->groups[i].start_normal = r->groups[i].normal;
         r->groups[i].start_tangent = r->groups[i].tangent;
+    }
+}
+
+void reference_keep_best(Reference *r, double miss) {
+    if (!(miss < r->best)) return;
+    r->best = miss;
+    for (int i = 0; i < r->group_count; i++) {
         r->groups[i].best_normal = r->groups[i].normal;
         r->groups[i].best_tangent = r->groups[i].tangent;
     }
@@ -32,16 +40,28 @@ static void take_best(Reference *r) {
     reference_apply(r);
 }
 
+/* Near the solution the states of most contacts are clear. */
+static bool finish(Reference *r) {
+    const double enough = REFERENCE_TOLERANCE / 2;
+    const int count = sizeof look_ahead / sizeof *look_ahead;
+    for (int i = 0; i < count && r->best > enough && r->best < near_solution; i++) {
+        take_best(r);
+        reference_keep_best(r, reference_polish(r, REFERENCE_TOLERANCE / 10, look_ahead[i]));
+    }
+    return r->best <= enough;
+}
+
 static void run(Reference *r) {
-    const int scale_count = (int)(sizeof scales / sizeof *scales);
     for (int i = 0; i < START_SWEEPS; i++) reference_sweep(r);
     reference_apply(r);
     keep_start(r);
-    if (reference_polish(r, REFERENCE_TOLERANCE / 10) <= REFERENCE_TOLERANCE / 10) return;
     r->best = INFINITY;
-    for (bool solved = false; !solved && r->attempts < scale_count; r->attempts++) {
+    reference_keep_best(r, reference_miss(r, NULL));
+    reference_keep_best(r, reference_polish(r, REFERENCE_TOLERANCE / 10, 1));
+    bool solved = r->best <= REFERENCE_TOLERANCE / 10;
+    for (; !solved && r->attempts < ATTEMPTS; r->attempts++) {
         reference_begin(r, scales[r->attempts]);
-        solved = reference_follow(r, MOST);
+        solved = reference_follow(r, MOST, r->attempts >= CARELESS) || finish(r);
     }
     take_best(r);
 }

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact states by the next visit of sequential impulses: open, sticking or sliding. For given states the contact
-   problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness instead of none keeps
-   it regular, and its effect vanishes as the impulses stay (the proximal point method). */
+   problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness keeps it regular, and
+   has no effect once the impulses stay (the proximal point method). Impulses of redundant contacts may have far to go
+   at tiny velocities, until one of them slides or opens: visits with more than the effective mass look ahead. */
 #include "reference/reference_parts.h"
 
-enum { POLISH_MOST = 3 };
+enum { MOST = 3 };
 
 static const double stiff = 1e12; /* times the effective mass */
 
-/* Linear in the changes of velocity: what the visit makes of the impulses, with stiffness instead of mass. */
-static void guess_states(Reference *r) {
+/* ahead: of the visit, times the effective mass. */
+static void guess_states(Reference *r, double ahead) {
     const Vec4 zero = reference_all(0), factor = reference_all(stiff);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        const Vec4 l = g->normal - g->mass_normal * g->gap, t = g->tangent - g->mass_tangent * g->slip;
+        const Vec4 l = g->normal - ahead * g->mass_normal * g->gap, t = g->tangent - ahead * g->mass_tangent * g->slip;
         const ReferenceMask closed = (ReferenceMask)(l > zero), up = closed & (ReferenceMask)(t > g->friction * l),
                             down = closed & (ReferenceMask)(t < -g->friction * l), sticks = closed & ~up & ~down;
         const Vec4 stiff_n = factor * g->mass_normal, stiff_t = factor * g->mass_tangent;
@@ -37,18 +38,16 @@ static void take_impulses(Reference *r) {
     }
 }
 
-double reference_polish(Reference *r, double aim) {
-    double miss = reference_miss(r, NULL), before;
-    int steps = 0;
-    do {
-        if (miss <= aim || steps++ == POLISH_MOST) break;
+double reference_polish(Reference *r, double aim, double ahead) {
+    double miss = reference_miss(r, NULL), before = INFINITY;
+    for (int i = 0; i < MOST && miss > aim && miss < 0.5 * before; i++) {
         before = miss;
-        guess_states(r);
+        guess_states(r, ahead);
         reference_factor(r);
         reference_solve_changes(r);
         take_impulses(r);
         reference_apply(r);
         miss = reference_miss(r, NULL);
-    } while (miss < 0.5 * before);
+    }
     return miss;
 }

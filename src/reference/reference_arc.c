@@ -8,17 +8,20 @@
 
 #include <string.h>
 
-enum { CORRECTIONS = 3, GOOD_STEPS = 3 };
+enum { CORRECTIONS = 3, CORRECTIONS_FIRST = 20, GOOD_STEPS = 3 };
 
 static const double bound_share = 0.9; /* of the way to the nearest bound that a step may go */
 static const double near_path = 0.5, lost = 3; /* distances from the path, in its length */
 static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
+
+static const double log_end = -23; /* of 1e-10 (m/s)^2 */
 
 typedef struct Tracker {
     Reference *r;
     double log_target, length; /* of the next step along the path */
     double off_before;
     int corrections, good;
+    bool found; /* has been on the path */
 } Tracker;
 
 /* Product of two directions, per bound. */
@@ -64,13 +67,12 @@ static double find_directions(Reference *r, double target) {
     return squared;
 }
 
-/* Back to the last point on the path, for shorter steps. False if they are too short already. */
-static bool go_back(Tracker *tracker) {
+/* Back to the last point on the path, for shorter steps. */
+static void go_back(Tracker *tracker) {
     tracker->log_target = reference_back(tracker->r, KEPT_ON_PATH);
     tracker->length *= 0.25;
     tracker->corrections = 0;
     tracker->off_before = INFINITY;
-    return tracker->length >= length_least;
 }
 
 /* Newton's step plus `by` times the derivative. Returns the share of it that the bounds allow. */
@@ -92,8 +94,13 @@ static void choose_length(Tracker *tracker, double share, double off) {
         tracker->length *= 0.5;
 }
 
-/* False at the end: the path falls again, or is lost. */
-static bool track(Tracker *tracker) {
+static bool is_lost(Tracker *tracker, double off) {
+    const bool away = off > lost || off > tracker->off_before;
+    tracker->off_before = off;
+    return ++tracker->corrections > (tracker->found ? CORRECTIONS : CORRECTIONS_FIRST) || (tracker->found && away);
+}
+
+static void track(Tracker *tracker) {
     Reference *r = tracker->r;
     const double newton = find_directions(r, exp(tracker->log_target)), along = product(r, false);
     const double norm = product(r, true) + 1, squared = newton - along * along / norm;
@@ -101,23 +108,32 @@ static bool track(Tracker *tracker) {
     const bool forward = reference_forward(r), on_path = off <= near_path;
     if (on_path) {
         reference_keep(r, KEPT_ON_PATH, tracker->log_target);
+        tracker->found = true;
         tracker->corrections = 0;
         tracker->off_before = INFINITY;
-    } else {
-        if (++tracker->corrections > CORRECTIONS || off > lost || off > tracker->off_before) return go_back(tracker);
-        tracker->off_before = off;
+    } else if (is_lost(tracker, off)) {
+        go_back(tracker);
+        return;
     }
     const double ahead = on_path ? tracker->length / sqrt(norm) : 0;
     const double by = (forward ? -ahead : ahead) - along / norm, share = move(tracker, by);
     if (on_path) choose_length(tracker, share, off);
-    tracker->good = forward && on_path && share >= 0.9 && by < -0.3 ? tracker->good + 1 : 0;
-    return tracker->good < GOOD_STEPS && isfinite(tracker->log_target);
+    if (!forward || tracker->length < 0.25)
+        tracker->good = 0;
+    else if (on_path && by < -0.3)
+        tracker->good++;
 }
 
-void reference_pass_fold(Reference *r) {
+bool reference_pass_fold(Reference *r, bool to_end) {
     reference_back(r, KEPT_ON_WAY);
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
     Tracker tracker = {.r = r, .log_target = log(reference_mean(r, 0)), .length = length_first, .off_before = INFINITY};
     reference_keep(r, KEPT_ON_PATH, tracker.log_target);
-    while (r->left > 0 && track(&tracker)) {}
+    while (r->left > 0 && (to_end ? tracker.log_target > log_end : tracker.good < GOOD_STEPS)) {
+        track(&tracker);
+        if (!isfinite(tracker.log_target) || tracker.length < length_least || (!tracker.found && tracker.corrections == 0))
+            return false;
+    }
+    reference_keep(r, KEPT_ON_WAY, tracker.log_target);
+    return true;
 }

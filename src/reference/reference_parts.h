@@ -73,12 +73,14 @@ double reference_miss(Reference *r, double *rms); /* m/s: how far the impulses m
 void reference_factor(Reference *r); /* with dn, dt, s of all groups */
 void reference_solve_changes(Reference *r); /* with push_normal and push_tangent: changes, change_normal, change_tangent */
 
-/* reference_active.c: from the impulses, tries to guess which contacts are open, stick and slide, and solves for that. */
-double reference_polish(Reference *r, double aim);
+/* reference_active.c: guesses which contacts are open, stick and slide, and solves for that, a few times. Returns how
+   far the impulses then miss the law of contact, m/s. */
+double reference_polish(Reference *r, double aim, double ahead);
 
 /* reference_path.c: follows the central path. */
 void reference_begin(Reference *r, double scale);
-bool reference_follow(Reference *r, int most);
+void reference_keep_best(Reference *r, double miss);
+bool reference_follow(Reference *r, int most, bool carefully);
 /* Shared with reference_arc.c */
 void reference_linearise(Reference *r);
 void reference_towards(Reference *r, double target, double second);
@@ -91,5 +93,5 @@ void reference_keep(Reference *r, int place, double log_target);
 double reference_back(Reference *r, int place);
 bool reference_forward(const Reference *r);
 
-/* reference_arc.c: past the folds of the path. */
-void reference_pass_fold(Reference *r);
+/* reference_arc.c: from the point that is kept on the way, past the folds of the path. False if the path is lost. */
+bool reference_pass_fold(Reference *r, bool to_end);

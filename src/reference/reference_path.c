@@ -189,12 +189,7 @@ static void answer(Reference *r) {
     r->moved = moved;
     const double miss = reference_miss(r, NULL);
     reference_look(r);
-    if (!(miss < r->best)) return;
-    r->best = miss;
-    for (int i = 0; i < r->group_count; i++) {
-        r->groups[i].best_normal = r->groups[i].normal;
-        r->groups[i].best_tangent = r->groups[i].tangent;
-    }
+    reference_keep_best(r, miss);
 }
 
 static double at_most(double x, double limit) { return x < limit ? x : limit; }
@@ -221,24 +216,28 @@ static double step(Reference *r) {
     return length;
 }
 
-bool reference_follow(Reference *r, int most) {
+bool reference_follow(Reference *r, int most, bool carefully) {
     const double good = 0.8, short_step = 0.1, near_end = 1e-4; /* (m/s)^2 */
     int stuck = 0;
-    reference_keep(r, KEPT_ON_WAY, 0);
+    bool begun = false;
     for (r->left = most; r->left > 0;) {
         const double length = step(r);
         for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
         const double mean = reference_mean(r, 0);
         if (!(mean > 0) || isinf(mean)) break;
         if (mean < near_end) answer(r);
-        if (r->best <= REFERENCE_TOLERANCE / 10 || (r->best <= REFERENCE_TOLERANCE && length < 0.5)) return true;
+        if (r->best <= REFERENCE_TOLERANCE / 10 || (r->best <= REFERENCE_TOLERANCE / 2 && length < 0.5)) return true;
         const bool forward = reference_forward(r);
-        if (length >= good && forward) reference_keep(r, KEPT_ON_WAY, log(mean));
+        if (length >= good && forward) {
+            reference_keep(r, KEPT_ON_WAY, log(mean));
+            begun = true;
+        }
         stuck = length < short_step || !forward ? stuck + 1 : 0;
-        if (stuck < 2) continue;
-        reference_pass_fold(r);
+        if (stuck < 2 && !(carefully && length >= good)) continue;
+        if (!begun || !reference_pass_fold(r, carefully)) break;
         stuck = 0;
+        carefully = false;
     }
     answer(r);
-    return r->best <= REFERENCE_TOLERANCE;
+    return r->best <= REFERENCE_TOLERANCE / 2;
 }
