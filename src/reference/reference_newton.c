@@ -9,6 +9,8 @@
 
 #include <string.h>
 
+static const InteriorKernels *kernels(const Reference *r) { return r->scalar ? &interior_scalar : interior_best(); }
+
 static inline Vec4 as_body_a(Vec4 x) { return (Vec4){-x[0], -x[1], x[3], x[2]}; }
 
 static void push(const Reference *r, bool answer, Vec4 *x) {
@@ -107,7 +109,7 @@ void reference_factor(Reference *r) {
         stiffness(&r->groups[i / REFERENCE_PAIRS], &r->pairs[i], i % REFERENCE_PAIRS * 2, columns);
         add_stiffness(lu->blocks, &r->pairs[i], columns);
     }
-    interior_best()->factor(lu);
+    kernels(r)->factor(lu);
     r->factorizations++;
 }
 
@@ -115,7 +117,7 @@ void reference_solve_changes(Reference *r) {
     const int count = r->lu.count;
     for (int k = 0; k < count; k++) r->changes[k] = -r->masses[k] * r->moved[k];
     push(r, false, r->changes);
-    interior_best()->solve(&r->lu, r->changes);
+    kernels(r)->solve(&r->lu, r->changes);
     r->changes[count] = reference_all(0);
     for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];

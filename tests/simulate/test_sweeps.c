@@ -19,7 +19,7 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
     Kernels *kernels = context;
     assert_kernels_agree(kernels->engine, problem, &engine_options, 10);
     assert_momentum_kernels_agree(kernels->momentum, problem, true, factors, 19);
-    assert_reference_kernels_agree(&kernels->reference, problem, 6);
+    assert_reference_kernels_agree(&kernels->reference, problem);
     return true;
 }
 
