@@ -61,8 +61,9 @@ static bool score_all(const StoredProblem *stored, const Method *methods, int me
     if (!ok) error_memory(error, "solve");
     ok = ok && reference_solve(&truth, problem, NULL, error);
     if (ok) {
-        printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n", stored->scene,
-               stored->frame, problem->body_count, problem->contact_count, truth.residual, truth.factorizations);
+        printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n",
+               stored->scene, stored->frame, problem->body_count, problem->contact_count, truth.residual,
+               truth.factorizations);
         printf("%-40s %12s %12s %12s\n", "method", "error m/s", "right  ", "residual m/s");
     }
     for (int i = 0; ok && i < method_count; i++) ok = score(&methods[i], &scene, problem, &truth, &solution, error);

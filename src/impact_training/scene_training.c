@@ -90,8 +90,7 @@ static bool record(Trainer *trainer, SlotSamples *samples, Driver driver, int fi
                                  .context = &run};
     const int had = samples->count;
     trainer->launches_done += count;
-    return slot_rollout(&rollout, samples, NULL, error) &&
-           slot_samples_label(samples, had, &trainer->progress, error);
+    return slot_rollout(&rollout, samples, NULL, error) && slot_samples_label(samples, had, &trainer->progress, error);
 }
 
 /* The range of each input over the samples, with a margin. */

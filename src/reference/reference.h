@@ -33,7 +33,7 @@ typedef struct Reference {
     double residual;               /* m/s */
     int factorizations;            /* used */
     int attempts;                  /* 0: the start's contact states were right; 1: interior points; more: begun again */
-    bool scalar; /* set by the caller: no vector instructions; slower, with the same bits */
+    bool scalar;                   /* set by the caller: no vector instructions; slower, with the same bits */
     /* workspace */
     BlockLu lu;
     int group_count, pair_count, contact_count; /* contact_count: that act on a moving body */

@@ -187,8 +187,7 @@ void reference_store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
         const Vec4 moved = r->moved[r->nodes[i] >= 0 ? r->lu.position[r->nodes[i]] : r->lu.count];
-        r->velocities[i] =
-            (ReferenceVelocity){(double)body->velocity.x + moved[0], (double)body->velocity.y + moved[1],
-                                (double)body->angular_velocity + moved[2]};
+        r->velocities[i] = (ReferenceVelocity){(double)body->velocity.x + moved[0], (double)body->velocity.y + moved[1],
+                                               (double)body->angular_velocity + moved[2]};
     }
 }

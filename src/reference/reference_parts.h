@@ -20,17 +20,17 @@ typedef struct ReferencePoint {
 /* Four contacts: two of each of two pairs. A slot without a contact has weight 0, rows of zeros, and ones in `now`. */
 struct ReferenceGroup {
     Vec4 weight, mass_normal, mass_tangent, inverse_normal, inverse_tangent; /* kg and 1/kg, effective masses */
-    Vec4 friction;                  /* mu */
+    Vec4 friction;                                                           /* mu */
     Vec4 free_normal, free_tangent; /* m/s: velocities before the contacts along the rows; normal: minus the bias */
     Vec4 start_normal, start_tangent, normal, tangent, best_normal, best_tangent; /* N s, impulses inside the cone */
-    Vec4 gap, slip;                        /* m/s: velocities along the rows, normal: minus the bias */
-    ReferencePoint now;                    /* of the interior point */
-    Vec4 missing_normal, missing_tangent;  /* m/s: gap - z and slip - (q - p) */
-    Vec4 over_z, dn, dt, s, rn, rt;        /* linear system, see reference_newton.c */
-    Vec4 push_normal, push_tangent;        /* N s: impulses of its right-hand side */
-    Vec4 change_normal, change_tangent;    /* m/s: the solution along the rows */
-    Vec4 wanted_n, wanted_p, wanted_q;     /* wanted changes of the products l z, u p, w q */
-    ReferencePoint step, along;            /* directions */
+    Vec4 gap, slip;                       /* m/s: velocities along the rows, normal: minus the bias */
+    ReferencePoint now;                   /* of the interior point */
+    Vec4 missing_normal, missing_tangent; /* m/s: gap - z and slip - (q - p) */
+    Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see reference_newton.c */
+    Vec4 push_normal, push_tangent;       /* N s: impulses of its right-hand side */
+    Vec4 change_normal, change_tangent;   /* m/s: the solution along the rows */
+    Vec4 wanted_n, wanted_p, wanted_q;    /* wanted changes of the products l z, u p, w q */
+    ReferencePoint step, along;           /* directions */
 };
 
 /* Rows of a pair's slots in the coordinates (linear velocity of b minus that of a, spin of b, spin of a). */
@@ -62,36 +62,11 @@ bool reference_load(Reference *r, const ContactProblem *problem);
 void reference_start(Reference *r, const ContactProblem *problem, const ContactImpulse *start);
 void reference_store(Reference *r, const ContactProblem *problem);
 
-/* reference_sweep.c: one sweep of plain Gauss-Seidel. Returns the largest change, m/s. */
-double reference_sweep(Reference *r);
+/* The solve, and the residual of `normal` and `tangent`, compiled for several instruction sets with the same bits:
+   reference_run.h. */
+typedef struct ReferenceKernels {
+    void (*run)(Reference *r);
+    double (*residual)(Reference *r);
+} ReferenceKernels;
 
-/* reference_newton.c. Velocities are relative to those before the contacts. */
-void reference_apply(Reference *r);             /* velocities of the impulses `normal` and `tangent` */
-void reference_look(Reference *r);              /* gap and slip of the velocities */
-double reference_miss(Reference *r, double *rms); /* m/s: how far the impulses miss the law of contact, at most and
-                                                   root mean square. NaN if any is. */
-void reference_factor(Reference *r); /* with dn, dt, s of all groups */
-void reference_solve_changes(Reference *r); /* with push_normal and push_tangent: changes, change_normal, change_tangent */
-
-/* reference_active.c: guesses which contacts are open, stick and slide, and solves for that, a few times. Returns how
-   far the impulses then miss the law of contact, m/s. */
-double reference_polish(Reference *r, double aim, double ahead);
-
-/* reference_path.c: follows the central path. */
-void reference_begin(Reference *r, double scale);
-void reference_keep_best(Reference *r, double miss);
-bool reference_follow(Reference *r, int most, bool carefully);
-/* Shared with reference_arc.c */
-void reference_linearise(Reference *r);
-void reference_towards(Reference *r, double target, double second);
-void reference_right_side(Reference *r);
-void reference_direction(Reference *r);
-double reference_room(const Reference *r); /* share of `step` that leads to the nearest bound */
-double reference_mean(const Reference *r, double share);
-void reference_move(Reference *r, double share);
-void reference_keep(Reference *r, int place, double log_target);
-double reference_back(Reference *r, int place);
-bool reference_forward(const Reference *r);
-
-/* reference_arc.c: from the point that is kept on the way, past the folds of the path. False if the path is lost. */
-bool reference_pass_fold(Reference *r, bool to_end);
+extern const ReferenceKernels reference_scalar, reference_avx2;

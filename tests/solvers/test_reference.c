@@ -150,6 +150,70 @@ static void a_plate_lies_on_very_many_boxes(void **state) {
     world_destroy(world);
 }
 
+/* Four boxes that touch without overlap; the top one, 20 kg, comes down at 5 m/s. */
+static World *make_shifted_tower(void) {
+    Error error = {0};
+    World *world = world_create(&(WorldDef){.gravity = {0, -10}, .warm_starting = true}, &error);
+    assert_ok(world != NULL, error);
+    add_ground(world, 0.2f);
+    const Vec2 places[] = {{0, 0.5f}, {0.1f, 1.5f}, {-0.1f, 2.5f}, {0.3f, 3.55f}};
+    for (int i = 0; i < 4; i++)
+        add_body(world, &(BodyDef){.size = {1, 1},
+                                   .mass = i == 3 ? 20 : 2,
+                                   .friction = 0.2f,
+                                   .position = places[i],
+                                   .velocity = {0, i == 3 ? -5.0f : 0.0f}});
+    return world;
+}
+
+/* The fastest spin of the reference, which must be that of many sweeps with conjugate gradients. */
+static double fastest_spin(Reference *reference, const ContactProblem *problem) {
+    Error error = {0};
+    BodyVelocity velocities[8];
+    ContactImpulse impulses[16];
+    ContactSolution found = {velocities, impulses, 0, {0}};
+    assert_ok(reference_solve(reference, problem, NULL, &error), error);
+    assert_true(reference->residual <= tight);
+    solve_with(&solver_nncg, "k=3000", problem, &found);
+    double fastest = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        assert_near(velocities[i].linear.x, reference->velocities[i].x, 1e-4);
+        assert_near(velocities[i].linear.y, reference->velocities[i].y, 1e-4);
+        assert_near(velocities[i].angular, reference->velocities[i].spin, 1e-4);
+        fastest = fmax(fastest, fabs(reference->velocities[i].spin));
+    }
+    return fastest;
+}
+
+/* Boxes that just touch part by a rounding error now and then, and lose their contacts. The next step then has another
+   solution: with all contacts the tower stands, without those of one pair boxes turn at more than 1 rad/s. Both are the
+   only solutions of their problems. */
+static void contacts_lost_by_rounding_change_the_solution(void **state) {
+    (void)state;
+    World *world = make_shifted_tower();
+    Reference reference = {0};
+    ContactSolver converged = make_solver(&solver_reference, "");
+    run(world, &converged, 1);
+    free_solver(&converged);
+    const ContactProblem *all = solve_next(world, &reference);
+    assert_int_equal(all->contact_count, 8);
+    assert_near(fastest_spin(&reference, all), 0, 1e-8);
+    double fastest = 0;
+    for (int lost = 0; lost < 6; lost += 2) {
+        ContactPoint contacts[8];
+        int count = 0;
+        for (int i = 0; i < 8; i++)
+            if (i / 2 != lost / 2) contacts[count++] = all->contacts[i];
+        ContactProblem fewer = *all;
+        fewer.contacts = contacts;
+        fewer.contact_count = count;
+        fastest = fmax(fastest, fastest_spin(&reference, &fewer));
+    }
+    assert_true(fastest > 1);
+    reference_free(&reference);
+    world_destroy(world);
+}
+
 static void nothing_that_touches_is_solved_at_once(void **state) {
     (void)state;
     World *world = make_world();
@@ -170,6 +234,7 @@ int main(void) {
                                        cmocka_unit_test(a_light_box_carries_a_heavy_one),
                                        cmocka_unit_test(ground_that_moves_takes_a_box_along),
                                        cmocka_unit_test(a_plate_lies_on_very_many_boxes),
+                                       cmocka_unit_test(contacts_lost_by_rounding_change_the_solution),
                                        cmocka_unit_test(nothing_that_touches_is_solved_at_once)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,12 @@
    determinant changes its sign, which tells in what direction to go on. Lengths are measured in the logarithms of the
    point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990), Euler-Newton
    with orientation by the determinant. */
-#include "reference/reference_parts.h"
-
-#include <string.h>
+#pragma once
+#include "reference/reference_point.h"
 
 enum { CORRECTIONS = 3, CORRECTIONS_FIRST = 20, GOOD_STEPS = 3 };
 
-static const double bound_share = 0.9; /* of the way to the nearest bound that a step may go */
+static const double arc_share = 0.9;           /* of the way to the nearest bound that a step may go */
 static const double near_path = 0.5, lost = 3; /* distances from the path, in its length */
 static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
 
@@ -43,46 +42,44 @@ static ReferencePoint combine(const ReferencePoint *x, double share, const Refer
 }
 
 static void solve_towards(Reference *r, double target) {
-    reference_towards(r, target, 0);
-    reference_right_side(r);
-    reference_solve_changes(r);
-    reference_direction(r);
+    towards(r, target, 0);
+    right_side(r);
+    solve_changes(r);
+    direction(r);
 }
 
 /* Newton's step at the present target into `along`, and the derivative by the logarithm of the target into `step`.
    Returns the square of the former's length. */
 static double find_directions(Reference *r, double target) {
     const size_t bodies = (size_t)r->lu.count;
-    reference_linearise(r);
-    reference_factor(r);
+    linearise(r);
+    factor_matrix(r);
     r->left--;
     solve_towards(r, target);
     const double squared = product(r, true);
     for (int i = 0; i < r->group_count; i++) r->groups[i].along = r->groups[i].step;
     memcpy(r->first_changes, r->changes, bodies * sizeof *r->changes);
     solve_towards(r, 2 * target); /* linear in the target */
-    for (int i = 0; i < r->group_count; i++)
-        r->groups[i].step = combine(&r->groups[i].step, -1, &r->groups[i].along);
+    for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].step, -1, &r->groups[i].along);
     for (size_t k = 0; k < bodies; k++) r->changes[k] -= r->first_changes[k];
     return squared;
 }
 
 /* Back to the last point on the path, for shorter steps. */
 static void go_back(Tracker *tracker) {
-    tracker->log_target = reference_back(tracker->r, KEPT_ON_PATH);
+    tracker->log_target = return_to(tracker->r, KEPT_ON_PATH);
     tracker->length *= 0.25;
     tracker->corrections = 0;
     tracker->off_before = INFINITY;
 }
 
 /* Newton's step plus `by` times the derivative. Returns the share of it that the bounds allow. */
-static double move(Tracker *tracker, double by) {
+static double advance(Tracker *tracker, double by) {
     Reference *r = tracker->r;
-    for (int i = 0; i < r->group_count; i++)
-        r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
+    for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
     for (int k = 0; k < r->lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
-    const double room = bound_share * reference_room(r), share = room < 1 ? room : 1;
-    reference_move(r, share);
+    const double limit = arc_share * step_room(r), share = limit < 1 ? limit : 1;
+    move(r, share);
     tracker->log_target += share * by;
     return share;
 }
@@ -105,9 +102,9 @@ static void track(Tracker *tracker) {
     const double newton = find_directions(r, exp(tracker->log_target)), along = product(r, false);
     const double norm = product(r, true) + 1, squared = newton - along * along / norm;
     const double off = squared > 0 ? sqrt(squared) : squared <= 0 ? 0 : INFINITY;
-    const bool forward = reference_forward(r), on_path = off <= near_path;
+    const bool forward = goes_forward(r), on_path = off <= near_path;
     if (on_path) {
-        reference_keep(r, KEPT_ON_PATH, tracker->log_target);
+        keep(r, KEPT_ON_PATH, tracker->log_target);
         tracker->found = true;
         tracker->corrections = 0;
         tracker->off_before = INFINITY;
@@ -116,7 +113,7 @@ static void track(Tracker *tracker) {
         return;
     }
     const double ahead = on_path ? tracker->length / sqrt(norm) : 0;
-    const double by = (forward ? -ahead : ahead) - along / norm, share = move(tracker, by);
+    const double by = (forward ? -ahead : ahead) - along / norm, share = advance(tracker, by);
     if (on_path) choose_length(tracker, share, off);
     if (!forward || tracker->length < 0.25)
         tracker->good = 0;
@@ -124,16 +121,17 @@ static void track(Tracker *tracker) {
         tracker->good++;
 }
 
-bool reference_pass_fold(Reference *r, bool to_end) {
-    reference_back(r, KEPT_ON_WAY);
+static bool pass_fold(Reference *r, bool to_end) {
+    return_to(r, KEPT_ON_WAY);
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-    Tracker tracker = {.r = r, .log_target = log(reference_mean(r, 0)), .length = length_first, .off_before = INFINITY};
-    reference_keep(r, KEPT_ON_PATH, tracker.log_target);
+    Tracker tracker = {.r = r, .log_target = log(mean_product(r, 0)), .length = length_first, .off_before = INFINITY};
+    keep(r, KEPT_ON_PATH, tracker.log_target);
     while (r->left > 0 && (to_end ? tracker.log_target > log_end : tracker.good < GOOD_STEPS)) {
         track(&tracker);
-        if (!isfinite(tracker.log_target) || tracker.length < length_least || (!tracker.found && tracker.corrections == 0))
+        if (!isfinite(tracker.log_target) || tracker.length < length_least ||
+            (!tracker.found && tracker.corrections == 0))
             return false;
     }
-    reference_keep(r, KEPT_ON_WAY, tracker.log_target);
+    keep(r, KEPT_ON_WAY, tracker.log_target);
     return true;
 }

@@ -5,11 +5,10 @@
 
    where v is the change of velocity so far. Impulses then change by dl = r_n - D_n J_n dv and
    dt = r_t + s dl - D_t J_t dv. */
+#pragma once
+#include "interior/block_lu_code.h"
 #include "reference/reference_parts.h"
-
 #include <string.h>
-
-static const InteriorKernels *kernels(const Reference *r) { return r->scalar ? &interior_scalar : interior_best(); }
 
 static inline Vec4 as_body_a(Vec4 x) { return (Vec4){-x[0], -x[1], x[3], x[2]}; }
 
@@ -31,7 +30,7 @@ static inline Vec4 between(const ReferencePair *pair, const Vec4 *x) {
     return (Vec4){b[0] - a[0], b[1] - a[1], b[2], a[2]};
 }
 
-void reference_look(Reference *r) {
+static void look(Reference *r) {
     for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];
         const Vec4 by = between(&r->pairs[i], r->moved);
@@ -42,16 +41,16 @@ void reference_look(Reference *r) {
     }
 }
 
-void reference_apply(Reference *r) {
+static void apply(Reference *r) {
     memset(r->moved, 0, ((size_t)r->lu.count + 1) * sizeof *r->moved);
     push(r, true, r->moved);
     for (int k = 0; k <= r->lu.count; k++) r->moved[k] *= r->inverses[k];
-    reference_look(r);
+    look(r);
 }
 
 static inline Vec4 magnitude(Vec4 x) { return reference_larger(x, -x); }
 
-double reference_miss(Reference *r, double *rms) {
+static double missed(Reference *r, double *rms) {
     Vec4 most = reference_all(0), sum = reference_all(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
@@ -97,7 +96,7 @@ static inline void add_stiffness(Block3 *blocks, const ReferencePair *pair, cons
     aa->column[2] += as_body_a(columns[3]);
 }
 
-void reference_factor(Reference *r) {
+static void factor_matrix(Reference *r) {
     BlockLu *lu = &r->lu;
     for (int k = 0; k < lu->count; k++) {
         const Vec4 m = r->masses[k];
@@ -109,15 +108,15 @@ void reference_factor(Reference *r) {
         stiffness(&r->groups[i / REFERENCE_PAIRS], &r->pairs[i], i % REFERENCE_PAIRS * 2, columns);
         add_stiffness(lu->blocks, &r->pairs[i], columns);
     }
-    kernels(r)->factor(lu);
+    block_lu_factor(lu);
     r->factorizations++;
 }
 
-void reference_solve_changes(Reference *r) {
+static void solve_changes(Reference *r) {
     const int count = r->lu.count;
     for (int k = 0; k < count; k++) r->changes[k] = -r->masses[k] * r->moved[k];
     push(r, false, r->changes);
-    kernels(r)->solve(&r->lu, r->changes);
+    block_lu_solve(&r->lu, r->changes);
     r->changes[count] = reference_all(0);
     for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];

@@ -1,21 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "reference/reference_parts.h"
+#pragma once
+#include "reference/reference_newton.h"
 
 static double clamp(double x, double limit) { return x > limit ? limit : x < -limit ? -limit : x; }
 static double larger(double x, double y) { return x > y ? x : y; }
-
-static Vec4 as_body_a(Vec4 x) { return (Vec4){-x[0], -x[1], x[3], x[2]}; }
-static Vec4 between(Vec4 a, Vec4 b) { return (Vec4){b[0] - a[0], b[1] - a[1], b[2], a[2]}; }
 
 /* One contact: first its normal impulse, then its tangent impulse. Returns the larger change. */
 static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, int slot) {
     Vec4 *a = &r->moved[pair->a], *b = &r->moved[pair->b];
     const int k = slot % 2;
-    const double gap = g->free_normal[slot] + reference_sum(pair->normal[k] * between(*a, *b));
+    const double gap = g->free_normal[slot] + reference_sum(pair->normal[k] * between(pair, r->moved));
     const double normal = larger(g->normal[slot] - g->mass_normal[slot] * gap, 0), dn = normal - g->normal[slot];
     *a += r->inverses[pair->a] * as_body_a(pair->normal[k] * reference_all(dn));
     *b += r->inverses[pair->b] * (pair->normal[k] * reference_all(dn));
-    const double slip = g->free_tangent[slot] + reference_sum(pair->tangent[k] * between(*a, *b));
+    const double slip = g->free_tangent[slot] + reference_sum(pair->tangent[k] * between(pair, r->moved));
     const double tangent = clamp(g->tangent[slot] - g->mass_tangent[slot] * slip, g->friction[slot] * normal);
     const double dt = tangent - g->tangent[slot];
     *a += r->inverses[pair->a] * as_body_a(pair->tangent[k] * reference_all(dt));
@@ -25,7 +23,7 @@ static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, 
     return larger(fabs(dn) * g->inverse_normal[slot], fabs(dt) * g->inverse_tangent[slot]);
 }
 
-double reference_sweep(Reference *r) {
+static double sweep(Reference *r) {
     double most = 0;
     for (int i = 0; i < r->pair_count; i++)
         for (int k = 0; k < r->pairs[i].count; k++) {

@@ -9,29 +9,28 @@
    may be redundant: a tiny compliance around the current impulses keeps the system regular and does not move its
    solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); Friedlander,
    Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic Programs" (2012). */
-#include "reference/reference_parts.h"
-
-#include <string.h>
+#pragma once
+#include "reference/reference_newton.h"
 
 /* A contact resists by at most this times its effective mass: below, redundant contacts drift; above, masses vanish
    beside the stiffness. */
 static const double stiffest = 1e12;
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
-static const double rounding = 1e-13;
+static const double rounding = 1e-12;
 static const double inside = 0.5, calm = 0.01; /* of the start: offset from the bounds, share of the scale; m/s */
 static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
 static const double least_shrink = 1e-4;       /* of the target, in a step */
 
 static Vec4 beyond_rounding(Vec4 x) { return x - reference_clamp(x, reference_all(rounding)); }
 
-void reference_begin(Reference *r, double scale) {
+static void begin(Reference *r, double scale) {
     double rms;
     for (int i = 0; i < r->group_count; i++) {
         r->groups[i].normal = r->groups[i].start_normal;
         r->groups[i].tangent = r->groups[i].start_tangent;
     }
-    reference_apply(r);
-    reference_miss(r, &rms);
+    apply(r);
+    missed(r, &rms);
     const Vec4 off = reference_all(inside * (scale * rms + calm)), zero = reference_all(0), one = reference_all(1);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
@@ -47,7 +46,7 @@ void reference_begin(Reference *r, double scale) {
     }
 }
 
-void reference_linearise(Reference *r) {
+static void linearise(Reference *r) {
     const Vec4 soft = reference_all(1 / stiffest);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
@@ -63,7 +62,7 @@ void reference_linearise(Reference *r) {
 }
 
 /* Products of the target, less `second` times those of the changes in `step`. */
-void reference_towards(Reference *r, double target, double second) {
+static void towards(Reference *r, double target, double second) {
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now, *by = &g->step;
@@ -74,7 +73,7 @@ void reference_towards(Reference *r, double target, double second) {
     }
 }
 
-void reference_right_side(Reference *r) {
+static void right_side(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;
@@ -86,7 +85,7 @@ void reference_right_side(Reference *r) {
 }
 
 /* The changes by the last solve into `step`. */
-void reference_direction(Reference *r) {
+static void direction(Reference *r) {
     const Vec4 soft = reference_all(1 / stiffest);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
@@ -102,7 +101,7 @@ void reference_direction(Reference *r) {
     }
 }
 
-double reference_room(const Reference *r) {
+static double step_room(const Reference *r) {
     Vec4 most = reference_all(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferencePoint *now = &r->groups[i].now, *by = &r->groups[i].step;
@@ -116,7 +115,7 @@ double reference_room(const Reference *r) {
     return 1 / worst;
 }
 
-double reference_mean(const Reference *r, double share) {
+static double mean_product(const Reference *r, double share) {
     Vec4 sum = reference_all(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
@@ -129,7 +128,7 @@ double reference_mean(const Reference *r, double share) {
     return reference_sum(sum) / (3 * r->contact_count);
 }
 
-void reference_move(Reference *r, double share) {
+static void move(Reference *r, double share) {
     const Vec4 half = reference_all(0.5);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
@@ -146,98 +145,26 @@ void reference_move(Reference *r, double share) {
         now->t = half * (now->w - now->u);
     }
     for (int k = 0; k < r->lu.count; k++) r->moved[k] += share * r->changes[k];
-    reference_look(r);
+    look(r);
 }
 
-void reference_keep(Reference *r, int place, double log_target) {
+static void keep(Reference *r, int place, double log_target) {
     for (int i = 0; i < r->group_count; i++) r->kept[place].points[i] = r->groups[i].now;
     memcpy(r->kept[place].moved, r->moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
     r->kept[place].log_target = log_target;
 }
 
-double reference_back(Reference *r, int place) {
+static double return_to(Reference *r, int place) {
     for (int i = 0; i < r->group_count; i++) r->groups[i].now = r->kept[place].points[i];
     memcpy(r->moved, r->kept[place].moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
-    reference_look(r);
+    look(r);
     return r->kept[place].log_target;
 }
 
 /* The sign of the determinant, from the diagonal of the factors: it changes where the path turns back. */
-bool reference_forward(const Reference *r) {
+static bool goes_forward(const Reference *r) {
     bool forward = true;
     for (int k = 0; k < r->lu.count; k++)
         for (int c = 0; c < 3; c++) forward ^= r->lu.blocks[k].column[c][c] < 0;
     return forward;
-}
-
-/* The impulses that the point stands for: bounds that it is close to are reached. Keeps them if they are the best. */
-static void answer(Reference *r) {
-    const Vec4 zero = reference_all(0);
-    for (int i = 0; i < r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now;
-        const ReferenceMask closed = (ReferenceMask)(now->l * g->inverse_normal > now->z);
-        g->normal = reference_choose(closed, now->l, zero);
-        const Vec4 bound = g->friction * g->normal;
-        const ReferenceMask up = (ReferenceMask)(now->u * g->inverse_tangent < now->p),
-                            down = (ReferenceMask)(now->w * g->inverse_tangent < now->q);
-        g->tangent = reference_choose(up, bound, reference_choose(down, -bound, reference_clamp(now->t, bound)));
-    }
-    Vec4 *moved = r->moved;
-    r->moved = r->changes;
-    reference_apply(r);
-    r->moved = moved;
-    const double miss = reference_miss(r, NULL);
-    reference_look(r);
-    reference_keep_best(r, miss);
-}
-
-static double at_most(double x, double limit) { return x < limit ? x : limit; }
-
-/* One step. Returns its length, as a share of the full step. */
-static double step(Reference *r) {
-    for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-    const double mean = reference_mean(r, 0);
-    reference_linearise(r);
-    reference_factor(r);
-    r->left--;
-    reference_towards(r, 0, 0);
-    reference_right_side(r);
-    reference_solve_changes(r);
-    reference_direction(r);
-    const double share = at_most(reference_room(r), 1), ratio = reference_mean(r, share) / mean;
-    const double shrink = at_most(ratio * ratio * ratio, 1);
-    reference_towards(r, mean * (shrink > least_shrink ? shrink : least_shrink), share);
-    reference_right_side(r);
-    reference_solve_changes(r);
-    reference_direction(r);
-    const double length = at_most(bound_share * reference_room(r), 1);
-    reference_move(r, length);
-    return length;
-}
-
-bool reference_follow(Reference *r, int most, bool carefully) {
-    const double good = 0.8, short_step = 0.1, near_end = 1e-4; /* (m/s)^2 */
-    int stuck = 0;
-    bool begun = false;
-    for (r->left = most; r->left > 0;) {
-        const double length = step(r);
-        for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-        const double mean = reference_mean(r, 0);
-        if (!(mean > 0) || isinf(mean)) break;
-        if (mean < near_end) answer(r);
-        if (r->best <= REFERENCE_TOLERANCE / 10 || (r->best <= REFERENCE_TOLERANCE / 2 && length < 0.5)) return true;
-        const bool forward = reference_forward(r);
-        if (length >= good && forward) {
-            reference_keep(r, KEPT_ON_WAY, log(mean));
-            begun = true;
-        }
-        stuck = length < short_step || !forward ? stuck + 1 : 0;
-        if (stuck < 2 && !(carefully && length >= good)) continue;
-        if (!begun || !reference_pass_fold(r, carefully)) break;
-        stuck = 0;
-        carefully = false;
-    }
-    answer(r);
-    return r->best <= REFERENCE_TOLERANCE / 2;
 }

@@ -3,15 +3,16 @@
    problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness keeps it regular, and
    has no effect once the impulses stay (the proximal point method). Impulses of redundant contacts may have far to go
    at tiny velocities, until one of them slides or opens: visits with more than the effective mass look ahead. */
-#include "reference/reference_parts.h"
+#pragma once
+#include "reference/reference_newton.h"
 
-enum { MOST = 3 };
+enum { POLISH_STEPS = 3 };
 
 static const double stiff = 1e12; /* times the effective mass */
 
 /* ahead: of the visit, times the effective mass. */
 static void guess_states(Reference *r, double ahead) {
-    const Vec4 zero = reference_all(0), factor = reference_all(stiff);
+    const Vec4 zero = reference_all(0), factor = reference_all(ahead > 1 ? ahead : stiff);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const Vec4 l = g->normal - ahead * g->mass_normal * g->gap, t = g->tangent - ahead * g->mass_tangent * g->slip;
@@ -38,16 +39,16 @@ static void take_impulses(Reference *r) {
     }
 }
 
-double reference_polish(Reference *r, double aim, double ahead) {
-    double miss = reference_miss(r, NULL), before = INFINITY;
-    for (int i = 0; i < MOST && miss > aim && miss < 0.5 * before; i++) {
+static double polish(Reference *r, double aim, double ahead) {
+    double miss = missed(r, NULL), before = INFINITY;
+    for (int i = 0; i < POLISH_STEPS && miss > aim && (ahead > 1 || miss < 0.5 * before); i++) {
         before = miss;
         guess_states(r, ahead);
-        reference_factor(r);
-        reference_solve_changes(r);
+        factor_matrix(r);
+        solve_changes(r);
         take_impulses(r);
-        reference_apply(r);
-        miss = reference_miss(r, NULL);
+        apply(r);
+        miss = missed(r, NULL);
     }
     return miss;
 }
