@@ -58,7 +58,16 @@ typedef struct Reference {
         edge_capacity, edge_of_capacity, point_capacity, number_capacity;
 } Reference;
 
-/* m/s. A solve aims at a tenth of it and reaches it. */
+/* m/s. A solve aims at a tenth of it. Of 8,000 steps of scenes/stack and scenes/pyramid_settled with the engine
+   (2,000 of them impacts), all but one reach the tolerance; that one ends at 1.05e-9. So do all 6,000 steps of
+   runs with the reference itself. At rest the sweeps' contact states are mostly those of the solution: one or two
+   factorizations. Impacts take 16 factorizations on the stack (median; 25: 95%) and 40 on the pyramid (110); the first
+   attempt solves 97% of them. Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities agree
+   within 4e-7 m/s (RMS, 95%). In 3 of 1,700 steps, all of piles, they lie 0.0008 to 0.025 m/s apart:
+   contacts are redundant, and friction allows several solutions.
+
+   Some steps of piles between walls have no solution: position correction pushes boxes into each other, and no impulses
+   are large enough. Their residual stays high. */
 #define REFERENCE_TOLERANCE 1e-9
 
 void reference_free(Reference *reference);

@@ -185,9 +185,9 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
     return fastest;
 }
 
-/* Boxes that just touch part by a rounding error now and then, and lose their contacts. The next step then has another
-   solution: with all contacts the tower stands, without those of one pair boxes turn at more than 1 rad/s. Both are the
-   only solutions of their problems. */
+/* Boxes that just touch part by a rounding error now and then, and lose contacts. The next step is then another problem:
+   with all contacts the tower stands; without one of the lowest box and one between the second and the third, a box
+   turns at more than 4 rad/s. */
 static void contacts_lost_by_rounding_change_the_solution(void **state) {
     (void)state;
     World *world = make_shifted_tower();
@@ -199,17 +199,17 @@ static void contacts_lost_by_rounding_change_the_solution(void **state) {
     assert_int_equal(all->contact_count, 8);
     assert_near(fastest_spin(&reference, all), 0, 1e-8);
     double fastest = 0;
-    for (int lost = 0; lost < 6; lost += 2) {
+    for (int choice = 0; choice < 4; choice++) {
         ContactPoint contacts[8];
         int count = 0;
         for (int i = 0; i < 8; i++)
-            if (i / 2 != lost / 2) contacts[count++] = all->contacts[i];
+            if (i != choice % 2 && i != 4 + choice / 2) contacts[count++] = all->contacts[i];
         ContactProblem fewer = *all;
         fewer.contacts = contacts;
         fewer.contact_count = count;
         fastest = fmax(fastest, fastest_spin(&reference, &fewer));
     }
-    assert_true(fastest > 1);
+    assert_true(fastest > 4);
     reference_free(&reference);
     world_destroy(world);
 }
