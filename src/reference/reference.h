@@ -63,7 +63,7 @@ typedef struct Reference {
    runs with the reference itself. At rest the sweeps' contact states are mostly those of the solution: one or two
    factorizations. Impacts take 16 factorizations on the stack (median; 25: 95%) and 40 on the pyramid (110); the first
    attempt solves 97% of them. Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities agree
-   within 4e-7 m/s (RMS, 95%). In 3 of 1,700 steps, all of piles, they lie 0.0008 to 0.025 m/s apart:
+   within 4e-7 m/s (RMS, 95%). In 3 of 1,700 steps, all of piles, they lie 0.001 to 0.007 m/s apart:
    contacts are redundant, and friction allows several solutions.
 
    Some steps of piles between walls have no solution: position correction pushes boxes into each other, and no impulses
