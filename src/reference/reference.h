@@ -62,9 +62,10 @@ typedef struct Reference {
    (2,000 of them impacts), all but one reach the tolerance; that one ends at 1.05e-9. So do all 6,000 steps of
    runs with the reference itself. At rest the sweeps' contact states are mostly those of the solution: one or two
    factorizations. Impacts take 16 factorizations on the stack (median; 25: 95%) and 40 on the pyramid (110); the first
-   attempt solves 97% of them. Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities agree
-   within 4e-7 m/s (RMS, 95%). In 3 of 1,700 steps, all of piles, they lie 0.001 to 0.007 m/s apart:
-   contacts are redundant, and friction allows several solutions.
+   attempt solves 97% of them. Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree
+   within 4e-7 m/s (RMS). In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008
+   m/s apart: redundant contacts drift so slowly that the residual of sweeps hardly shows it. In one of these piles
+   friction also allows several solutions, 0.02 m/s apart.
 
    Some steps of piles between walls have no solution: position correction pushes boxes into each other, and no impulses
    are large enough. Their residual stays high. */
