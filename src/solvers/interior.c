@@ -60,8 +60,8 @@ typedef struct Attempt {
 
 enum { ATTEMPTS = 2 };
 static const Attempt at_rest[ATTEMPTS] = {{7e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {1, 40}};
-/* Impacts of more than MANY_BODIES cycle more often, from any start; those that do not converge soon are left to sweeps. */
-static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 14}, {0, 0}};
+/* Impacts of more than MANY_BODIES cycle more often, from any start: then sweeps take over. */
+static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 30}, {0, 0}};
 
 typedef struct State {
     Interior interior;
