@@ -7,7 +7,7 @@
 
        M (v - v') = J_n^T l + J_t^T t
        z = J_n v - b,        l z = tau^2 m_n
-       J_t v = q - p,        p (mu l - t) = q (mu l + t) = tau^2 m_t mu
+       J_t v = q - p,        p (mu l - t) = q (mu l + t) = 4 tau^2 m_t mu
 
    For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
    an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
@@ -27,7 +27,7 @@
    Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
    Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,
    Armand, Nguyen, Shpakovych, "Second-Order Cone Programming for Frictional Contact Mechanics Using Interior Point
-   Algorithm" (2024), which solve conic programs with a symmetric matrix. Constants are hand-tuned.
+   Algorithm" (2024), which solve conic programs with a symmetric matrix.
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
@@ -122,13 +122,24 @@ bool interior_load(Interior *interior, const InteriorKernels *kernels, const Swe
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
 
+/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus `least_scale`. */
+typedef struct InteriorRule {
+    double impulse, gap, slip; /* how far they start beyond the values of the start, as shares of the scale */
+    double first;              /* tau^2 at the start, as a share of the squared scale */
+    double shrink,
+        follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
+} InteriorRule;
+
+extern const InteriorRule interior_at_impacts, interior_at_rest;
+
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down.
 
    least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
    slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
    suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, double least_scale, double near, int most);
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
+                      double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

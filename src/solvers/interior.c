@@ -97,10 +97,12 @@ static bool start(State *solver, const ContactProblem *problem, bool rests) {
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
+    const InteriorRule *rule = rests ? &interior_at_rest : &interior_at_impacts;
     for (int i = 0; i < 2; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
-        interior_iterate(&solver->interior, kernels, attempts[i].least_scale, (double)near, attempts[i].iterations);
+        interior_iterate(&solver->interior, kernels, rule, attempts[i].least_scale, (double)near,
+                         attempts[i].iterations);
         if (solver->interior.residual <= (double)near) return true;
     }
     return true;
