@@ -12,10 +12,12 @@
    Elsewhere sweeps with momentum make the start: each saves as much of an iteration as it costs.
 
    The residual falls about sevenfold with each of the last iterations: a hundred times the accuracy costs two or three
-   more. Fails by its time: an iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies;
+   more. Fails by its time: an iteration costs as much as about ten sweeps, and more than that beyond some hundred bodies,
+   so large islands are left to sweeps (large_islands.h);
    a frozen impact of scenes/pyramid_settled takes twelve iterations, one of scenes/stack five. */
 #include "interior/interior.h"
 
+#include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
@@ -53,6 +55,7 @@ static const struct {
 
 typedef struct State {
     Interior interior;
+    LargeIslands large;
     Momentum momentum;
     float near; /* m/s */
     float start_factors[IMPACT_SWEEPS], factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
@@ -65,6 +68,7 @@ static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
+    large_islands_free(&solver->large);
     momentum_free(&solver->momentum);
     free(solver);
 }
@@ -78,6 +82,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->near = near;
+    large_islands_init(&solver->large);
     for (int s = 0; s < IMPACT_SWEEPS; s++) solver->start_factors[s] = momentum_factor_tuned(s, IMPACT_SWEEPS);
     for (int s = 0; s < FALLBACK_SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, FALLBACK_SWEEPS);
     for (int s = 0; s < FALLBACK_MORE; s++) solver->more_factors[s] = momentum_factor_tuned(s, FALLBACK_MORE);
@@ -137,6 +142,10 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Sweeps *sweeps = &solver->momentum.sweeps;
+    bool left_to_sweeps;
+    if (!large_islands_find(&solver->large, problem, &left_to_sweeps, error)) return false;
+    if (left_to_sweeps)
+        return large_islands_solve(&solver->large, &solver->momentum, solver->near, problem, solution, error);
     const bool rests = !residual_motion_reaches(problem, rest_below);
     if (!start(solver, problem, rests)) return error_memory(error, "interior");
     const float enough = rests ? smaller(solver->near, rounding) : trusted * solver->near;
@@ -153,6 +162,7 @@ const ContactSolverKind solver_interior = {
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
                     .settings = settings,
                     .title = "Interior point",
+                    .falls_back = true,
                     .chart = METHOD_RUNS("near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability_place = 2},
