@@ -59,7 +59,7 @@ typedef struct Attempt {
 } Attempt;
 
 enum { ATTEMPTS = 2 };
-static const Attempt at_rest[ATTEMPTS] = {{7e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {1, 40}};
+static const Attempt at_rest[ATTEMPTS] = {{1e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {1, 40}};
 /* Impacts of more than MANY_BODIES cycle more often, from any start: then sweeps take over. */
 static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 30}, {0, 0}};
 
@@ -115,11 +115,13 @@ static bool start(State *solver, const ContactProblem *problem, bool rests) {
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
+    const InteriorRule *rule = rests ? &interior_at_rest : &interior_at_impacts;
     const Attempt *attempts = rests ? at_rest : problem->body_count > MANY_BODIES ? at_impact_of_many : at_impact;
     for (int i = 0; i < ATTEMPTS && attempts[i].iterations > 0; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
-        interior_iterate(&solver->interior, kernels, attempts[i].least_scale, (double)near, attempts[i].iterations);
+        interior_iterate(&solver->interior, kernels, rule, attempts[i].least_scale, (double)near,
+                         attempts[i].iterations);
         if (solver->interior.residual <= (double)near) return true;
     }
     return true;
