@@ -61,14 +61,14 @@ typedef struct Reference {
 
 /* m/s. A solve aims at a tenth of it. All 31,200 steps of scenes/stack and scenes/pyramid_settled with the engine (40
    launches) reach it, and all 6,000 steps of runs with the reference itself. At rest the sweeps' contact states are
-   mostly those of the solution: one or two factorizations. Impacts take 16 factorizations on the stack (median; 25: 95%)
-   and 40 on the pyramid (118); the first attempt solves 96% of them.
+   mostly those of the solution: one or two factorizations. Impacts take 16 factorizations on the stack (median; 25:
+   95%) and 40 on the pyramid (118); the first attempt solves 96% of them.
 
-   Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree within 4e-7 m/s (RMS). In 3
-   of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008 m/s apart: redundant contacts
-   drift so slowly that the residual of sweeps hardly shows it. In one of these piles friction also allows several
-   solutions, 0.02 m/s apart. Some steps of piles between walls have no solution: position correction pushes boxes into
-   each other, and no impulses are large enough. Their residual stays high. */
+   Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree within 4e-7 m/s (RMS).
+   In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008 m/s apart: redundant
+   contacts drift so slowly that the residual of sweeps hardly shows it. In one of these piles friction also allows
+   several solutions, 0.02 m/s apart. Some steps of piles between walls have no solution: position correction pushes
+   boxes into each other, and no impulses are large enough. Their residual stays high. */
 #define REFERENCE_TOLERANCE 1e-9
 
 void reference_free(Reference *reference);

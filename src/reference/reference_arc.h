@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* With friction the central path may turn back: its target rises for a while before it falls again, and Newton's method
    ends at the fold. So the path is followed by its length, with the target as one more unknown. At a fold the
-   determinant changes its sign, which tells in what direction to go on. Lengths are measured in the logarithms of the
-   point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990), Euler-Newton
-   with orientation by the determinant. */
+   determinant changes its sign, which tells in what direction to continue. Lengths are measured in the logarithms of
+   the point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990):
+   Euler-Newton with orientation by the determinant. */
 #pragma once
 #include "reference/reference_point.h"
 

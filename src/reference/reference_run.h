@@ -4,7 +4,7 @@
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
       sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
    2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
-   3. If the path is lost, again from another distance.
+   3. If the path is lost, again from another distance and with another stiffness.
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. */
@@ -15,8 +15,8 @@
 
 enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 
-/* scale: distance of the start from its bounds, times its residual. stiffest: below, redundant contacts drift; above,
-   masses vanish beside the stiffness, and what is lost differs from one to the next. carefully: by the path's length. */
+/* scale: distance of the start from its bounds, times its residual. stiffest: see Reference; with less, redundant
+   contacts drift, with more, rounding hides the masses. most: factorizations. carefully: by the path's length. */
 static const struct {
     double scale, stiffest;
     int most;
