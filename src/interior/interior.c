@@ -8,7 +8,8 @@
 /* Hand-tuned, for the fewest iterations at impacts of the stack and the pyramids. The scale of velocities is 4 times the
    residual at the start plus `calm` (m/s); impulses and slips start at half of it beyond their values, and tau^2 at
    `first` times its square. tau^2 falls to `shrink` of itself, or to `follow` times the squared residual. */
-static const double scale_of_residual = 4, calm = 0.01, inside = 0.5, first = 0.25, shrink = 0.15, follow = 0.05;
+static const double scale_of_residual = 4, calm = 0.01, inside = 0.5, first = 0.25;
+const double interior_shrink = 0.15, interior_follow = 0.05;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
@@ -19,9 +20,8 @@ const InteriorKernels *interior_best(void) {
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* Moves the start to the inside of all bounds. */
-static void begin(Interior *s, double scale) {
-    const double off = inside * scale;
+double interior_begin(Interior *s) {
+    const double scale = scale_of_residual * s->residual + calm, off = inside * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         for (int k = 0; k < GROUP_SLOTS; k++) {
@@ -34,15 +34,14 @@ static void begin(Interior *s, double scale) {
             g->q[k] = larger(slip, 0) + off;
         }
     }
+    return first * scale * scale;
 }
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, double near, int most) {
-    const double scale = scale_of_residual * s->residual + calm;
-    begin(s, scale);
-    double target = first * scale * scale;
+    double target = interior_begin(s);
     for (s->iterations = 0; s->iterations < most;) {
-        const double least = s->iterations > 0 ? follow * s->residual * s->residual : 0;
-        const double next = larger(shrink * target, least);
+        const double least = s->iterations > 0 ? interior_follow * s->residual * s->residual : 0;
+        const double next = larger(interior_shrink * target, least);
         target = next < target ? next : target;
         s->residual = kernels->iterate(s, target);
         s->iterations++;

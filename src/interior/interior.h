@@ -35,6 +35,7 @@
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "interior/block_lu.h"
+#include "network/interior_net.h"
 #include "sweeps/sweeps.h"
 
 enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
@@ -49,6 +50,7 @@ typedef struct InteriorGroup {
     Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
     Vec4 normal, tangent;                 /* J_n v and J_t v of the answer, m/s */
     Vec4 free_normal, free_tangent;       /* the same of v' */
+    Vec4 aim;                             /* the network's factor of the target of l z; 1 without */
     /* of an iteration */
     Vec4 dn, dt, s;                       /* D_n, D_t, s */
     Vec4 aim_normal, aim_tangent;         /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
@@ -82,6 +84,7 @@ typedef struct Interior {
     int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
     double residual;  /* m/s, of the answer */
     int iterations;   /* of the last solve */
+    const InteriorNet *net; /* the caller's; NULL: no network */
     size_t group_capacity, pair_capacity, velocity_capacity, start_capacity, mass_capacity, inverse_capacity,
         change_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
 } Interior;
@@ -116,6 +119,12 @@ double interior_approach(const Interior *interior);
 /* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
+
+/* The parts of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first
+   tau^2. Before each iteration tau^2 falls to `shrink` of itself, but not below `follow` times the squared residual. */
+double interior_begin(Interior *interior);
+extern const double interior_shrink, interior_follow;
+enum { INTERIOR_START_SWEEPS = 2 };
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down. */

@@ -21,6 +21,53 @@ static const double kept = 0.15;
 /* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
 static const double stiffest = 1e12;
 
+typedef unsigned long long Bits4 __attribute__((vector_size(32), aligned(16), may_alias));
+
+/* interior_net_log2() and interior_net_power2() of four numbers. */
+static inline Vec4 log2_4(Vec4 x) {
+    const Bits4 two52 = (Bits4)all4(0x1p52);
+    return ((Vec4)((Bits4)x >> 12 | two52) - 0x1p52) * 0x1p-40 - 1023;
+}
+static inline Vec4 power2_4(Vec4 x) { return (Vec4)((Bits4)((x + 1023) * 0x1p40 + 0x1p52) << 12); }
+
+/* The network's factors of l, z and the target for a group. scale: log2 tau */
+static inline void consult_group(InteriorGroup *g, const double *weights, const double *hidden_biases,
+                                 const double *output_biases, double scale) {
+    const Vec4 gap = (g->normal - g->bias) / g->z - 1;
+    const Vec4 inputs[INTERIOR_NET_INPUTS] = {(log2_4(g->l * g->inverse_normal) - scale) * 0.25,
+                                              (log2_4(g->z) - scale) * 0.25, clamp4(gap, all4(INTERIOR_NET_GAP))};
+    Vec4 hidden[INTERIOR_NET_HIDDEN], factors[INTERIOR_NET_OUTPUTS];
+    const double *by = weights + INTERIOR_NET_HIDDEN_WEIGHTS;
+    for (int i = 0; i < INTERIOR_NET_HIDDEN; i++, by += INTERIOR_NET_INPUTS) {
+        Vec4 sum = all4(hidden_biases[i]);
+        for (int k = 0; k < INTERIOR_NET_INPUTS; k++) sum += inputs[k] * by[k];
+        hidden[i] = larger(sum, sum * INTERIOR_NET_LEAK);
+    }
+    by = weights + INTERIOR_NET_OUTPUT_WEIGHTS;
+    for (int i = 0; i < INTERIOR_NET_OUTPUTS; i++, by += INTERIOR_NET_HIDDEN) {
+        Vec4 sum = all4(output_biases[i]);
+        for (int k = 0; k < INTERIOR_NET_HIDDEN; k++) sum += hidden[k] * by[k];
+        factors[i] = power2_4(clamp4(sum, all4(INTERIOR_NET_LIMIT)));
+    }
+    g->l *= factors[0];
+    g->t *= factors[0];
+    g->z *= factors[1];
+    g->aim = factors[2];
+}
+
+static void consult(Interior *s, double target) {
+    const double *weights = s->net->weights;
+    const double scale = 0.5 * interior_net_log2(target);
+    for (int i = 0; i < s->group_count; i++)
+        consult_group(&s->groups[i], weights,
+                      weights + INTERIOR_NET_HIDDEN_BIASES + (ptrdiff_t)INTERIOR_NET_HIDDEN * s->iterations,
+                      weights + INTERIOR_NET_OUTPUT_BIASES + (ptrdiff_t)INTERIOR_NET_OUTPUTS * s->iterations, scale);
+}
+
+static void stop_consulting(Interior *s) {
+    for (int i = 0; i < s->group_count; i++) s->groups[i].aim = all4(1);
+}
+
 /* Impulses that are eliminated: D_n, D_t, s, r_n, r_t. */
 static void linearise(Interior *s, double target) {
     const Vec4 tau2 = all4(target), softest = all4(1 / stiffest);
@@ -28,7 +75,7 @@ static void linearise(Interior *s, double target) {
         InteriorGroup *g = &s->groups[i];
         const Vec4 bound = g->friction * g->l;
         g->over_z = 1 / g->z;
-        g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+        g->aim_normal = larger(tau2 * g->aim * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
         g->aim_tangent = larger(tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
         g->dn = g->l * g->over_z;
         g->rn = g->aim_normal * g->over_z - g->l - g->dn * (g->normal - g->bias - g->z);
@@ -227,6 +274,10 @@ static void apply_answer(Interior *s) {
 }
 
 static double iterate(Interior *s, double target) {
+    if (s->net != NULL && s->iterations < INTERIOR_NET_STEPS)
+        consult(s, target);
+    else if (s->net != NULL && s->iterations == INTERIOR_NET_STEPS)
+        stop_consulting(s);
     linearise(s, target);
     assemble(s);
     block_lu_factor(&s->lu);

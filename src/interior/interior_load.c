@@ -117,7 +117,7 @@ static void load_slot(InteriorGroup *group, int slot, InteriorPair *rows, int k,
 /* A slot that takes part in all operations and has no effect: l and z are not 0, as they are divisors. */
 static void clear_group(InteriorGroup *group) {
     const Vec4 one = {1, 1, 1, 1};
-    *group = (InteriorGroup){.friction = one, .l = one, .z = one, .p = one, .q = one};
+    *group = (InteriorGroup){.friction = one, .l = one, .z = one, .p = one, .q = one, .aim = one};
 }
 
 static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactProblem *problem) {
