@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The symbolic part: order of elimination, pattern with fill, list of updates. The graph is kept as rows of bits:
-   eliminating a node joins its neighbours by a few words each. */
+/* The symbolic part: the pattern with fill. A row's blocks are the columns on the paths from its neighbours
+   towards the root of the elimination tree: each is found once, so the time is that of writing the pattern. Source:
+   Liu, "The Role of Elimination Trees in Sparse Factorization" (1990). */
 #include "interior/block_lu.h"
 
 #include "common/array.h"
@@ -8,145 +9,108 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD = 64 };
+enum { CACHE_LINE = 64 }; /* bytes */
 
 void block_lu_free(BlockLu *lu) {
-    void *arrays[] = {lu->blocks, lu->column, lu->row,      lu->update, lu->updates, lu->position,
-                      lu->places, lu->edges,  lu->adjacent, lu->order,  lu->degree,  lu->first,
-                      lu->cursor, lu->find,   lu->next,     lu->owner};
+    void *arrays[] = {lu->memory, lu->column, lu->row,   lu->row_start, lu->in_row, lu->position, lu->places,
+                      lu->edges,  lu->order,  lu->start, lu->neighbour, lu->parent, lu->mark,     lu->find};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    block_order_free(&lu->choice);
     *lu = (BlockLu){0};
 }
 
-static size_t words_of(int count) { return ((size_t)count + WORD - 1) / WORD; }
-
-static bool reserve_nodes(BlockLu *lu, int count, int edge_count) {
+static bool reserve(BlockLu *lu, int count, int edge_count) {
     const size_t nodes = (size_t)count + 1, edges = (size_t)edge_count + 1, size = sizeof(int32_t);
     return array_reserve((void **)&lu->column, &lu->column_capacity, nodes, size) &&
-           array_reserve((void **)&lu->update, &lu->update_capacity, nodes, size) &&
            array_reserve((void **)&lu->position, &lu->position_capacity, nodes, size) &&
            array_reserve((void **)&lu->order, &lu->order_capacity, nodes, size) &&
-           array_reserve((void **)&lu->degree, &lu->degree_capacity, nodes, size) &&
-           array_reserve((void **)&lu->first, &lu->first_capacity, nodes, size) &&
-           array_reserve((void **)&lu->cursor, &lu->cursor_capacity, nodes, size) &&
+           array_reserve((void **)&lu->start, &lu->start_capacity, nodes + 1, size) &&
+           array_reserve((void **)&lu->parent, &lu->parent_capacity, nodes, size) &&
            array_reserve((void **)&lu->find, &lu->find_capacity, nodes, size) &&
-           array_reserve((void **)&lu->adjacent, &lu->adjacent_capacity, nodes * (words_of(count) + 1),
-                         sizeof *lu->adjacent) &&
+           array_reserve((void **)&lu->mark, &lu->mark_capacity, nodes, size) &&
+           array_reserve((void **)&lu->row_start, &lu->row_start_capacity, nodes, size) &&
+           array_reserve((void **)&lu->neighbour, &lu->neighbour_capacity, 2 * edges, size) &&
            array_reserve((void **)&lu->places, &lu->place_capacity, edges, sizeof *lu->places) &&
            array_reserve((void **)&lu->edges, &lu->edge_capacity, edges, sizeof *lu->edges);
 }
 
-static void set_bit(uint64_t *row, int bit) { row[bit / WORD] |= (uint64_t)1 << (bit % WORD); }
-static void clear_bit(uint64_t *row, int bit) { row[bit / WORD] &= ~((uint64_t)1 << (bit % WORD)); }
-
-/* Inline: not every CPU has an instruction for it, and a call of the compiler's library takes longer. */
-static int bits_in(uint64_t word) {
-    word -= word >> 1 & UINT64_C(0x5555555555555555);
-    word = (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
-    word = (word + (word >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
-    return (int)(word * UINT64_C(0x0101010101010101) >> 56);
-}
-
-static int bits_of(const uint64_t *row, size_t words) {
-    int bits = 0;
-    for (size_t w = 0; w < words; w++) bits += bits_in(row[w]);
-    return bits;
-}
-
-static void connect(BlockLu *lu, size_t words) {
-    memset(lu->adjacent, 0, (size_t)lu->count * words * sizeof *lu->adjacent);
+/* Lists of neighbours, without the repeated ones. */
+static void connect(BlockLu *lu) {
+    int32_t *start = lu->start;
+    memset(start, 0, ((size_t)lu->count + 2) * sizeof *start);
     for (int i = 0; i < lu->edge_count; i++) {
-        const BlockEdge edge = lu->edges[i];
-        set_bit(lu->adjacent + (size_t)edge.a * words, edge.b);
-        set_bit(lu->adjacent + (size_t)edge.b * words, edge.a);
+        start[lu->edges[i].a + 2]++;
+        start[lu->edges[i].b + 2]++;
     }
-    for (int i = 0; i < lu->count; i++) lu->degree[i] = bits_of(lu->adjacent + (size_t)i * words, words);
-}
-
-/* The node of the smallest degree that is left; the first of several. Eliminated nodes have the degree INT32_MAX. */
-static int choose_node(const BlockLu *lu) {
-    int best = 0;
-    for (int i = 1; i < lu->count; i++)
-        if (lu->degree[i] < lu->degree[best]) best = i;
-    return best;
-}
-
-/* Appends the node's neighbours as a column (nodes, not yet positions), and joins them with each other. */
-static bool eliminate(BlockLu *lu, int node, size_t words) {
-    const uint64_t *mine = lu->adjacent + (size_t)node * words;
-    const size_t wanted = (size_t)lu->below + (size_t)lu->degree[node] + 1;
-    if (!array_reserve((void **)&lu->row, &lu->row_capacity, wanted, sizeof *lu->row)) return false;
-    for (size_t w = 0; w < words; w++)
-        for (uint64_t bits = mine[w]; bits != 0; bits &= bits - 1) {
-            const int other = (int)w * WORD + __builtin_ctzll(bits);
-            uint64_t *row = lu->adjacent + (size_t)other * words;
-            for (size_t x = 0; x < words; x++) row[x] |= mine[x];
-            clear_bit(row, other);
-            clear_bit(row, node);
-            lu->degree[other] = bits_of(row, words);
-            lu->row[lu->below++] = other;
+    for (int i = 0; i < lu->count; i++) start[i + 2] += start[i + 1];
+    for (int i = 0; i < lu->edge_count; i++) {
+        lu->neighbour[start[lu->edges[i].a + 1]++] = lu->edges[i].b;
+        lu->neighbour[start[lu->edges[i].b + 1]++] = lu->edges[i].a;
+    }
+    for (int i = 0; i < lu->count; i++) lu->mark[i] = -1;
+    int kept = 0;
+    for (int i = 0, from = 0; i < lu->count; i++) {
+        const int to = start[i + 1];
+        start[i] = kept;
+        for (int x = from; x < to; x++) {
+            if (lu->mark[lu->neighbour[x]] == i) continue;
+            lu->mark[lu->neighbour[x]] = i;
+            lu->neighbour[kept++] = lu->neighbour[x];
         }
-    lu->degree[node] = INT32_MAX;
-    return true;
-}
-
-static bool choose_order(BlockLu *lu) {
-    const size_t words = words_of(lu->count);
-    connect(lu, words);
-    lu->below = 0;
-    for (int k = 0; k < lu->count; k++) {
-        const int node = choose_node(lu);
-        lu->order[k] = node;
-        lu->position[node] = k;
-        lu->column[k] = lu->below;
-        if (!eliminate(lu, node, words)) return false;
+        from = to;
     }
-    lu->column[lu->count] = lu->below;
+    start[lu->count] = kept;
+}
+
+/* Finds the elimination tree and the columns of each row's blocks, which in_row holds for now, and counts the blocks of
+   each column. */
+static bool walk_rows(BlockLu *lu) {
+    int32_t *const mark = lu->mark, *const parent = lu->parent, *const column = lu->column;
+    memset(column, 0, ((size_t)lu->count + 1) * sizeof *column);
+    lu->below = lu->row_start[0] = 0;
+    for (int i = 0; i < lu->count; i++) {
+        if (!array_reserve((void **)&lu->in_row, &lu->in_row_capacity, (size_t)lu->below + (size_t)i + 1,
+                           sizeof *lu->in_row))
+            return false;
+        BlockInRow *block = lu->in_row + lu->below;
+        const int node = lu->order[i];
+        mark[i] = i;
+        parent[i] = -1;
+        for (int x = lu->start[node]; x < lu->start[node + 1]; x++)
+            for (int k = lu->position[lu->neighbour[x]]; k < i && mark[k] != i; k = parent[k]) {
+                mark[k] = i;
+                if (parent[k] < 0) parent[k] = i;
+                column[k + 1]++;
+                (block++)->block = k;
+            }
+        lu->row_start[i + 1] = lu->below = (int)(block - lu->in_row);
+    }
+    for (int i = 0; i < lu->count; i++) column[i + 1] += column[i];
     return true;
 }
 
-/* Rows by position, rising in each column; and for each row a list of its blocks, from the last column to the first. */
-static bool sort_rows(BlockLu *lu) {
-    const size_t wanted = (size_t)lu->below + 1;
-    if (!array_reserve((void **)&lu->next, &lu->next_capacity, wanted, sizeof *lu->next) ||
-        !array_reserve((void **)&lu->owner, &lu->owner_capacity, wanted, sizeof *lu->owner))
+/* Rows rise in each column, as they are listed in this order. */
+static void list_blocks(BlockLu *lu) {
+    int32_t *const next = lu->find, *const row = lu->row;
+    const int32_t *const column = lu->column;
+    BlockInRow *block = lu->in_row;
+    memcpy(next, column, (size_t)lu->count * sizeof *next);
+    for (int i = 0; i < lu->count; i++)
+        for (const BlockInRow *end = lu->in_row + lu->row_start[i + 1]; block < end; block++) {
+            const int k = block->block, x = next[k]++;
+            row[x] = i;
+            *block = (BlockInRow){x, column[k + 1]};
+        }
+}
+
+/* Blocks are read in vectors of 32 bytes; those that cross a cache line cost twice. */
+static bool reserve_blocks(BlockLu *lu) {
+    const size_t blocks = (size_t)lu->count + 2 * (size_t)lu->below + 3;
+    if (!array_reserve((void **)&lu->row, &lu->row_capacity, (size_t)lu->below + 1, sizeof *lu->row) ||
+        !array_reserve(&lu->memory, &lu->block_capacity, blocks + 1, sizeof *lu->blocks))
         return false;
-    for (int k = 0; k < lu->count; k++) lu->first[k] = -1;
-    for (int k = 0; k < lu->count; k++) {
-        for (int x = lu->column[k]; x < lu->column[k + 1]; x++) {
-            const int32_t row = lu->position[lu->row[x]];
-            int at = x;
-            for (; at > lu->column[k] && lu->row[at - 1] > row; at--) lu->row[at] = lu->row[at - 1];
-            lu->row[at] = row;
-        }
-        for (int x = lu->column[k]; x < lu->column[k + 1]; x++) {
-            lu->owner[x] = k;
-            lu->next[x] = lu->first[lu->row[x]];
-            lu->first[lu->row[x]] = x;
-        }
-    }
-    return true;
-}
-
-/* Column by column: which products of earlier columns change it. */
-static bool list_updates(BlockLu *lu) {
-    lu->update[0] = 0;
-    for (int k = 0; k < lu->count; k++) {
-        const int rows = lu->column[k + 1] - lu->column[k];
-        lu->cursor[k] = lu->update[k];
-        lu->update[k + 1] = lu->update[k] + rows * (rows - 1) / 2;
-    }
-    if (!array_reserve((void **)&lu->updates, &lu->updates_capacity, (size_t)lu->update[lu->count] + 1,
-                       sizeof *lu->updates))
-        return false;
-    for (int j = 0; j < lu->count; j++) {
-        for (int x = lu->column[j]; x < lu->column[j + 1]; x++) lu->find[lu->row[x]] = x;
-        for (int right = lu->first[j]; right >= 0; right = lu->next[right]) {
-            const int k = lu->owner[right];
-            for (int left = right + 1; left < lu->column[k + 1]; left++)
-                lu->updates[lu->cursor[k]++] = (BlockUpdate){lu->find[lu->row[left]], left, right};
-        }
-    }
+    const size_t beyond = (uintptr_t)lu->memory % CACHE_LINE;
+    lu->blocks = (Block3 *)((char *)lu->memory + (beyond > 0 ? CACHE_LINE - beyond : 0));
     return true;
 }
 
@@ -171,16 +135,18 @@ bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_c
         (size == 0 || memcmp(lu->edges, edges, size) == 0))
         return true;
     lu->edge_count = -1; /* until the new analysis is complete */
-    if (!reserve_nodes(lu, count, edge_count)) return false;
+    if (!reserve(lu, count, edge_count)) return false;
     lu->count = count;
-    lu->edge_count = edge_count;
     if (size > 0) memcpy(lu->edges, edges, size);
-    bool ok = choose_order(lu) && sort_rows(lu) && list_updates(lu) &&
-              array_reserve((void **)&lu->blocks, &lu->block_capacity, (size_t)count + 2 * (size_t)lu->below + 3,
-                            sizeof *lu->blocks);
-    if (ok)
-        place_edges(lu);
-    else
-        lu->edge_count = -1;
-    return ok;
+    lu->edge_count = edge_count;
+    connect(lu);
+    lu->edge_count = -1;
+    const BlockGraph graph = {count, lu->start, lu->neighbour};
+    if (!block_order_choose(&lu->choice, &graph, lu->order)) return false;
+    for (int k = 0; k < count; k++) lu->position[lu->order[k]] = k;
+    if (!walk_rows(lu) || !reserve_blocks(lu)) return false;
+    list_blocks(lu);
+    lu->edge_count = edge_count;
+    place_edges(lu);
+    return true;
 }

@@ -21,7 +21,8 @@
    Impulses and slips keep a share of their value in an iteration, each by itself. tau^2 falls by a fixed factor, but not
    far below the square of the residual: else iterations cycle between sets of closed contacts. The answer of an
    iteration is its full step, projected into the cones, with the velocities that these impulses make. The velocities of
-   the linearised step are closer to the solution, but only impulses outside the cones would make them.
+   the linearised step are closer to the solution, but only impulses outside the cones would make them. They give an
+   estimate of the answer's residual without computing its velocities: a little too large, and rarely too small.
 
    Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
    Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,
@@ -30,35 +31,33 @@
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
-   factorization grows faster than the number of contacts. Same bits on every instruction set: double, a fixed order of
+   factorization grows faster than the number of contacts (block_lu.h). Same bits on every instruction set: double, a fixed order of
    operations, no fused multiply-add. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "interior/block_lu.h"
-#include "network/interior_net.h"
 #include "sweeps/sweeps.h"
 
 enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
 
-/* Four contact slots: two of each of two pairs. A slot without a contact has zero rows and weight. */
+/* Four contact slots: two of each of two pairs. A slot without a contact has zero rows, so it has no effect. */
 typedef struct InteriorGroup {
-    Vec4 mass_normal, mass_tangent, friction, bias;
-    Vec4 inverse_normal, inverse_tangent; /* 1/kg, of the effective masses; 0 without a contact */
-    Vec4 depth;                           /* m, overlap */
-    Vec4 weight;                          /* 1 for a contact, else 0 */
+    Vec4 normal_x, normal_y;              /* the tangent is (normal_y, -normal_x) */
+    Vec4 normal_b, normal_a;              /* J_n of the spins of b and a, m */
+    Vec4 tangent_b, tangent_a;            /* J_t of the spins, m */
+    Vec4 mass_normal, mass_tangent;       /* kg, effective; 1 without a contact */
+    Vec4 inverse_normal, inverse_tangent; /* 1/kg; 0 without a contact */
+    Vec4 friction, bias, depth;           /* depth: m, overlap */
     Vec4 l, t, z, p, q;                   /* N s and m/s, see above */
-    Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
-    Vec4 normal, tangent;                 /* J_n v and J_t v of the answer, m/s */
+    Vec4 normal, tangent;                 /* J_n v and J_t v, m/s */
     Vec4 free_normal, free_tangent;       /* the same of v' */
-    Vec4 aim;                             /* the network's factor of the target of l z; 1 without */
+    Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
     /* of an iteration */
-    Vec4 dn, dt, s;                       /* D_n, D_t, s */
-    Vec4 aim_normal, aim_tangent;         /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
-    Vec4 rn, rt;                          /* r_n, r_t */
-    Vec4 upper, lower, over_z;            /* 1 / (mu l - t), 1 / (mu l + t), 1 / z */
-    Vec4 impulse_normal, impulse_tangent; /* l + r_n and t + r_t + s r_n: the right-hand side */
-    Vec4 change_normal, change_tangent;   /* J_n dv and J_t dv */
-    Vec4 second_p, second_q;              /* products of the corrector */
+    Vec4 aim_normal, aim_tangent; /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
+    Vec4 dn, dt, s;               /* D_n, D_t, s */
+    Vec4 rn, rt;                  /* r_n, r_t */
+    Vec4 upper, lower, over_z;    /* 1 / (mu l - t), 1 / (mu l + t), 1 / z */
+    Vec4 second_p, second_q;      /* products of the corrector */
 } InteriorGroup;
 
 /* The rows of a pair's slots in the coordinates (linear velocity of b minus that of a, spin of b, spin of a), and
@@ -76,17 +75,17 @@ typedef struct Interior {
     int group_count, contact_count; /* contact_count: that act on a moving body */
     InteriorGroup *groups;
     InteriorPair *pairs; /* [2 group_count] */
-    /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused */
-    Vec4 *velocities, *start, *masses, *inverses, *changes;
+    /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused. changes: of the
+       first solve of an iteration; corrected: of the second */
+    Vec4 *velocities, *start, *masses, *inverses, *changes, *corrected;
     int32_t *bodies;  /* [lu.count] */
     int32_t *nodes;   /* [body_count] -1 for bodies without contact */
     BlockEdge *edges; /* [pair_count] */
     int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
     double residual;  /* m/s, of the answer */
     int iterations;   /* of the last solve */
-    const InteriorNet *net; /* the caller's; NULL: no network */
     size_t group_capacity, pair_capacity, velocity_capacity, start_capacity, mass_capacity, inverse_capacity,
-        change_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
+        change_capacity, corrected_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
 } Interior;
 
 /* The parts that are compiled for several instruction sets. */
@@ -94,9 +93,11 @@ typedef struct InteriorKernels {
     const char *name;
     void (*factor)(BlockLu *lu);
     void (*solve)(const BlockLu *lu, Vec4 *x);
-    /* One iteration towards tau^2 = target, (m/s)^2. Returns the residual of the answer. */
+    /* One iteration towards tau^2 = target, (m/s)^2. Returns an estimate of the answer's residual: that of the
+       linearised velocities, and what the projection into the cones changes. */
     double (*iterate)(Interior *interior, double target);
-    double (*residual)(const Interior *interior);
+    /* Computes the velocities of the answer. Returns its residual. */
+    double (*answer)(Interior *interior);
 } InteriorKernels;
 
 extern const InteriorKernels interior_scalar, interior_avx2;
@@ -105,6 +106,11 @@ extern const InteriorKernels interior_scalar, interior_avx2;
 const InteriorKernels *interior_best(void);
 
 void interior_free(Interior *interior);
+
+/* True if an impulse of the pair changes anything. */
+static inline bool interior_pair_moves(const Interior *interior, const InteriorPair *pair) {
+    return pair->a < interior->lu.count || pair->b < interior->lu.count;
+}
 
 /* Loads the impulses and velocities of sweeps over the problem, and sets `residual` to theirs. The residual is the root
    mean square over contacts of what one more visit would change: normal and tangent velocity, |change of impulse| /
@@ -119,12 +125,6 @@ double interior_approach(const Interior *interior);
 /* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
-
-/* The parts of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first
-   tau^2. Before each iteration tau^2 falls to `shrink` of itself, but not below `follow` times the squared residual. */
-double interior_begin(Interior *interior);
-extern const double interior_shrink, interior_follow;
-enum { INTERIOR_START_SWEEPS = 2 };
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down. */

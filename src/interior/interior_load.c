@@ -16,8 +16,8 @@ static const double mass_max = 1e20;
 void interior_free(Interior *interior) {
     block_lu_free(&interior->lu);
     void *arrays[] = {interior->groups, interior->pairs,    interior->velocities, interior->start,
-                      interior->masses, interior->inverses, interior->changes,    interior->bodies,
-                      interior->nodes,  interior->edges,    interior->edge_of};
+                      interior->masses, interior->inverses, interior->changes,    interior->corrected,
+                      interior->bodies, interior->nodes,    interior->edges,      interior->edge_of};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     *interior = (Interior){0};
 }
@@ -34,6 +34,7 @@ static bool reserve(Interior *s, const Sweeps *sweeps) {
            array_reserve((void **)&s->masses, &s->mass_capacity, bodies, row) &&
            array_reserve((void **)&s->inverses, &s->inverse_capacity, bodies, row) &&
            array_reserve((void **)&s->changes, &s->change_capacity, bodies, row) &&
+           array_reserve((void **)&s->corrected, &s->corrected_capacity, bodies, row) &&
            array_reserve((void **)&s->bodies, &s->body_capacity, bodies, sizeof *s->bodies) &&
            array_reserve((void **)&s->nodes, &s->node_capacity, bodies, sizeof *s->nodes);
 }
@@ -64,99 +65,107 @@ static bool analyse(Interior *s, const Sweeps *sweeps, const ContactProblem *pro
 
 static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : mass_max; }
 
-static void load_bodies(Interior *s, const Sweeps *sweeps, const ContactProblem *problem) {
+static void load_bodies(Interior *s, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) {
         if (s->nodes[i] < 0) continue;
         const ProblemBody *body = &problem->bodies[i];
-        const SweepBody *now = &sweeps->bodies[i];
         const int k = s->lu.position[s->nodes[i]];
         const double mass = mass_of(body->inv_mass), inverse = (double)body->inv_mass;
         s->bodies[k] = i;
         s->masses[k] = (Vec4){mass, mass, mass_of(body->inv_inertia), 0};
         s->inverses[k] = (Vec4){inverse, inverse, (double)body->inv_inertia, 0};
         s->start[k] = (Vec4){(double)body->velocity.x, (double)body->velocity.y, (double)body->angular_velocity, 0};
-        s->velocities[k] = (Vec4){(double)now->x, (double)now->y, (double)now->spin, 0};
     }
     s->changes[s->lu.count] = s->velocities[s->lu.count] = s->start[s->lu.count] = (Vec4){0};
     s->masses[s->lu.count] = s->inverses[s->lu.count] = (Vec4){0};
 }
 
-static double dot(Vec4 x, Vec4 y) { return ((x[0] * y[0] + x[1] * y[1]) + x[2] * y[2]) + x[3] * y[3]; }
-
-/* The row of a direction at a contact point. */
-static Vec4 row_of(const SweepPoint *point, Vec2 direction) {
-    const double x = (double)direction.x, y = (double)direction.y;
-    return (Vec4){x, y, (double)point->arm_b.x * y - (double)point->arm_b.y * x,
-                  (double)point->arm_a.y * x - (double)point->arm_a.x * y};
-}
-
 static double over(float x) { return x != 0 ? 1 / (double)x : 0; }
 
-static void load_slot(InteriorGroup *group, int slot, InteriorPair *rows, int k, const SweepPair *pair, Vec4 now,
-                      Vec4 before) {
+/* The rows of a contact. */
+static void load_rows(InteriorGroup *group, int slot, InteriorPair *rows, int k, Vec2 normal, const SweepPoint *point) {
+    const double x = (double)normal.x, y = (double)normal.y;
+    const double bx = (double)point->arm_b.x, by = (double)point->arm_b.y;
+    const double ax = (double)point->arm_a.x, ay = (double)point->arm_a.y;
+    const Vec4 along = {x, y, bx * y - by * x, ay * x - ax * y}, across = {y, -x, -(bx * x + by * y), ax * x + ay * y};
+    rows->normal[k] = along;
+    rows->tangent[k] = across;
+    group->normal_x[slot] = x;
+    group->normal_y[slot] = y;
+    group->normal_b[slot] = along[2];
+    group->normal_a[slot] = along[3];
+    group->tangent_b[slot] = across[2];
+    group->tangent_a[slot] = across[3];
+}
+
+static double dot(Vec4 x, Vec4 y) { return ((x[0] * y[0] + x[1] * y[1]) + x[2] * y[2]) + x[3] * y[3]; }
+
+static void load_slot(InteriorGroup *group, int slot, const SweepPair *pair, int k) {
     const SweepPoint *point = &pair->points[k];
-    const Vec4 normal = row_of(point, pair->normal), tangent = row_of(point, vec2_cross_scalar(pair->normal, 1.0f));
     const double friction = (double)pair->friction;
-    rows->normal[k] = normal;
-    rows->tangent[k] = tangent;
-    group->weight[slot] = 1;
     group->mass_normal[slot] = (double)point->mass_normal;
     group->mass_tangent[slot] = (double)point->mass_tangent;
     group->inverse_normal[slot] = over(point->mass_normal);
     group->inverse_tangent[slot] = over(point->mass_tangent);
     group->friction[slot] = friction > friction_min ? friction : friction_min;
     group->bias[slot] = (double)point->bias;
-    group->l[slot] = group->answer_normal[slot] = (double)pair->sums[k].normal;
-    group->t[slot] = group->answer_tangent[slot] = (double)pair->sums[k].tangent;
-    group->normal[slot] = dot(normal, now);
-    group->tangent[slot] = dot(tangent, now);
-    group->free_normal[slot] = dot(normal, before);
-    group->free_tangent[slot] = dot(tangent, before);
+    group->answer_normal[slot] = (double)pair->sums[k].normal;
+    group->answer_tangent[slot] = (double)pair->sums[k].tangent;
 }
 
-/* A slot that takes part in all operations and has no effect: l and z are not 0, as they are divisors. */
-static void clear_group(InteriorGroup *group) {
-    const Vec4 one = {1, 1, 1, 1};
-    *group = (InteriorGroup){.friction = one, .l = one, .z = one, .p = one, .q = one, .aim = one};
+/* Velocity of b minus that of a, spins of b and a, before any impulse. */
+static Vec4 velocities_before(const ProblemBody *a, const ProblemBody *b) {
+    return (Vec4){(double)b->velocity.x - (double)a->velocity.x, (double)b->velocity.y - (double)a->velocity.y,
+                  (double)b->angular_velocity, (double)a->angular_velocity};
 }
 
 static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactProblem *problem) {
-    static const InteriorPair none = {0};
     const SweepPair *pair = &sweeps->pairs[i];
-    const int a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
+    const int a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b), first = sweeps->first[i];
     const int node_a = s->nodes[a], node_b = s->nodes[b], fixed = s->lu.count, spare = block_lu_spare(&s->lu);
     InteriorPair *rows = &s->pairs[i];
-    *rows = none;
+    InteriorGroup *group = &s->groups[i / GROUP_PAIRS];
     rows->a = node_a >= 0 ? s->lu.position[node_a] : fixed;
     rows->b = node_b >= 0 ? s->lu.position[node_b] : fixed;
     rows->place = s->edge_of[i] >= 0 ? s->lu.places[s->edge_of[i]] : (BlockPlace){spare, spare};
-    if (node_a < 0 && node_b < 0) return; /* no impulse changes anything */
-    const SweepBody *now_a = &sweeps->bodies[a], *now_b = &sweeps->bodies[b];
-    const ProblemBody *old_a = &problem->bodies[a], *old_b = &problem->bodies[b];
-    const Vec4 now = {(double)now_b->x - (double)now_a->x, (double)now_b->y - (double)now_a->y, (double)now_b->spin,
-                      (double)now_a->spin};
-    const Vec4 before = {(double)old_b->velocity.x - (double)old_a->velocity.x,
-                         (double)old_b->velocity.y - (double)old_a->velocity.y, (double)old_b->angular_velocity,
-                         (double)old_a->angular_velocity};
-    for (int k = 0; k < sweep_pair_points(pair); k++) {
-        load_slot(&s->groups[i / GROUP_PAIRS], i % GROUP_PAIRS * 2 + k, rows, k, pair, now, before);
-        s->groups[i / GROUP_PAIRS].depth[i % GROUP_PAIRS * 2 + k] =
-            -(double)problem->contacts[sweeps->first[i] + k].separation;
+    if (!interior_pair_moves(s, rows)) return;
+    const Vec4 before = velocities_before(&problem->bodies[a], &problem->bodies[b]);
+    for (int k = 0, slot = i % GROUP_PAIRS * 2; k < sweep_pair_points(pair); k++, slot++) {
+        load_rows(group, slot, rows, k, pair->normal, &pair->points[k]);
+        load_slot(group, slot, pair, k);
+        group->depth[slot] = -(double)problem->contacts[first + k].separation;
+        group->free_normal[slot] = dot(rows->normal[k], before);
+        group->free_tangent[slot] = dot(rows->tangent[k], before);
         s->contact_count++;
     }
 }
 
+/* Without contacts: open, at rest, without effect. */
+static void clear_slots(Interior *s, int i) {
+    const Vec4 zero = {0}, one = {1, 1, 1, 1};
+    static const InteriorPair none = {0};
+    InteriorGroup *g = &s->groups[i];
+    g->normal_x = g->normal_y = g->normal_b = g->normal_a = g->tangent_b = g->tangent_a = zero;
+    g->inverse_normal = g->inverse_tangent = g->depth = zero;
+    g->free_normal = g->free_tangent = g->answer_normal = g->answer_tangent = zero;
+    g->mass_normal = g->mass_tangent = g->friction = one;
+    g->bias = -one;
+    s->pairs[GROUP_PAIRS * i] = s->pairs[GROUP_PAIRS * i + 1] = none;
+}
+
 bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem) {
     if (!reserve(s, sweeps) || !analyse(s, sweeps, problem)) return false;
-    load_bodies(s, sweeps, problem);
+    load_bodies(s, problem);
     s->group_count = (sweeps->pair_count + GROUP_PAIRS - 1) / GROUP_PAIRS;
     s->contact_count = 0;
-    for (int i = 0; i < s->group_count; i++) clear_group(&s->groups[i]);
+    for (int i = 0; i < s->group_count; i++) clear_slots(s, i);
     for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem);
-    if (sweeps->pair_count % GROUP_PAIRS != 0)
-        s->pairs[sweeps->pair_count] = (InteriorPair){
-            .a = s->lu.count, .b = s->lu.count, .place = {block_lu_spare(&s->lu), block_lu_spare(&s->lu)}};
-    s->residual = kernels->residual(s);
+    if (sweeps->pair_count % GROUP_PAIRS != 0) {
+        const int spare = block_lu_spare(&s->lu);
+        s->pairs[sweeps->pair_count].a = s->pairs[sweeps->pair_count].b = s->lu.count;
+        s->pairs[sweeps->pair_count].place = (BlockPlace){spare, spare};
+    }
+    s->residual = kernels->answer(s);
     s->iterations = 0;
     return true;
 }
@@ -166,7 +175,7 @@ double interior_approach(const Interior *s) {
     for (int i = 0; i < s->group_count; i++)
         for (int k = 0; k < GROUP_SLOTS; k++) {
             const double missing = s->groups[i].bias[k] - s->groups[i].free_normal[k];
-            if (missing > 0) sum += missing * missing; /* 0 without a contact */
+            if (missing > 0) sum += missing * missing; /* negative without a contact */
         }
     return s->contact_count > 0 ? sqrt(sum / s->contact_count) : 0;
 }

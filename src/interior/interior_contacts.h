@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What an iteration does with the contacts of a group, between the solves: targets, linearisation, correction, limits.
+   Included by interior_code.h. The compiler may use wider registers, but not change the order of operations. */
+#include "interior/interior.h"
+
+typedef long long Mask4 __attribute__((vector_size(32), aligned(16), may_alias));
+
+static inline Vec4 choose(Mask4 mask, Vec4 x, Vec4 y) { return (Vec4)((mask & (Mask4)x) | (~mask & (Mask4)y)); }
+static inline Vec4 smaller(Vec4 x, Vec4 y) { return choose((Mask4)(x < y), x, y); }
+static inline Vec4 larger(Vec4 x, Vec4 y) { return choose((Mask4)(x > y), x, y); }
+static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger(smaller(x, limit), -limit); }
+static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
+static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
+/* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its bounds. */
+static const double kept = 0.15, kept_slip = 0.15, kept_distance = 0.15;
+/* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
+static const double stiffest = 1e12;
+
+/* The targets of the products. */
+static inline void aim(InteriorGroup *g, Vec4 tau2) {
+    const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
+    g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+    g->aim_tangent = larger(tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
+}
+
+/* Impulses on the contacts of a group. */
+typedef struct Impulses {
+    Vec4 normal, tangent;
+} Impulses;
+
+/* Those of the right-hand side. */
+static inline Impulses right_side(const InteriorGroup *g) {
+    return (Impulses){g->l + g->rn, g->t + g->rt + g->s * g->rn};
+}
+
+/* The impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
+   of t to its bounds, D_t = u w / (p w + q u). */
+static inline void linearise(InteriorGroup *g) {
+    const Vec4 bound = g->friction * g->l, u = bound - g->t, w = bound + g->t;
+    const Vec4 p = g->p * w, q = g->q * u, both = u * w, sum = p + q, all = both * sum;
+    const Vec4 over = 1 / (g->z * all), over_both = over * (g->z * sum), over_sum = over * (g->z * both);
+    g->over_z = over * all;
+    g->upper = over_both * w;
+    g->lower = over_both * u;
+    g->dn = g->l * g->over_z;
+    g->dt = both * over_sum;
+    g->s = g->friction * (p - q) * over_sum;
+    g->rn = g->aim_normal * g->over_z - g->l - g->dn * (g->normal - g->bias - g->z);
+    g->rt = -g->dt * (g->tangent + g->aim_tangent * g->upper - g->aim_tangent * g->lower);
+}
+
+/* J_n x and J_t x */
+typedef struct Relative {
+    Vec4 normal, tangent;
+} Relative;
+
+/* The changes of a group by a solve, before any limit. */
+typedef struct Changes {
+    Vec4 l, z, t, p, q;
+    Vec4 upper, lower; /* of mu l - t and mu l + t */
+} Changes;
+
+static inline Changes changes_of(const InteriorGroup *g, Relative dv, Vec4 second_p, Vec4 second_q) {
+    Changes by;
+    by.l = g->rn - g->dn * dv.normal;
+    by.z = dv.normal + (g->normal - g->bias - g->z);
+    by.t = g->rt - g->dt * dv.tangent + g->s * by.l;
+    by.upper = g->friction * by.l - by.t;
+    by.lower = g->friction * by.l + by.t;
+    by.p = (g->aim_tangent + second_p - g->p * by.upper) * g->upper - g->p;
+    by.q = (g->aim_tangent + second_q - g->q * by.lower) * g->lower - g->q;
+    return by;
+}
+
+/* The products of second order that the first solve predicts, limited to the size of the terms themselves. */
+static inline void correct(InteriorGroup *g, Relative dv) {
+    const Changes by = changes_of(g, dv, all4(0), all4(0));
+    const Vec4 bound = g->friction * g->l;
+    g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) * g->over_z;
+    g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p * (bound - g->t)));
+    g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q * (bound + g->t)));
+    g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
+}
+
+static inline Vec4 missing_normal(const InteriorGroup *g) {
+    return smaller(g->answer_normal * g->inverse_normal, g->normal - g->bias);
+}
+
+static inline Vec4 missing_tangent(const InteriorGroup *g) {
+    const Vec4 bound = g->friction * g->answer_normal;
+    const Vec4 wanted = clamp4(g->answer_tangent - g->mass_tangent * g->tangent, bound);
+    return (g->answer_tangent - wanted) * g->inverse_tangent;
+}
+
+static inline Vec4 square(Vec4 x) { return x * x; }
+static inline Vec4 squared_residual(const InteriorGroup *g) {
+    return square(missing_normal(g)) + square(missing_tangent(g));
+}
+
+/* The iterate stays inside all bounds. */
+static inline void limit(InteriorGroup *g, const Changes *by) {
+    const Vec4 l = larger(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
+    const Vec4 share = 1 - kept_distance * (1 - larger(g->t, -g->t) / before);
+    g->t = clamp4(g->t + by->t, smaller(share, all4(1 - 1e-13)) * bound);
+    g->l = l;
+    g->z = larger(g->z + by->z, kept * g->z);
+    g->p = larger(g->p + by->p, kept_slip * g->p);
+    g->q = larger(g->q + by->q, kept_slip * g->q);
+}
+
+/* The next iterate, and the answer: the full step, inside the cone. Returns the answer's squared residual at the
+   velocities of the full step, and the squared changes by the projection. */
+static inline Vec4 advance(InteriorGroup *g, Relative dv) {
+    const Changes by = changes_of(g, dv, g->second_p, g->second_q);
+    const Vec4 l = g->l + by.l, t = g->t + by.t;
+    g->answer_normal = larger(l, all4(0));
+    g->answer_tangent = clamp4(t, g->friction * g->answer_normal);
+    limit(g, &by);
+    g->normal += dv.normal;
+    g->tangent += dv.tangent;
+    return squared_residual(g) + square((l - g->answer_normal) * g->inverse_normal) +
+           square((t - g->answer_tangent) * g->inverse_tangent);
+}
