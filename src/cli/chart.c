@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
@@ -14,6 +15,17 @@ typedef struct Options {
     const char *scenes[STUDY_MAX_SCENES];
 } Options;
 
+/* A number, or the path of a table. */
+static bool read_launches(const Option *option, const char *text, void *value, Error *error) {
+    (void)option, (void)error;
+    LaunchChoice *launches = value;
+    int64_t count;
+    const bool number = parse_int(text, 1, LAUNCHES_MAX, &count);
+    launches->count = number ? (int)count : 0;
+    launches->table = number ? NULL : installed_path(text);
+    return true;
+}
+
 static const Option option_table[] = {
     {"--output", 'o', "DIR", "Folder for chart.csv and the charts", OPTION_TEXT(Options, study.folder),
      .needed = "-o DIR is needed"},
@@ -21,10 +33,12 @@ static const Option option_table[] = {
      "Methods, separated by commas; a name alone stands for all settings that the chart has for it (default: all; "
      "methods left out are reported)",
      OPTION_TEXT(Options, study.methods)},
-    {"--launches", 0, "FILE.csv",
-     "Launches to score on, a table with any of the columns x,rotation,spin,mass,frame (default: x halfway between the "
-     "places of the training grid)",
-     OPTION_PATH(Options, study.launches)},
+    {"--launches", 0, "N|FILE.csv",
+     "Launches to score on: N held-out launches of the scene's family (default: 40), or a table with any of the "
+     "columns x,rotation,spin,mass,frame",
+     OPTION_READ(read_launches, Options, study.launches)},
+    {"--bomb-x", 0, "A:B:STEP", "Launches to score on: x from A to B in steps of STEP, m",
+     OPTION_RANGE(Options, study.launches.bomb_x)},
     {"--quick", 0, NULL, "Fewer launches, settings and repetitions: under a minute", OPTION_FLAG(Options, study.quick)},
     {0}};
 
@@ -69,6 +83,9 @@ bool command_chart(int argc, char **argv, Error *error) {
     Options options = {0};
     options.study.scenes = options.scenes;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    const LaunchChoice *launches = &options.study.launches;
+    if (launches->bomb_x.count > 0 && (launches->table != NULL || launches->count > 0))
+        return error_input(error, "--bomb-x", "cannot be combined with --launches");
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
     bool ok = speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
     progress_bar_end();

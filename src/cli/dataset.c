@@ -22,7 +22,7 @@ static bool read_view(const Option *option, const char *text, void *value, Error
 static const Option option_table[] = {
     {"--output", 'o', "DATA.npz", "Dataset to write", OPTION_TEXT(Options, output), .needed = "-o DATA.npz is needed"},
     {"--bomb-x", 0, "A:B:STEP",
-     "Launches of each scene: x from A to B in steps of STEP, m (default: -5:5:0.05, as in the paper; none with only "
+     "Launches of each scene: x from A to B in steps of STEP, m (default: 201 of the scene's family; none with only "
      "--random)",
      OPTION_RANGE(Options, dataset.bomb_x)},
     {"--random", 0, "N",
@@ -62,8 +62,6 @@ bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     options.dataset.scenes = options.scenes;
-    if (options.dataset.bomb_x.count == 0 && options.dataset.random == 0)
-        options.dataset.bomb_x = (FloatRange){-5, 0.05, 201};
     Dataset *dataset = dataset_record(&options.dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     bool ok = dataset != NULL && dataset_write(dataset, options.output, error);

@@ -17,12 +17,30 @@ static void put_launch(Dataset *dataset, int i, const Launch *launch) {
     dataset->launch_spin[i] = launch->spin;
 }
 
-/* Swept launches first, then random ones. */
-static void put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
-                         const gsl_rng *generator) {
+/* A dataset has no column for masses. */
+static bool family_launches(const Scene *scene, Launch launches[LAUNCH_GRID], Error *error) {
+    if (scene_span_varies(&scene->bomb.mass))
+        return error_input(error, scene->name, "the mass of the bomb varies, which a dataset does not record");
+    return launches_for_training(scene, LAUNCH_GRID, launches, error);
+}
+
+int dataset_launches_each(const DatasetOptions *options) {
+    const int given = options->bomb_x.count + options->random;
+    return given > 0 ? given : LAUNCH_GRID;
+}
+
+/* Swept launches first, then random ones; none given: the scene's family. */
+static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
+                         const gsl_rng *generator, Error *error) {
+    const bool family = options->bomb_x.count + options->random == 0;
     int i = 0;
     for (int scene = 0; scene < options->scene_count; scene++) {
-        Launch launch = launch_of(scenes[scene]);
+        Launch launch = launch_of(scenes[scene]), launches[LAUNCH_GRID];
+        if (family && !family_launches(scenes[scene], launches, error)) return false;
+        for (int k = 0; family && k < LAUNCH_GRID; k++, i++) {
+            put_launch(dataset, i, &launches[k]);
+            dataset->launch_scene[i] = scene;
+        }
         for (int k = 0; k < options->bomb_x.count; k++, i++) {
             launch.x = range_value(&options->bomb_x, k);
             put_launch(dataset, i, &launch);
@@ -36,6 +54,7 @@ static void put_launches(Dataset *dataset, const DatasetOptions *options, Scene 
             dataset->launch_scene[i] = scene;
         }
     }
+    return true;
 }
 
 /* Draws the held-out launches. */
@@ -53,12 +72,12 @@ static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *gener
 }
 
 /* The split is drawn first, so that it does not depend on later draws. */
-static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes) {
+static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
-    if (generator == NULL) return false;
+    if (generator == NULL) return error_memory(error, "dataset");
     gsl_rng_set(generator, (unsigned long)options->seed);
-    bool ok = split(dataset, options->bomb_x.count + options->random, generator);
-    if (ok) put_launches(dataset, options, scenes, generator);
+    bool ok = split(dataset, dataset_launches_each(options), generator) || error_memory(error, "dataset");
+    ok = ok && put_launches(dataset, options, scenes, generator, error);
     gsl_rng_free(generator);
     return ok;
 }
@@ -73,7 +92,7 @@ Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes
     dataset->target = options->target;
     dataset->labels = options->labels;
     dataset->scene_count = options->scene_count;
-    dataset->launches = options->scene_count * (options->bomb_x.count + options->random);
+    dataset->launches = options->scene_count * dataset_launches_each(options);
     size_t launches = (size_t)dataset->launches;
     dataset->launch_scene = malloc(launches * sizeof *dataset->launch_scene);
     dataset->launch_x = malloc(launches * sizeof *dataset->launch_x);
@@ -81,10 +100,10 @@ Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes
     dataset->launch_spin = malloc(launches * sizeof *dataset->launch_spin);
     dataset->launch_test = calloc(launches, sizeof *dataset->launch_test);
     for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
-    if (dataset->launch_scene != NULL && dataset->launch_x != NULL && dataset->launch_rotation != NULL &&
-        dataset->launch_spin != NULL && dataset->launch_test != NULL && fill(dataset, options, scenes))
-        return dataset;
-    error_memory(error, "dataset");
+    bool ok = dataset->launch_scene != NULL && dataset->launch_x != NULL && dataset->launch_rotation != NULL &&
+              dataset->launch_spin != NULL && dataset->launch_test != NULL;
+    if (!ok) error_memory(error, "dataset");
+    if (ok && fill(dataset, options, scenes, error)) return dataset;
     dataset_destroy(dataset);
     return NULL;
 }

@@ -3,6 +3,9 @@
 #pragma once
 #include "dataset/dataset.h"
 
+/* Launches of each scene. */
+int dataset_launches_each(const DatasetOptions *options);
+
 /* Fills the launch tables; a fifth of each scene's launches, at least one, is held out. */
 Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error);
 

@@ -94,7 +94,7 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
         error_input(error, "dataset", "%d scenes; expected 1 to %d", options->scene_count, DATASET_MAX_SCENES);
         return NULL;
     }
-    int launches = options->bomb_x.count + options->random;
+    int launches = dataset_launches_each(options);
     if (launches < 5 || launches > DATASET_MAX_LAUNCHES) {
         error_input(error, "dataset", "%d launches per scene; expected at least 5, to hold out a fifth, and at most %d",
                     launches, DATASET_MAX_LAUNCHES);

@@ -16,7 +16,8 @@
    reference for a label, a tenth of the studies'; converged to 1e-3 m/s for nearly all labels. */
 enum { STEPS_AFTER = 2, LABEL_VISITS = 200000, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
 
-static const double random_x = 5, random_rotation = 1.5, random_spin = 20; /* m, rad, rad/s */
+/* Of turned launches, unless the scene has a family of them; rad, rad/s. */
+static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 /* RMS residual of the warm start over the contacts: below it at rest, above it during a shock. */
 static const float gate = 0.3f; /* m/s */
 /* The setting `near` (residual) of scene-net in the runs that record training samples. */
@@ -35,18 +36,19 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-static float draw(Trainer *trainer, double limit) {
-    return (float)(limit * (2 * gsl_rng_uniform(trainer->generator) - 1));
+static float draw(Trainer *trainer, const SceneSpan *span, const SceneSpan *otherwise) {
+    return scene_span_at(scene_span_varies(span) ? span : otherwise, gsl_rng_uniform(trainer->generator));
 }
 
-/* Every second launch has a random rotation and spin. */
+/* Every second launch has a random rotation and spin. The mass is the scene's: a network is for one mass. */
 static void draw_launches(Trainer *trainer, int count) {
+    const SceneBomb *bomb = &trainer->scene->bomb;
     for (int i = 0; i < count; i++) {
         Launch launch = launch_of(trainer->scene);
-        launch.x = draw(trainer, random_x);
+        launch.x = draw(trainer, &bomb->x, &bomb->x);
         if (i % 2 == 1) {
-            launch.rotation = draw(trainer, random_rotation);
-            launch.spin = draw(trainer, random_spin);
+            launch.rotation = draw(trainer, &bomb->rotation, &turned);
+            launch.spin = draw(trainer, &bomb->spin, &spinning);
         }
         trainer->launches[i] = launch;
     }
@@ -192,6 +194,10 @@ SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *trainin
                                 Error *error) {
     if (!scene->bomb.present) {
         error_input(error, scene->name, "has no bomb to launch");
+        return NULL;
+    }
+    if (!scene_span_varies(&scene->bomb.x)) {
+        error_input(error, scene->name, "the bomb has one x; write a family of launches, x: {from: A, to: B}");
         return NULL;
     }
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 
 typedef struct SceneTraining {
-    int launches;  /* per round: x in +-5 m; half of them also with rotation in +-1.5 rad and spin in +-20 rad/s */
+    int launches;  /* per round, drawn from the scene's family; half of them with a random rotation and spin */
     int rounds;    /* the first is run by momentum and by the reference, the others by the network */
     int epochs;    /* of the first round; later rounds have half as many */
     int sweeps;    /* after the network */
@@ -23,7 +23,7 @@ typedef struct SceneTraining {
     void *context;
 } SceneTraining;
 
-/* NULL with error set: a scene without a bomb, launches that touch nothing, memory, a loss that is NaN or infinite. If
+/* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN or infinite. If
    progress stops the training after the first network was made, returns the network as it is. `command` is left empty.
    Same bits for any number of threads. */
 SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,

@@ -85,19 +85,44 @@ bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Err
     return true;
 }
 
-static void spread(const Scene *scene, const FloatRange *places, int count, Launch *out) {
+/* Irrational steps whose multiples, modulo 1, fill the cube of rotation, spin and mass evenly: powers of 1/g, where
+   g^4 = g + 1. Source: Roberts, The unreasonable effectiveness of quasirandom sequences (2018). */
+static const double even_rotation = 0.8191725133961645, even_spin = 0.671043606703789, even_mass = 0.5497004779019703;
+
+/* Sets *value to number i of values that fill the span evenly, if it varies; `start` tells training from scoring. */
+static void spread_evenly(const SceneSpan *span, double step, double start, int i, float *value) {
+    const double share = fmod(start + step * (i + 1), 1);
+    if (scene_span_varies(span)) *value = scene_span_at(span, share);
+}
+
+bool launch_has_family(const Scene *scene) {
+    const SceneBomb *bomb = &scene->bomb;
+    return scene_span_varies(&bomb->x) || scene_span_varies(&bomb->rotation) || scene_span_varies(&bomb->spin) ||
+           scene_span_varies(&bomb->mass);
+}
+
+static bool spread(const Scene *scene, bool scoring, int count, Launch *out, Error *error) {
+    const SceneBomb *bomb = &scene->bomb;
+    if (!launch_has_family(scene))
+        return error_input(
+            error, scene->name,
+            "the bomb has one launch and no family: write its x as {from: A, to: B}, or choose launches");
+    const double width = ((double)bomb->x.to - (double)bomb->x.from) / (LAUNCH_GRID - 1), start = scoring ? 0.5 : 0;
+    const FloatRange places = {(double)bomb->x.from + start * width, width, scoring ? LAUNCH_GRID - 1 : LAUNCH_GRID};
     for (int i = 0; i < count; i++) {
         out[i] = launch_of(scene);
-        out[i].x = range_value(places, (int)((i + 0.5) * places->count / count));
+        if (scene_span_varies(&bomb->x)) out[i].x = range_value(&places, (int)((i + 0.5) * places.count / count));
+        spread_evenly(&bomb->rotation, even_rotation, start, i, &out[i].rotation);
+        spread_evenly(&bomb->spin, even_spin, start, i, &out[i].spin);
+        spread_evenly(&bomb->mass, even_mass, start, i, &out[i].mass);
     }
+    return true;
 }
 
-void launches_for_training(const Scene *scene, int count, Launch *out) {
-    static const FloatRange grid = {-5, 0.05, 201};
-    spread(scene, &grid, count, out);
+bool launches_for_training(const Scene *scene, int count, Launch *out, Error *error) {
+    return spread(scene, false, count, out, error);
 }
 
-void launches_for_scoring(const Scene *scene, int count, Launch *out) {
-    static const FloatRange midpoints = {-4.975, 0.05, 200};
-    spread(scene, &midpoints, count, out);
+bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error) {
+    return spread(scene, true, count, out, error);
 }

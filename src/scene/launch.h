@@ -33,10 +33,14 @@ void launches_free(LaunchTable *table);
    without a bomb, a bomb after the scene's last frame, a bomb that would start too fast. */
 bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Error *error);
 
-/* `count` launches of the scene spread evenly over the paper's grid, x = -5 to 5 m in steps of 0.05 (201 positions,
-   then they repeat). */
-void launches_for_training(const Scene *scene, int count, Launch *out);
+/* True if some number of the bomb varies from launch to launch. */
+bool launch_has_family(const Scene *scene);
 
-/* The same over the midpoints of that grid, x = -4.975 to 4.975 m (200 positions): all are held-out, and none is 0,
-   where a bomb on a stack is an exact tie. */
-void launches_for_scoring(const Scene *scene, int count, Launch *out);
+/* `count` launches spread evenly over the scene's family: x over a grid of LAUNCH_GRID positions with both ends (then
+   they repeat), rotation, spin and mass between their ends. ERROR_INPUT if the bomb has no family. */
+enum { LAUNCH_GRID = 201 };
+bool launches_for_training(const Scene *scene, int count, Launch *out, Error *error);
+
+/* The same over the midpoints of that grid, and other rotations, spins and masses: all launches are held-out. Over x = -5
+   to 5 m none is 0, where a bomb on a stack is an exact tie. */
+bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error);

@@ -23,14 +23,28 @@ enum {
 #define SCENE_MIN_DT 1e-5f      /* s */
 #define SCENE_MAX_DT 1.0f       /* s */
 
+/* A number of the bomb: what the scene runs with, and the ends of its launches (launch.h); from = value = to if all
+   launches have the same. */
+typedef struct SceneSpan {
+    float value, from, to;
+} SceneSpan;
+
+static inline bool scene_span_varies(const SceneSpan *span) { return span->from < span->to; }
+
+/* The value at a share of the way from one end to the other. */
+static inline float scene_span_at(const SceneSpan *span, double share) {
+    return (float)((double)span->from + share * ((double)span->to - (double)span->from));
+}
+
 /* The bomb: a box that is added after step `frame` (so it is in that frame's state; 0: from the start). */
 typedef struct SceneBomb {
     bool present;
     int frame;
-    BodyDef body;                /* velocity: only without the law below (scene_bomb_body) */
-    bool velocity_from_position; /* velocity = velocity_factor * position */
-    float velocity_factor;       /* 1/s */
-    int impact_frames;           /* from its first touch on, in studies */
+    BodyDef body;                      /* velocity: only without the law below (scene_bomb_body) */
+    bool velocity_from_position;       /* velocity = velocity_factor * position */
+    float velocity_factor;             /* 1/s */
+    SceneSpan x, rotation, spin, mass; /* m, rad, rad/s, kg: the family of launches; their values are the body's */
+    int impact_frames;                 /* from its first touch on, in studies */
 } SceneBomb;
 
 /* The trained network of a method for this scene. */

@@ -5,16 +5,15 @@
 #include "common/file.h"
 #include "scene/parameters.h"
 #include "scene/scene_bodies.h"
+#include "scene/scene_bomb.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const Range range_iterations = {1, SCENE_MAX_ITERATIONS, ""};
 static const Range range_frames = {1, SCENE_MAX_FRAMES, ""};
-static const Range range_bomb_frame = {0, SCENE_MAX_FRAMES, ""};
 
 static bool field_camera(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)field;
@@ -23,44 +22,6 @@ static bool field_camera(const YamlTree *tree, int node, const Field *field, voi
                                    {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
     return fields_read(tree, node, "a camera", fields, member, nodes, error);
-}
-
-/* Either [vx, vy] or the mapping {times_position: 1/s}. */
-static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    static const Field law[] = {
-        {"times_position", field_number, offsetof(SceneBomb, velocity_factor), &range_rate, true},
-        {NULL, NULL, 0, NULL, false}};
-    SceneBomb *bomb = member;
-    bomb->velocity_from_position = tree->nodes[node].kind == YAML_MAPPING;
-    int nodes[FIELDS_MAX];
-    if (bomb->velocity_from_position) return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
-    return field_vector(tree, node, field, &bomb->body.velocity, error);
-}
-
-static const Field bomb_fields[] = {
-    {"x", field_number, offsetof(SceneBomb, body.position.x), &range_position, true},
-    {"y", field_number, offsetof(SceneBomb, body.position.y), &range_position, true},
-    {"size", field_vector, offsetof(SceneBomb, body.size), &range_size, true},
-    {"mass", field_number, offsetof(SceneBomb, body.mass), &range_mass, true},
-    {"friction", field_number, offsetof(SceneBomb, body.friction), &range_friction, false},
-    {"rotation", field_number, offsetof(SceneBomb, body.angle), &range_angle, false},
-    {"spin", field_number, offsetof(SceneBomb, body.angular_velocity), &range_spin, false},
-    {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
-    {"velocity", field_bomb_velocity, 0, &range_speed, false},
-    {"impact_frames", field_int, offsetof(SceneBomb, impact_frames), &range_frames, false},
-    {NULL, NULL, 0, NULL, false}};
-
-static bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    (void)field;
-    Scene *scene = member;
-    scene->bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
-    int nodes[FIELDS_MAX];
-    if (!fields_read(tree, node, "a bomb", bomb_fields, &scene->bomb, nodes, error)) return false;
-    Vec2 velocity = scene_bomb_body(scene).velocity;
-    if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) <= range_speed.maximum) return true;
-    return yaml_error(tree, fields_node(bomb_fields, nodes, "velocity"), error,
-                      "the bomb's start velocity is (%g, %g) m/s; the largest allowed component is %g",
-                      (double)velocity.x, (double)velocity.y, (double)range_speed.maximum);
 }
 
 /* Letters, digits and dashes, as in all methods' names. */

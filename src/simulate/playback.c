@@ -82,8 +82,7 @@ static bool allocate(Playback *playback, const Scene *scene, Error *error) {
     playback->after = malloc((after + 1) * sizeof *playback->after);
     if (playback->launches == NULL || playback->before == NULL || playback->after == NULL)
         return error_memory(error, "playback");
-    launches_for_training(scene, playback->launch_count, playback->launches);
-    return true;
+    return launches_for_training(scene, playback->launch_count, playback->launches, error);
 }
 
 /* Makes the recordings. */

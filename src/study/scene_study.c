@@ -11,27 +11,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool choose_launches(SceneStudy *study, const char *path, Error *error) {
-    LaunchTable table = {0};
-    if (path != NULL && !launches_read(&table, path, error)) return false;
-    study->launch_count = path != NULL ? table.count : study->size->launches;
+static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error *error) {
+    Launch *launches = launch_choice_make(choice, study->scene, study->size->launches, &study->launch_count, error);
+    if (launches == NULL) return false;
     size_t count = (size_t)study->launch_count;
-    Launch *launches = malloc(count * sizeof *launches);
     study->launches = malloc(count * sizeof *study->launches);
     study->converged = calloc(count, sizeof *study->converged);
     study->snapshots = calloc(count, sizeof *study->snapshots);
-    bool ok = launches != NULL && study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
+    bool ok = study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
     if (!ok) error_memory(error, "study");
-    if (ok && path != NULL) ok = launches_for(&table, study->scene, launches, error);
-    if (ok && path == NULL) launches_for_scoring(study->scene, study->launch_count, launches);
     for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
     free(launches);
-    launches_free(&table);
     return ok;
 }
 
-bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders, const char *launches,
-                       const StudySize *size, Error *error) {
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
+                       const LaunchChoice *launches, const StudySize *size, Error *error) {
     *study = (SceneStudy){.scene = scene_read(path, error), .size = size};
     bool ok = study->scene != NULL && (study->scene->bomb.present || error_input(error, path, "the scene has no bomb"));
     if (ok) {

@@ -3,6 +3,7 @@
 #pragma once
 #include "study/contenders.h"
 #include "study/frozen.h"
+#include "study/launch_choice.h"
 #include "study/timing.h"
 
 typedef struct StudySize {
@@ -24,8 +25,8 @@ typedef struct SceneStudy {
 } SceneStudy;
 
 /* Reads the scene and its launches. */
-bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders, const char *launches,
-                       const StudySize *size, Error *error);
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
+                       const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
 
 /* Computes the converged run and the frozen steps of every launch. */

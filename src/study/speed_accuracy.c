@@ -99,7 +99,7 @@ static bool measure_scene(Run *run, Error *error) {
 
 static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, Error *error) {
     const StudySize *size = run->options->quick ? &quick_size : &full_size;
-    if (!scene_study_begin(&run->study, path, &run->contenders, run->options->launches, size, error)) return false;
+    if (!scene_study_begin(&run->study, path, &run->contenders, &run->options->launches, size, error)) return false;
     for (int i = 0; i < run->row_count; i++)
         if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
             scene_study_end(&run->study);
@@ -146,7 +146,12 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
-    if (options->launches != NULL && !study_key_add_file(key, options->launches, error)) return false;
+    const LaunchChoice *launches = &options->launches;
+    study_key_add(key, &launches->count, sizeof launches->count);
+    study_key_add(key, &launches->bomb_x.count, sizeof launches->bomb_x.count);
+    study_key_add(key, &launches->bomb_x.first, sizeof launches->bomb_x.first);
+    study_key_add(key, &launches->bomb_x.step, sizeof launches->bomb_x.step);
+    if (launches->table != NULL && !study_key_add_file(key, launches->table, error)) return false;
     for (int i = 0; i < options->scene_count; i++)
         if (!add_scene_to_key(key, options->scenes[i], error)) return false;
     return true;

@@ -7,8 +7,9 @@
 #pragma once
 #include "common/progress.h"
 #include "study/contenders.h"
+#include "study/launch_choice.h"
 
-enum { STUDY_MAX_SCENES = 16 };
+enum { STUDY_MAX_SCENES = 32 };
 
 /* Progress per stage of the study. */
 typedef struct StageProgress {
@@ -19,10 +20,10 @@ typedef struct StageProgress {
 typedef struct SpeedAccuracyOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
-    const char *methods;  /* contenders_parse(); NULL: all */
-    const char *launches; /* path of a table of launches (scene/launch.h); NULL: launches_for_scoring() */
-    bool quick;           /* fewer launches, settings, steps and repetitions */
-    const char *folder;   /* created if missing */
+    const char *methods; /* contenders_parse(); NULL: all */
+    LaunchChoice launches;
+    bool quick;         /* fewer launches, settings, steps and repetitions */
+    const char *folder; /* created if missing */
 } SpeedAccuracyOptions;
 
 typedef struct SpeedAccuracyScene {

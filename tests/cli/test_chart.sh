@@ -87,6 +87,31 @@ assert 1 in worst, worst
 PYTHON
 checks=$((checks + 1))
 
+# Launches by number are the family's; a sweep and a table of the same places give the same numbers.
+few="--quick --methods engine:k=10"
+run 0 chart "$scenes/single.yaml" -o five $few
+run 0 chart "$scenes/single.yaml" -o counted $few --launches 5
+cmp -s <(without_times five/chart.csv) <(without_times counted/chart.csv) || fail "5 launches are not the quick chart's"
+run 0 chart "$scenes/single.yaml" -o swept $few --bomb-x=-2:2:2
+says "single: 1 methods and settings, 3 launches"
+printf 'x\n-2\n0\n2\n' >places.csv
+run 0 chart "$scenes/single.yaml" -o listed $few --launches places.csv
+cmp -s <(without_times swept/chart.csv) <(without_times listed/chart.csv) || fail "a sweep and a table differ"
+run 2 chart "$scenes/single.yaml" -o none $few --bomb-x=-2:2:2 --launches 5
+complains "--bomb-x: error: cannot be combined with --launches"
+run 2 chart "$scenes/single.yaml" -o none $few --launches 0
+complains "0: error:"
+sed 's/x: {[^}]*}/x: 4/' "$scenes/single.yaml" | sed "s|networks/|$scenes/networks/|" >alone.yaml
+run 2 chart alone.yaml -o none $few
+complains "alone: error: the bomb has one launch and no family"
+# A family of the scene alone decides.
+sed 's/x: 4/x: {from: 1, to: 3}/' alone.yaml >family.yaml
+run 0 chart family.yaml -o family $few --launches 2
+printf 'x\n1.505\n2.505\n' >places.csv
+run 0 chart alone.yaml -o alone $few --launches places.csv
+cmp -s <(without_times family/chart.csv | sed s/family/alone/) <(without_times alone/chart.csv) ||
+    fail "a family from 1 to 3 is not what it says"
+
 printf 'x,colour\n1,red\n' >bad.csv
 run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv
 complains "bad.csv:1:3: error: "

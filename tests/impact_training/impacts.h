@@ -29,7 +29,8 @@ static inline bool make_momentum(void *context, ContactSolver *solver, Error *er
 
 /* Over the midpoints of the paper's grid; every second one rotated. */
 static inline void throw_over_grid(const Scene *scene, int count, Launch *launches) {
-    launches_for_scoring(scene, count, launches);
+    Error error = {0};
+    assert_ok(launches_for_scoring(scene, count, launches, &error), error);
     for (int i = 1; i < count; i += 2) launches[i].rotation = 0.4f;
 }
 

@@ -52,6 +52,43 @@ static inline void make_blocks(RandomBlocks *random, uint32_t *seed, int count, 
     }
 }
 
+/* Adds stiff times j j^T with the signs of a contact between nodes a and b. */
+static inline void add_contact(RandomBlocks *random, int e, double stiff, const double j[3]) {
+    const int a = random->edges[e].a, b = random->edges[e].b;
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) {
+            const double value = stiff * j[r] * j[c];
+            random->diagonal[a].column[c][r] += value;
+            random->diagonal[b].column[c][r] += value;
+            random->of_a[e].column[c][r] -= value;
+            random->of_b[e].column[c][r] -= value;
+        }
+}
+
+/* A chain of unit masses with two contacts between neighbours, of stiffness 1 to 1e12. */
+static inline void make_stiff_blocks(RandomBlocks *random, uint32_t *seed, int count) {
+    memset(random, 0, sizeof *random);
+    random->count = count;
+    random->edge_count = count - 1;
+    for (int i = 0; i < count; i++)
+        for (int r = 0; r < 3; r++) {
+            random->diagonal[i].column[r][r] = 1;
+            random->right[3 * i + r] = number(seed, 1);
+        }
+    for (int e = 0; e < random->edge_count; e++) {
+        random->edges[e] = (BlockEdge){e, e + 1};
+        for (int k = 0; k < 4; k++) {
+            const double j[3] = {number(seed, 1), number(seed, 1), number(seed, 1)};
+            add_contact(random, e, pow(10, 6 + number(seed, 6)), j);
+        }
+    }
+    for (int i = 0; i < count; i++) add_dense(random, i, i, &random->diagonal[i]);
+    for (int e = 0; e < random->edge_count; e++) {
+        add_dense(random, e, e + 1, &random->of_a[e]);
+        add_dense(random, e + 1, e, &random->of_b[e]);
+    }
+}
+
 /* Writes the blocks and the right-hand side; after the analysis. */
 static inline void load_blocks(BlockLu *lu, const RandomBlocks *random, Vec4 *x) {
     memset(lu->blocks, 0, ((size_t)lu->count + 2 * (size_t)lu->below + 3) * sizeof *lu->blocks);

@@ -2,9 +2,15 @@
 /* Launches: tables of them, and the two families that studies use. */
 #include "scene_text.h"
 
+#include "common/parse.h"
 #include "scene/launch.h"
 
+#include <math.h>
+
 #define BOMB "bomb: {x: 1, y: 15, size: [1, 1], mass: 50, rotation: 0.5, spin: 2, frame: 9"
+
+/* The family of the scenes that ship. */
+#define FAMILY "bomb: {x: {from: -5, to: 5, value: 1}, y: 15, size: [1, 1], mass: 50, rotation: 0.5, spin: 2, frame: 9"
 
 static Scene *aiming_scene(void) { return good_scene(BASE GROUND BOMB ", velocity: {times_position: -1.5}}\n"); }
 
@@ -133,18 +139,24 @@ static void launches_that_a_scene_cannot_run_are_refused(void **state) {
     expect_misfit(BASE GROUND, "x\n1\n2\n", "launches.csv: error: the scene scene has no bomb to launch");
 }
 
+static void get_launches(const Scene *scene, bool scoring, int count, Launch *out) {
+    Error error = {0};
+    assert_ok((scoring ? launches_for_scoring : launches_for_training)(scene, count, out, &error), error);
+}
+
 static void scoring_never_meets_training(void **state) {
     (void)state;
-    Scene *scene = aiming_scene();
+    Scene *scene = good_scene(BASE GROUND FAMILY "}\n");
+    static const FloatRange grid = {-5, 0.05, 201}, midpoints = {-4.975, 0.05, 200};
     static Launch training[201], scoring[200];
-    launches_for_training(scene, 201, training);
-    launches_for_scoring(scene, 200, scoring);
+    get_launches(scene, false, 201, training);
+    get_launches(scene, true, 200, scoring);
     for (int i = 0; i < 201; i++) {
         assert_true(training[i].x == (float)((i - 100) / 20.0)); /* the float of the decimal, 0 included */
-        assert_launch(training[i], (Launch){training[i].x, 0.5f, 2, 50, 9});
+        assert_launch(training[i], (Launch){range_value(&grid, i), 0.5f, 2, 50, 9});
     }
     for (int i = 0; i < 200; i++) {
-        assert_near(scoring[i].x, -4.975 + 0.05 * i, 1e-6);
+        assert_launch(scoring[i], (Launch){range_value(&midpoints, i), 0.5f, 2, 50, 9});
         assert_true(scoring[i].x != 0);
         for (int k = 0; k < 201; k++) assert_true(scoring[i].x != training[k].x);
     }
@@ -153,14 +165,67 @@ static void scoring_never_meets_training(void **state) {
 
 static void few_launches_are_spread_evenly(void **state) {
     (void)state;
-    Scene *scene = aiming_scene();
+    Scene *scene = good_scene(BASE GROUND FAMILY "}\n");
     Launch out[4];
-    launches_for_scoring(scene, 4, out);
+    get_launches(scene, true, 4, out);
     static const double scored[] = {-3.725, -1.225, 1.275, 3.775}; /* j = 25, 75, 125, 175 */
     for (int i = 0; i < 4; i++) assert_near(out[i].x, scored[i], 1e-6);
-    launches_for_training(scene, 3, out);
+    get_launches(scene, false, 3, out);
     static const double trained[] = {-3.35, 0, 3.35}; /* j = 33, 100, 167 */
     for (int i = 0; i < 3; i++) assert_near(out[i].x, trained[i], 1e-6);
+    scene_destroy(scene);
+}
+
+/* The discrepancy of a number over its span: the largest difference between the share of launches below a bound and the
+   bound's share of the span. Random values would have about 0.1 for 64 launches. */
+static double discrepancy(const float *values, int count, double from, double to) {
+    double most = 0;
+    for (int k = 1; k < 10; k++) {
+        int below = 0;
+        for (int i = 0; i < count; i++) {
+            assert_true((double)values[i] >= from && (double)values[i] <= to);
+            below += (double)values[i] < from + 0.1 * k * (to - from);
+        }
+        most = fmax(most, fabs((double)below / count - 0.1 * k));
+    }
+    return most;
+}
+
+static void every_number_of_a_family_is_spread_over_its_span(void **state) {
+    (void)state;
+    enum { COUNT = 64 };
+    Scene *scene = good_scene(BASE GROUND "bomb: {x: 3, y: 15, size: [1, 1], frame: 9, mass: {from: 50, to: 200},\n"
+                                          "  rotation: {from: -1.5, to: 1.5, value: 0}, spin: {from: 10, to: 20}}\n");
+    assert_launch(launch_of(scene), (Launch){3, 0, 15, 125, 9}); /* the middle, unless `value` is given */
+    Launch launches[2][COUNT];
+    float rotation[COUNT], spin[COUNT], mass[COUNT];
+    for (int scoring = 0; scoring < 2; scoring++) {
+        get_launches(scene, scoring == 1, COUNT, launches[scoring]);
+        for (int i = 0; i < COUNT; i++) {
+            const Launch *launch = &launches[scoring][i];
+            assert_true(launch->x == 3 && launch->frame == 9);
+            rotation[i] = launch->rotation;
+            spin[i] = launch->spin;
+            mass[i] = launch->mass;
+        }
+        assert_true(discrepancy(rotation, COUNT, -1.5, 1.5) < 0.05);
+        assert_true(discrepancy(spin, COUNT, 10, 20) < 0.05);
+        assert_true(discrepancy(mass, COUNT, 50, 200) < 0.05);
+    }
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < COUNT; k++)
+            assert_true(launches[0][i].rotation != launches[1][k].rotation &&
+                        launches[0][i].mass != launches[1][k].mass);
+    scene_destroy(scene);
+}
+
+static void a_bomb_without_a_family_cannot_be_spread(void **state) {
+    (void)state;
+    Scene *scene = aiming_scene();
+    Launch out;
+    Error error = {0};
+    assert_false(launches_for_scoring(scene, 1, &out, &error));
+    assert_error(error, ERROR_INPUT, "scene: error: the bomb has one launch and no family");
     scene_destroy(scene);
 }
 
@@ -173,6 +238,8 @@ int main(void) {
         cmocka_unit_test(launches_that_a_scene_cannot_run_are_refused),
         cmocka_unit_test(scoring_never_meets_training),
         cmocka_unit_test(few_launches_are_spread_evenly),
+        cmocka_unit_test(every_number_of_a_family_is_spread_over_its_span),
+        cmocka_unit_test(a_bomb_without_a_family_cannot_be_spread),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -132,6 +132,30 @@ static const Refused bombs[] = {
      "7:55: error: the bomb's start velocity is (1000, 15000) m/s; the largest allowed component is 10000"},
 };
 
+#define FAMILY(x, rest) BASE GROUND "bomb: {x: " x ", y: 15, size: [1, 1], " rest "}\n"
+
+static const Refused families[] = {
+    {FAMILY("{from: -5, to: 5, value: 5}",
+            "mass: {from: 1, to: 50}, rotation: {from: -1, to: 1}, spin: {from: 0, to: 2}"),
+     NULL},
+    {FAMILY("{from: -5}", "mass: 50"), "7:11: error: a family of launches needs the key 'to'"},
+    {FAMILY("{from: 5, to: -5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and -5)"},
+    {FAMILY("{from: 5, to: 5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and 5)"},
+    {FAMILY("{from: .nan, to: 5}", "mass: 50"), "7:18: error: from must be a number (got .nan)"},
+    {FAMILY("{from: -5, to: .inf}", "mass: 50"), "7:26: error: to must be a number (got .inf)"},
+    {FAMILY("{from: -2e6, to: 5}", "mass: 50"), "7:18: error: from must be from -1e+06 to 1e+06 m (got -2e6)"},
+    {FAMILY("{from: -5, to: 5, value: 6}", "mass: 50"), "7:36: error: x: value must be from -5 to 5 (got 6)"},
+    {FAMILY("{from: -5, to: 5, step: 1}", "mass: 50"),
+     "7:29: error: 'step' is not a key of a family of launches; known: from, to, value"},
+    {FAMILY("[-5, 5]", "mass: 50"), "7:11: error: x must be a number (got a list)"},
+    {FAMILY("1", "mass: {from: 0, to: 50}"), "7:48: error: from must be greater than 0 (got 0)"},
+    {FAMILY("1", "mass: 50, frame: {from: 1, to: 2}"),
+     "7:52: error: frame must be a whole number from 0 to 1000000 (got a mapping)"},
+    /* The end of the family that is farthest away is the fastest. */
+    {FAMILY("{from: -5, to: 9000}", "mass: 50, velocity: {times_position: -1.5}"),
+     "7:74: error: the bomb's start velocity is (-13500, -22.5) m/s; the largest allowed component is 10000"},
+};
+
 static const Refused networks[] = {
     {BASE GROUND "networks: x.npz\n", "7:11: error: networks must be a mapping of methods to files (got x.npz)"},
     {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name must consist of a-z, 0-9 and - (got Pair)"},
@@ -177,6 +201,7 @@ static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers
 static void bodies_are_checked(void **state) { (void)state, CHECK_TABLE(bodies); }
 static void untils_are_checked(void **state) { (void)state, CHECK_TABLE(untils); }
 static void bombs_are_checked(void **state) { (void)state, CHECK_TABLE(bombs); }
+static void families_are_checked(void **state) { (void)state, CHECK_TABLE(families); }
 static void networks_are_checked(void **state) { (void)state, CHECK_TABLE(networks); }
 static void yaml_is_checked(void **state) { (void)state, CHECK_TABLE(yaml); }
 
@@ -297,6 +322,7 @@ int main(void) {
         cmocka_unit_test(bodies_are_checked),
         cmocka_unit_test(untils_are_checked),
         cmocka_unit_test(bombs_are_checked),
+        cmocka_unit_test(families_are_checked),
         cmocka_unit_test(networks_are_checked),
         cmocka_unit_test(yaml_is_checked),
         cmocka_unit_test(nul_bytes_are_refused),

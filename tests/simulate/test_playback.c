@@ -29,7 +29,7 @@ static void the_nearest_launch_is_played(void **state) {
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
-    launches_for_training(scene, 2, recorded);
+    assert_ok(launches_for_training(scene, 2, recorded, &error), error);
     scene_destroy(scene);
     for (int i = 0; i < 2; i++) {
         Trajectory *played = run("playback:launches=2", recorded[i].x * 0.3f, 20);

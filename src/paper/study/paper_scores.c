@@ -36,7 +36,7 @@ static bool launched_begin(Launched *launched, const char *path, int count, Erro
     bool ok = launches != NULL && launched->launches != NULL && launched->states != NULL;
     if (!ok) error_memory(error, path);
     if (ok && !launched->scene->bomb.present) ok = error_input(error, path, "the scene has no bomb");
-    if (ok) launches_for_scoring(launched->scene, count, launches);
+    ok = ok && launches_for_scoring(launched->scene, count, launches, error);
     for (int i = 0; ok && i < count; i++) launched->launches[i] = launch_scene(launched->scene, &launches[i]);
     free(launches);
     if (!ok) launched_free(launched);
