@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-enum { NODES_MAX = 60, EDGES_MAX = 400, ROWS_MAX = 3 * NODES_MAX };
+enum { NODES_MAX = 160, EDGES_MAX = 700, ROWS_MAX = 3 * NODES_MAX };
 
 typedef struct RandomBlocks {
     int count, edge_count;
