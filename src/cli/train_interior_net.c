@@ -9,7 +9,7 @@
 enum { PATH_SIZE = 4096 };
 
 static const Option options[] = {
-    {"--scenes", 0, "N", "Random scenes of each round", OPTION_INT(NetTraining, scenes, 7, 100000), .standard = "700"},
+    {"--scenes", 0, "N", "Random scenes of each round", OPTION_INT(NetTraining, scenes, 7, 100000), .standard = "300"},
     {"--rounds", 0, "N", "Rounds; the scenes of the first are run without the network, those of the others with it",
      OPTION_INT(NetTraining, rounds, 1, NET_ROUNDS_MAX), .standard = "3"},
     {"--epochs", 0, "N", "Epochs of each round", OPTION_INT(NetTraining, epochs, 1, 100000), .standard = "20"},
@@ -32,8 +32,7 @@ static bool run(const TrainRequest *request, Error *error) {
     NetTraining training = {.on_score = print_score};
     InteriorNet net;
     char command[sizeof net.command], state[PATH_SIZE];
-    if (!train_read(request, &training, error) ||
-        !file_path(state, sizeof state, error, "%s.part", request->output))
+    if (!train_read(request, &training, error) || !file_path(state, sizeof state, error, "%s.part", request->output))
         return false;
     train_describe(request, command, sizeof command);
     training.command = command;
@@ -52,8 +51,8 @@ static bool run(const TrainRequest *request, Error *error) {
     return true;
 }
 
-const TrainKind train_interior_net = {
-    "interior-net", NULL,
-    "the network of interior-net, on random scenes. Prints held-out errors after each round. An interrupted training is "
-    "resumed by the same command; its state is in NET.npz.part",
-    options, run};
+const TrainKind train_interior_net = {"interior-net", NULL,
+                                      "the network of interior-net, on random scenes. Prints held-out errors after "
+                                      "each round. An interrupted training is "
+                                      "resumed by the same command; its state is in NET.npz.part",
+                                      options, run};

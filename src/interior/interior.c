@@ -8,7 +8,8 @@
 /* Hand-tuned, for the fewest iterations at impacts of the stack and the pyramids. The scale of velocities is 4 times the
    residual at the start plus `calm` (m/s); impulses and slips start at half of it beyond their values, and tau^2 at
    `first` times its square. tau^2 falls to `shrink` of itself, or to `follow` times the squared residual. */
-static const double scale_of_residual = 4, calm = 0.01, inside = 0.5, first = 0.25, shrink = 0.15, follow = 0.05;
+static const double scale_of_residual = 4, calm = 0.01, inside = 0.5, first = 0.25;
+const double interior_shrink = 0.15, interior_follow = 0.05;
 /* Iterations have broken down, as in a problem without a solution, if the residual is this multiple of the scale. */
 static const double lost = 1e6;
 
@@ -21,9 +22,8 @@ const InteriorKernels *interior_best(void) {
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* Moves the start to the inside of all bounds. */
-static void begin(Interior *s, double scale) {
-    const double off = inside * scale;
+double interior_begin(Interior *s) {
+    const double scale = scale_of_residual * s->residual + calm, off = inside * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         for (int k = 0; k < GROUP_SLOTS; k++) {
@@ -36,14 +36,14 @@ static void begin(Interior *s, double scale) {
             g->q[k] = larger(slip, 0) + off;
         }
     }
+    return s->first_target = first * scale * scale;
 }
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, double near, int most) {
-    const double scale = scale_of_residual * s->residual + calm;
-    begin(s, scale);
-    double target = first * scale * scale, estimate = 0;
+    double target = interior_begin(s), estimate = 0;
+    const double scale = sqrt(target / first);
     for (s->iterations = 0; s->iterations < most;) {
-        const double next = larger(shrink * target, follow * estimate * estimate);
+        const double next = larger(interior_shrink * target, interior_follow * estimate * estimate);
         target = next < target ? next : target;
         s->residual = estimate = kernels->iterate(s, target);
         s->iterations++;

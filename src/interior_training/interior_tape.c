@@ -39,7 +39,8 @@ static double along(const UnrolledInterior *u, int slot, bool tangent, const dou
     const InteriorPair *pair = pair_of(u, slot);
     const Rows rows = rows_of(pair, slot);
     const double *a = x + (ptrdiff_t)4 * pair->a, *b = x + (ptrdiff_t)4 * pair->b;
-    return tangent ? dot3(rows.tangent_a, a) + dot3(rows.tangent_b, b) : dot3(rows.normal_a, a) + dot3(rows.normal_b, b);
+    return tangent ? dot3(rows.tangent_a, a) + dot3(rows.tangent_b, b)
+                   : dot3(rows.normal_a, a) + dot3(rows.normal_b, b);
 }
 
 /* block += left right^T */

@@ -11,7 +11,7 @@ enum { BATCH = 64 };
 
 /* The residual decides after which iteration a solve stops, so the answers of all but the first count. The logarithm
    follows the median; the tail term follows the mean, which a few hits dominate. */
-static const InteriorTask task = {.first = 2, .last = 6, .floor = 0.005, .tail = 0.2};
+static const InteriorTask task = {.first = 2, .last = 7, .floor = 0.003, .tail = 0.5};
 /* Of Adam. The slopes of one problem are limited, as an iteration can amplify them without bound. */
 static const double decay = 0.9, square_decay = 0.99, slope_max = 2;
 static const double error_max = 1e3; /* m/s: what a failed solve counts */
@@ -79,7 +79,8 @@ static double power(double x, int n) {
 
 static void step(NetFit *fit, NetState *state, int count, double rate) {
     state->steps++;
-    const double over_mean = 1 / (1 - power(decay, state->steps)), over_square = 1 / (1 - power(square_decay, state->steps));
+    const double over_mean = 1 / (1 - power(decay, state->steps)),
+                 over_square = 1 / (1 - power(square_decay, state->steps));
     for (int k = 0; k < INTERIOR_NET_WEIGHTS; k++) {
         double sum = 0;
         for (int i = 0; i < count; i++) sum += fit->slopes[(ptrdiff_t)INTERIOR_NET_WEIGHTS * i + k];
@@ -121,8 +122,7 @@ static bool solve_all(NetFit *fit, const double *weights, const ImpactProblems *
         const ImpactProblem *item = &problems->items[i];
         UnrolledInterior *unrolled = &fit->unrolled[omp_get_thread_num()];
         double loss;
-        const bool done =
-            unrolled_interior_loss(unrolled, &item->problem, item->reference, weights, &all, &loss, NULL);
+        const bool done = unrolled_interior_loss(unrolled, &item->problem, item->reference, weights, &all, &loss, NULL);
         ok = ok && done;
         for (int k = 0; k < UNROLLED_ITERATIONS_MAX; k++) {
             const double found = unrolled->errors[k];

@@ -13,11 +13,10 @@ enum { VERSION = 1, ARRAYS = 4 };
 
 /* One list for writing and reading. */
 static void list(NetState *state, NpzArray arrays[ARRAYS]) {
-    const NpzArray all[ARRAYS] = {
-        {"weights", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->weights},
-        {"mean", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->mean},
-        {"square", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->square},
-        {"drivers", NPZ_FLOAT64, 2, {NET_ROUNDS_MAX, INTERIOR_NET_WEIGHTS}, state->drivers}};
+    const NpzArray all[ARRAYS] = {{"weights", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->weights},
+                                  {"mean", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->mean},
+                                  {"square", NPZ_FLOAT64, 1, {INTERIOR_NET_WEIGHTS}, state->square},
+                                  {"drivers", NPZ_FLOAT64, 2, {NET_ROUNDS_MAX, INTERIOR_NET_WEIGHTS}, state->drivers}};
     memcpy(arrays, all, sizeof all);
 }
 

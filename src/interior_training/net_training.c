@@ -72,7 +72,8 @@ static bool hold_out(Trainer *trainer, Error *error) {
             ok = impact_problems_add(&trainer->held_out, &all.items[i].problem, all.items[i].reference, true) ||
                  error_memory(error, "interior-net");
     impact_problems_free(&all);
-    return ok && (trainer->held_out.count > 0 || error_input(error, "interior-net", "no bomb hits: more scenes needed"));
+    return ok &&
+           (trainer->held_out.count > 0 || error_input(error, "interior-net", "no bomb hits: more scenes needed"));
 }
 
 /* Weights of the hidden layer; zero weights of the outputs leave the iterations as they are. */
@@ -86,7 +87,8 @@ static void first_weights(double *weights, uint64_t seed) {
 
 static bool score(Trainer *trainer, double loss, Error *error) {
     static const double silent[INTERIOR_NET_WEIGHTS] = {0};
-    NetScore result = {trainer->state.round, trainer->state.epoch, (int)trainer->problems.count, loss, {{0}, {0}}, {{0}, {0}}};
+    NetScore result = {
+        trainer->state.round, trainer->state.epoch, (int)trainer->problems.count, loss, {{0}, {0}}, {{0}, {0}}};
     if (trainer->training->on_score == NULL) return true;
     if (!net_fit_errors(&trainer->fit, trainer->state.weights, &trainer->held_out, &result.with, error) ||
         !net_fit_errors(&trainer->fit, silent, &trainer->held_out, &result.without, error))

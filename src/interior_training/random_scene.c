@@ -30,7 +30,9 @@ static float draw(Maker *maker, double low, double high) {
     return (float)(low + (high - low) * (double)(next_bits(&maker->state) >> 11) * 0x1p-53);
 }
 
-static float draw_log(Maker *maker, double low, double high) { return (float)exp((double)draw(maker, log(low), log(high))); }
+static float draw_log(Maker *maker, double low, double high) {
+    return (float)exp((double)draw(maker, log(low), log(high)));
+}
 
 /* low .. high, both possible. */
 static int draw_int(Maker *maker, int low, int high) {
@@ -53,14 +55,14 @@ static float add_column(Maker *maker, float x, int boxes, float mass, float gap)
 
 static Shape make_stack(Maker *maker) {
     const float mass = draw_log(maker, 1, 10);
-    const int boxes = draw_int(maker, 3, 20);
+    const int boxes = draw_int(maker, 4, 25);
     const float height = add_column(maker, 0, boxes, mass, draw_int(maker, 0, 2) == 0 ? 0.05f : 0);
     return (Shape){0.5f, height, mass};
 }
 
 static Shape make_tower(Maker *maker) {
     float height = 0;
-    for (int i = draw_int(maker, 3, 18); i > 0; i--) {
+    for (int i = draw_int(maker, 4, 20); i > 0; i--) {
         const Vec2 size = vec2(draw(maker, 0.8, 2), draw(maker, 0.5, 1.2));
         BodyDef *body =
             add(maker, size, draw_log(maker, 1, 30), vec2(draw(maker, -0.1, 0.1), height + size.y * 0.5f + 0.005f));
@@ -72,7 +74,7 @@ static Shape make_tower(Maker *maker) {
 
 static Shape make_pyramid(Maker *maker) {
     const float mass = draw_log(maker, 1, 10);
-    const int rows = draw_int(maker, 3, 7);
+    const int rows = draw_int(maker, 4, 8);
     for (int row = 0; row < rows; row++)
         for (int i = 0; i < rows - row; i++)
             add(maker, vec2(1, 1), mass,
@@ -82,7 +84,7 @@ static Shape make_pyramid(Maker *maker) {
 
 static Shape make_wall(Maker *maker) {
     const float mass = draw_log(maker, 1, 10);
-    const int rows = draw_int(maker, 3, 6), columns = draw_int(maker, 3, 6);
+    const int rows = draw_int(maker, 4, 6), columns = draw_int(maker, 3, 6);
     for (int row = 0; row < rows; row++)
         for (int i = 0; i < columns; i++)
             add(maker, vec2(1, 1), mass,
@@ -94,7 +96,7 @@ static void add_side(Maker *maker, float x) { add(maker, vec2(1, 40), 1, vec2(x,
 
 static Shape make_pile(Maker *maker) {
     const float mass = draw_log(maker, 1, 10);
-    const int boxes = draw_int(maker, 8, 36);
+    const int boxes = draw_int(maker, 12, 38);
     add_side(maker, -4.5f);
     add_side(maker, 4.5f);
     for (int i = 0; i < boxes; i++) {
@@ -107,7 +109,7 @@ static Shape make_pile(Maker *maker) {
 
 static Shape make_gate(Maker *maker) {
     const float mass = draw_log(maker, 1, 10), apart = draw(maker, 1.5, 3);
-    const int boxes = draw_int(maker, 2, 8), beams = draw_int(maker, 1, 2);
+    const int boxes = draw_int(maker, 3, 12), beams = draw_int(maker, 1, 2);
     add_column(maker, -apart, boxes, mass, 0);
     float height = add_column(maker, apart, boxes, mass, 0);
     for (int i = 0; i < beams; i++, height += 0.6f)
@@ -117,11 +119,10 @@ static Shape make_gate(Maker *maker) {
 
 static Shape make_dominoes(Maker *maker) {
     const float mass = draw_log(maker, 1, 10);
-    const int boxes = 2 * draw_int(maker, 2, 12);
+    const int boxes = 2 * draw_int(maker, 4, 12);
     const float left = -0.35f * (float)boxes;
     for (int i = 0; i < boxes; i++) add(maker, vec2(0.2f, 2), mass, vec2(left + (float)i * 0.7f, 1));
-    for (int i = 0; i < boxes / 2; i++)
-        add(maker, vec2(1.38f, 0.2f), mass, vec2(left + 0.35f + (float)i * 1.4f, 2.1f));
+    for (int i = 0; i < boxes / 2; i++) add(maker, vec2(1.38f, 0.2f), mass, vec2(left + 0.35f + (float)i * 1.4f, 2.1f));
     return (Shape){-left, 2, mass};
 }
 
@@ -130,7 +131,7 @@ typedef struct Family {
     int settle; /* frames */
 } Family;
 
-static const Family families[] = {{make_stack, 60}, {make_tower, 60}, {make_pyramid, 90},  {make_wall, 90},
+static const Family families[] = {{make_stack, 60}, {make_tower, 60}, {make_pyramid, 90}, {make_wall, 90},
                                   {make_pile, 240}, {make_gate, 60},  {make_dominoes, 60}};
 enum { FAMILIES = sizeof families / sizeof *families };
 

@@ -111,14 +111,14 @@ static inline void run_back(int operation, const Operands *o) {
 }
 
 /* A constant operation in each branch, so that each loop is compiled for its own. */
-#define FOR_EACH_OPERATION(function)                                        \
-    switch (operation) {                                                    \
-    case TAPE_ADD: function(TAPE_ADD, operands); break;                     \
-    case TAPE_SUBTRACT: function(TAPE_SUBTRACT, operands); break;           \
-    case TAPE_MULTIPLY: function(TAPE_MULTIPLY, operands); break;           \
-    case TAPE_DIVIDE: function(TAPE_DIVIDE, operands); break;               \
-    case TAPE_LARGER: function(TAPE_LARGER, operands); break;               \
-    default: function(TAPE_SMALLER, operands); break;                       \
+#define FOR_EACH_OPERATION(function)                              \
+    switch (operation) {                                          \
+    case TAPE_ADD: function(TAPE_ADD, operands); break;           \
+    case TAPE_SUBTRACT: function(TAPE_SUBTRACT, operands); break; \
+    case TAPE_MULTIPLY: function(TAPE_MULTIPLY, operands); break; \
+    case TAPE_DIVIDE: function(TAPE_DIVIDE, operands); break;     \
+    case TAPE_LARGER: function(TAPE_LARGER, operands); break;     \
+    default: function(TAPE_SMALLER, operands); break;             \
     }
 
 static Operands operands_of(Tape *tape, const TapeNode *node) {

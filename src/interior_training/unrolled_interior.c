@@ -7,16 +7,15 @@
 #include <stddef.h>
 
 /* As in interior.c and interior_code.h. */
-static const double kept = 0.15, stiffest = 1e12;
+static const double kept = 0.15, kept_slip = 0.15, kept_distance = 0.15, stiffest = 1e12;
 
 /* The problem and the iterate. */
 typedef struct Nodes {
-    TapeId mass_normal, mass_tangent, inverse_normal, inverse_tangent, friction, bias, weight, free_normal,
-        free_tangent;
+    TapeId mass_normal, mass_tangent, inverse_normal, inverse_tangent, friction, bias;
     TapeId masses, inverses, start, one, zero;
     TapeId weights[INTERIOR_NET_WEIGHTS];
     TapeId l, t, z, p, q, normal, tangent, velocities, answer_normal, answer_tangent;
-    TapeId target, residual;
+    TapeId first_target, target, estimate;
 } Nodes;
 
 /* Of an iteration. */
@@ -60,9 +59,6 @@ static Nodes begin(UnrolledInterior *u, const double *weights) {
                .inverse_tangent = MEMBER(u, inverse_tangent),
                .friction = MEMBER(u, friction),
                .bias = MEMBER(u, bias),
-               .weight = MEMBER(u, weight),
-               .free_normal = MEMBER(u, free_normal),
-               .free_tangent = MEMBER(u, free_tangent),
                .masses = bodies(u, s->masses),
                .inverses = bodies(u, s->inverses),
                .start = bodies(u, s->start),
@@ -88,7 +84,7 @@ static void inputs_of(Tape *t, const Nodes *n, TapeId inputs[INTERIOR_NET_INPUTS
     const TapeId gap = tape_divide(t, tape_subtract(t, n->normal, n->bias), n->z);
     inputs[0] = tape_scale(t, 0.25, tape_subtract(t, log_l, scale));
     inputs[1] = tape_scale(t, 0.25, tape_subtract(t, log_z, scale));
-    inputs[2] = tape_clamp(t, tape_subtract(t, gap, n->one), tape_number(t, INTERIOR_NET_GAP));
+    inputs[2] = tape_clamp(t, tape_subtract(t, gap, n->one), tape_number(t, INTERIOR_NET_INPUT));
 }
 
 /* bias + weights inputs */
@@ -98,18 +94,38 @@ static TapeId row(Tape *t, const TapeId *weights, TapeId bias, const TapeId *inp
     return sum;
 }
 
+static void globals_of(Tape *t, const Nodes *n, int step, TapeId globals[INTERIOR_NET_GLOBALS]) {
+    const TapeId scale = tape_scale(t, 0.5, tape_one(t, TAPE_LOG2, n->target));
+    const TapeId first = tape_scale(t, 0.5, tape_one(t, TAPE_LOG2, n->first_target));
+    const TapeId residual = tape_one(t, TAPE_LOG2, tape_add(t, n->estimate, tape_number(t, INTERIOR_NET_SMALL)));
+    const TapeId gap = tape_number(t, INTERIOR_NET_INPUT);
+    globals[0] = n->one;
+    globals[1] = tape_number(t, step == 0);
+    globals[2] = tape_clamp(t, tape_scale(t, 0.125, tape_subtract(t, scale, first)), gap);
+    globals[3] = tape_clamp(t, tape_scale(t, 0.25, tape_subtract(t, residual, scale)), gap);
+}
+
+static TapeId bias_of(Tape *t, const TapeId *weights, int stride, const TapeId *globals) {
+    TapeId sum = weights[0];
+    for (int i = 1; i < INTERIOR_NET_GLOBALS; i++)
+        sum = tape_add(t, sum, tape_multiply(t, weights[i * stride], globals[i]));
+    return sum;
+}
+
 static void evaluate(Tape *t, const Nodes *n, int step, const TapeId *inputs, TapeId *outputs) {
+    TapeId globals[INTERIOR_NET_GLOBALS];
+    globals_of(t, n, step, globals);
     TapeId hidden[INTERIOR_NET_HIDDEN];
     for (int i = 0; i < INTERIOR_NET_HIDDEN; i++) {
-        const TapeId x =
-            row(t, n->weights + INTERIOR_NET_HIDDEN_WEIGHTS + i * INTERIOR_NET_INPUTS,
-                n->weights[INTERIOR_NET_HIDDEN_BIASES + step * INTERIOR_NET_HIDDEN + i], inputs, INTERIOR_NET_INPUTS);
+        const TapeId x = row(t, n->weights + INTERIOR_NET_HIDDEN_WEIGHTS + i * INTERIOR_NET_INPUTS,
+                             bias_of(t, n->weights + INTERIOR_NET_HIDDEN_BIASES + i, INTERIOR_NET_HIDDEN, globals),
+                             inputs, INTERIOR_NET_INPUTS);
         hidden[i] = tape_larger(t, x, tape_scale(t, INTERIOR_NET_LEAK, x));
     }
     for (int i = 0; i < INTERIOR_NET_OUTPUTS; i++) {
-        const TapeId x =
-            row(t, n->weights + INTERIOR_NET_OUTPUT_WEIGHTS + i * INTERIOR_NET_HIDDEN,
-                n->weights[INTERIOR_NET_OUTPUT_BIASES + step * INTERIOR_NET_OUTPUTS + i], hidden, INTERIOR_NET_HIDDEN);
+        const TapeId x = row(t, n->weights + INTERIOR_NET_OUTPUT_WEIGHTS + i * INTERIOR_NET_HIDDEN,
+                             bias_of(t, n->weights + INTERIOR_NET_OUTPUT_BIASES + i, INTERIOR_NET_OUTPUTS, globals),
+                             hidden, INTERIOR_NET_HIDDEN);
         outputs[i] = tape_one(t, TAPE_POWER2, tape_clamp(t, x, tape_number(t, INTERIOR_NET_LIMIT)));
     }
 }
@@ -117,7 +133,7 @@ static void evaluate(Tape *t, const Nodes *n, int step, const TapeId *inputs, Ta
 static void linearise(UnrolledInterior *u, Nodes *n, int step, Linear *by) {
     Tape *t = &u->tape;
     TapeId aim_normal = n->target;
-    if (step < INTERIOR_NET_STEPS) {
+    if (tape_values(t, n->estimate)[0] > INTERIOR_NET_UNTIL) {
         TapeId inputs[INTERIOR_NET_INPUTS], outputs[INTERIOR_NET_OUTPUTS];
         inputs_of(t, n, inputs);
         evaluate(t, n, step, inputs, outputs);
@@ -144,8 +160,8 @@ static void linearise(UnrolledInterior *u, Nodes *n, int step, Linear *by) {
     const TapeId p = tape_multiply(t, n->p, by->upper), q = tape_multiply(t, n->q, by->lower);
     by->dt = tape_divide(t, n->one, tape_add(t, p, q));
     by->s = tape_multiply(t, tape_multiply(t, n->friction, tape_subtract(t, p, q)), by->dt);
-    const TapeId slip = tape_add(
-        t, n->tangent, tape_multiply(t, by->aim_tangent, tape_subtract(t, by->upper, by->lower)));
+    const TapeId slip =
+        tape_add(t, n->tangent, tape_multiply(t, by->aim_tangent, tape_subtract(t, by->upper, by->lower)));
     by->rt = tape_negative(t, tape_multiply(t, by->dt, slip));
 }
 
@@ -154,8 +170,8 @@ typedef struct Changes {
 } Changes;
 
 /* J_n dv and J_t dv of a solve with the impulses l + r_n and t + r_t + s r_n. */
-static void solve_changes(UnrolledInterior *u, const Nodes *n, const Linear *by, TapeId factor, TapeId *normal,
-                          TapeId *tangent) {
+static TapeId solve_changes(UnrolledInterior *u, const Nodes *n, const Linear *by, TapeId factor, TapeId *normal,
+                            TapeId *tangent) {
     Tape *t = &u->tape;
     const TapeId impulse_normal = tape_add(t, n->l, by->rn);
     const TapeId impulse_tangent = tape_add(t, tape_add(t, n->t, by->rt), tape_multiply(t, by->s, by->rn));
@@ -164,6 +180,7 @@ static void solve_changes(UnrolledInterior *u, const Nodes *n, const Linear *by,
     const TapeId x = interior_tape_solve(u, factor, right);
     *normal = interior_tape_normal(u, x);
     *tangent = interior_tape_tangent(u, x);
+    return x;
 }
 
 /* second_p, second_q: -1 for zero */
@@ -178,10 +195,10 @@ static Changes changes_of(Tape *t, const Nodes *n, const Linear *g, TapeId norma
     by.lower = tape_add(t, bound, by.t);
     const TapeId aim_p = second_p < 0 ? g->aim_tangent : tape_add(t, g->aim_tangent, second_p);
     const TapeId aim_q = second_q < 0 ? g->aim_tangent : tape_add(t, g->aim_tangent, second_q);
-    by.p = tape_subtract(t, tape_multiply(t, tape_subtract(t, aim_p, tape_multiply(t, n->p, by.upper)), g->upper),
-                         n->p);
-    by.q = tape_subtract(t, tape_multiply(t, tape_subtract(t, aim_q, tape_multiply(t, n->q, by.lower)), g->lower),
-                         n->q);
+    by.p =
+        tape_subtract(t, tape_multiply(t, tape_subtract(t, aim_p, tape_multiply(t, n->p, by.upper)), g->upper), n->p);
+    by.q =
+        tape_subtract(t, tape_multiply(t, tape_subtract(t, aim_q, tape_multiply(t, n->q, by.lower)), g->lower), n->q);
     return by;
 }
 
@@ -193,53 +210,62 @@ static void correct(Tape *t, const Nodes *n, Linear *g, TapeId normal, TapeId ta
     const TapeId over = tape_multiply(t, n->p, tape_subtract(t, g->bound, n->t)),
                  under = tape_multiply(t, n->q, tape_add(t, g->bound, n->t));
     g->rn = tape_subtract(t, g->rn, tape_multiply(t, first, g->over_z));
-    *second_p = tape_negative(
-        t, tape_clamp(t, tape_multiply(t, by.p, by.upper), tape_larger(t, g->aim_tangent, over)));
-    *second_q = tape_negative(
-        t, tape_clamp(t, tape_multiply(t, by.q, by.lower), tape_larger(t, g->aim_tangent, under)));
-    g->rt = tape_subtract(t, g->rt,
-                          tape_multiply(t, g->dt,
-                                        tape_subtract(t, tape_multiply(t, *second_p, g->upper),
-                                                      tape_multiply(t, *second_q, g->lower))));
+    *second_p = tape_negative(t, tape_clamp(t, tape_multiply(t, by.p, by.upper), tape_larger(t, g->aim_tangent, over)));
+    *second_q =
+        tape_negative(t, tape_clamp(t, tape_multiply(t, by.q, by.lower), tape_larger(t, g->aim_tangent, under)));
+    g->rt = tape_subtract(
+        t, g->rt,
+        tape_multiply(t, g->dt,
+                      tape_subtract(t, tape_multiply(t, *second_p, g->upper), tape_multiply(t, *second_q, g->lower))));
 }
 
-static void advance(Tape *t, Nodes *n, const Linear *g, const Changes *by) {
-    const TapeId keep = tape_number(t, kept), almost = tape_number(t, 1 - 1e-13);
-    const TapeId full = tape_add(t, n->l, by->l), tangent = tape_add(t, n->t, by->t);
-    const TapeId l = tape_larger(t, full, tape_multiply(t, keep, n->l));
-    const TapeId used = tape_divide(t, tape_magnitude(t, n->t), g->bound);
-    const TapeId share = tape_subtract(t, n->one, tape_multiply(t, keep, tape_subtract(t, n->one, used)));
-    n->answer_normal = tape_larger(t, full, n->zero);
-    n->answer_tangent = tape_clamp(t, tangent, tape_multiply(t, n->friction, n->answer_normal));
-    n->z = tape_larger(t, tape_add(t, n->z, by->z), tape_multiply(t, keep, n->z));
-    n->p = tape_larger(t, tape_add(t, n->p, by->p), tape_multiply(t, keep, n->p));
-    n->q = tape_larger(t, tape_add(t, n->q, by->q), tape_multiply(t, keep, n->q));
-    n->t = tape_clamp(t, tangent,
-                      tape_multiply(t, tape_multiply(t, tape_smaller(t, share, almost), n->friction), l));
+/* The iterate stays inside all bounds. */
+static void limit(Tape *t, Nodes *n, const Linear *g, const Changes *by) {
+    const TapeId keep = tape_number(t, kept), keep_slip = tape_number(t, kept_slip);
+    const TapeId distance = tape_number(t, kept_distance), almost = tape_number(t, 1 - 1e-13);
+    const TapeId l = tape_larger(t, tape_add(t, n->l, by->l), tape_multiply(t, keep, n->l));
+    const TapeId bound = tape_multiply(t, n->friction, l), inner = tape_multiply(t, almost, bound);
+    const TapeId most =
+        tape_smaller(t, tape_subtract(t, bound, tape_multiply(t, distance, tape_subtract(t, g->bound, n->t))), inner);
+    const TapeId least = tape_larger(
+        t, tape_subtract(t, tape_multiply(t, distance, tape_add(t, g->bound, n->t)), bound), tape_negative(t, inner));
+    n->t = tape_larger(t, tape_smaller(t, tape_add(t, n->t, by->t), most), least);
     n->l = l;
+    n->z = tape_larger(t, tape_add(t, n->z, by->z), tape_multiply(t, keep, n->z));
+    n->p = tape_larger(t, tape_add(t, n->p, by->p), tape_multiply(t, keep_slip, n->p));
+    n->q = tape_larger(t, tape_add(t, n->q, by->q), tape_multiply(t, keep_slip, n->q));
 }
 
-/* Velocities of the answer. */
-static void apply_answer(UnrolledInterior *u, Nodes *n) {
-    Tape *t = &u->tape;
-    const TapeId change =
-        tape_multiply(t, interior_tape_push(u, n->answer_normal, n->answer_tangent), n->inverses);
-    n->velocities = tape_add(t, n->start, change);
-    n->normal = tape_add(t, n->free_normal, interior_tape_normal(u, change));
-    n->tangent = tape_add(t, n->free_tangent, interior_tape_tangent(u, change));
-}
+static TapeId square(Tape *t, TapeId x) { return tape_multiply(t, x, x); }
 
-static TapeId residual_of(UnrolledInterior *u, const Nodes *n) {
+/* Of the answer, at the velocities of the full step, and of what the projection into the cones changes. */
+static TapeId estimate_of(UnrolledInterior *u, const Nodes *n, TapeId l, TapeId tangential) {
     Tape *t = &u->tape;
-    const TapeId normal = tape_smaller(t, tape_multiply(t, n->answer_normal, n->inverse_normal),
-                                       tape_subtract(t, n->normal, n->bias));
+    const TapeId normal =
+        tape_smaller(t, tape_multiply(t, n->answer_normal, n->inverse_normal), tape_subtract(t, n->normal, n->bias));
     const TapeId bound = tape_multiply(t, n->friction, n->answer_normal);
-    const TapeId wanted = tape_clamp(
-        t, tape_subtract(t, n->answer_tangent, tape_multiply(t, n->mass_tangent, n->tangent)), bound);
+    const TapeId wanted =
+        tape_clamp(t, tape_subtract(t, n->answer_tangent, tape_multiply(t, n->mass_tangent, n->tangent)), bound);
     const TapeId tangent = tape_multiply(t, tape_subtract(t, n->answer_tangent, wanted), n->inverse_tangent);
-    const TapeId squares = tape_add(t, tape_multiply(t, normal, normal), tape_multiply(t, tangent, tangent));
-    const TapeId sum = tape_one(t, TAPE_SUM, tape_multiply(t, n->weight, squares));
-    return tape_one(t, TAPE_ROOT, tape_scale(t, 1.0 / u->interior.contact_count, sum));
+    const TapeId off_normal = tape_multiply(t, tape_subtract(t, l, n->answer_normal), n->inverse_normal);
+    const TapeId off_tangent = tape_multiply(t, tape_subtract(t, tangential, n->answer_tangent), n->inverse_tangent);
+    const TapeId squares = tape_add(t, tape_add(t, square(t, normal), square(t, tangent)),
+                                    tape_add(t, square(t, off_normal), square(t, off_tangent)));
+    return tape_one(t, TAPE_ROOT, tape_scale(t, 1.0 / u->interior.contact_count, tape_one(t, TAPE_SUM, squares)));
+}
+
+/* The next iterate, and the answer: the full step, inside the cone. */
+static void advance(UnrolledInterior *u, Nodes *n, const Linear *g, TapeId x, TapeId normal, TapeId tangent,
+                    const Changes *by) {
+    Tape *t = &u->tape;
+    const TapeId l = tape_add(t, n->l, by->l), tangential = tape_add(t, n->t, by->t);
+    n->answer_normal = tape_larger(t, l, n->zero);
+    n->answer_tangent = tape_clamp(t, tangential, tape_multiply(t, n->friction, n->answer_normal));
+    limit(t, n, g, by);
+    n->velocities = tape_add(t, n->velocities, x);
+    n->normal = tape_add(t, n->normal, normal);
+    n->tangent = tape_add(t, n->tangent, tangent);
+    n->estimate = estimate_of(u, n, l, tangential);
 }
 
 static void iterate(UnrolledInterior *u, Nodes *n, int step) {
@@ -250,24 +276,23 @@ static void iterate(UnrolledInterior *u, Nodes *n, int step) {
     TapeId normal, tangent, second_p, second_q;
     solve_changes(u, n, &by, factor, &normal, &tangent);
     correct(t, n, &by, normal, tangent, &second_p, &second_q);
-    solve_changes(u, n, &by, factor, &normal, &tangent);
+    const TapeId x = solve_changes(u, n, &by, factor, &normal, &tangent);
     const Changes changes = changes_of(t, n, &by, normal, tangent, second_p, second_q);
-    advance(t, n, &by, &changes);
-    apply_answer(u, n);
-    n->residual = residual_of(u, n);
+    advance(u, n, &by, x, normal, tangent, &changes);
 }
 
 /* The schedule of interior_iterate(). */
 static void next_target(Tape *t, Nodes *n, int step) {
     TapeId next = tape_scale(t, interior_shrink, n->target);
-    if (step > 0) next = tape_larger(t, next, tape_scale(t, interior_follow, tape_multiply(t, n->residual, n->residual)));
+    if (step > 0) next = tape_larger(t, next, tape_scale(t, interior_follow, square(t, n->estimate)));
     n->target = tape_smaller(t, next, n->target);
 }
 
-/* Weights of squared velocities and the reference, [count + 1] by position. */
+/* Of the velocities that the answer's impulses make. */
 static TapeId error_of(UnrolledInterior *u, const Nodes *n, TapeId reference, TapeId weights) {
     Tape *t = &u->tape;
-    const TapeId by = tape_subtract(t, n->velocities, reference);
+    const TapeId push = interior_tape_push(u, n->answer_normal, n->answer_tangent);
+    const TapeId by = tape_subtract(t, tape_add(t, n->start, tape_multiply(t, push, n->inverses)), reference);
     return tape_one(t, TAPE_ROOT, tape_one(t, TAPE_SUM, tape_multiply(t, weights, tape_multiply(t, by, by))));
 }
 
@@ -313,13 +338,15 @@ static bool load(UnrolledInterior *u, const ContactProblem *problem) {
 bool unrolled_interior_loss(UnrolledInterior *u, const ContactProblem *problem, const ReferenceVelocity *velocities,
                             const double *weights, const InteriorTask *task, double *loss, double *slopes) {
     *loss = 0;
+    u->interior.net = NULL;
     if (!load(u, problem)) return false;
     if (u->interior.contact_count == 0) return true;
     const double first_target = interior_begin(&u->interior);
     Nodes n = begin(u, weights);
     TapeId reference, masses;
     given_reference(u, problem, velocities, &reference, &masses);
-    n.target = tape_number(&u->tape, first_target);
+    n.first_target = n.target = tape_number(&u->tape, first_target);
+    n.estimate = tape_number(&u->tape, u->interior.residual);
     const TapeId id = loss_of(u, &n, reference, masses, task);
     if (u->tape.failed) return false;
     *loss = tape_values(&u->tape, id)[0];

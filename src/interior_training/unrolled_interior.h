@@ -28,7 +28,7 @@ typedef struct UnrolledInterior {
     struct UnrolledFactor {
         TapeId dn, dt, s;
     } factors[UNROLLED_ITERATIONS_MAX];
-    int factor_count, transposed; /* transposed: the factor whose transposed matrix is factorized; -1: none */
+    int factor_count, transposed;           /* transposed: the factor whose transposed matrix is factorized; -1: none */
     double errors[UNROLLED_ITERATIONS_MAX]; /* m/s, of the answers of the last call */
 } UnrolledInterior;
 

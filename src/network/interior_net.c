@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files: .npz with version, kind ("interior-net"), command, and as float32 hidden_weights[hidden, inputs],
-   output_weights[outputs, hidden], hidden_biases[steps, hidden], output_biases[steps, outputs]. */
+   output_weights[outputs, hidden], hidden_biases[globals, hidden], output_biases[globals, outputs]. */
 #include "network/interior_net.h"
 
 #include "network/file_floats.h"
@@ -23,12 +23,12 @@ static void list_floats(float weights[INTERIOR_NET_WEIGHTS], FileFloats list[ARR
                                      &float_any},
                                     {"hidden_biases",
                                      2,
-                                     {INTERIOR_NET_STEPS, INTERIOR_NET_HIDDEN},
+                                     {INTERIOR_NET_GLOBALS, INTERIOR_NET_HIDDEN},
                                      weights + INTERIOR_NET_HIDDEN_BIASES,
                                      &float_any},
                                     {"output_biases",
                                      2,
-                                     {INTERIOR_NET_STEPS, INTERIOR_NET_OUTPUTS},
+                                     {INTERIOR_NET_GLOBALS, INTERIOR_NET_OUTPUTS},
                                      weights + INTERIOR_NET_OUTPUT_BIASES,
                                      &float_any}};
     memcpy(list, all, sizeof all);

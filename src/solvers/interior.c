@@ -8,6 +8,7 @@
    a frozen impact of scenes/pyramid_settled takes twelve iterations, one of scenes/stack five. */
 #include "interior/interior.h"
 
+#include "solvers/interior_net.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
@@ -15,7 +16,6 @@
 #include <stdlib.h>
 
 enum {
-    START_SWEEPS = 2,
     ITERATIONS_MAX = 40,
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
@@ -30,7 +30,8 @@ static const double rest_below = 0.5, rest_near = 0.001; /* m/s */
 typedef struct State {
     Interior interior;
     Momentum momentum;
-    float near; /* m/s */
+    InteriorNet net; /* of interior-net */
+    float near;      /* m/s */
     float factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
 } State;
 
@@ -63,7 +64,7 @@ static void *create(const Settings *chosen, Error *error) {
 static bool iterate(State *solver, const ContactProblem *problem) {
     const InteriorKernels *kernels = interior_best();
     Sweeps *sweeps = &solver->momentum.sweeps;
-    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) || !sweeps_run(sweeps, START_SWEEPS) ||
+    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) || !sweeps_run(sweeps, INTERIOR_START_SWEEPS) ||
         !interior_load(&solver->interior, kernels, sweeps, problem))
         return false;
     const double near = (double)solver->near, least = near < rest_near ? near : rest_near;
@@ -99,6 +100,32 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
            momentum_solve(&solver->momentum, problem, solver->factors, FALLBACK_SWEEPS, solution, error);
 }
 
+bool interior_net_make(ContactSolver *solver, const InteriorNet *net, Error *error) {
+    const Settings none = {0};
+    State *state = create(&none, error);
+    if (state == NULL) return false;
+    state->net = *net;
+    state->interior.net = &state->net;
+    *solver = (ContactSolver){&solver_interior_net, state};
+    return true;
+}
+
+static void *create_net(const Settings *chosen, Error *error) {
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) {
+        error_input(error, "interior-net", "the scene names no network for it: use interior-net:network=FILE");
+        return NULL;
+    }
+    State *solver = create(chosen, error);
+    if (solver == NULL) return NULL;
+    if (!interior_net_read(&solver->net, path, error)) {
+        destroy(solver);
+        return NULL;
+    }
+    solver->interior.net = &solver->net;
+    return solver;
+}
+
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     if (!iterate(solver, problem)) return error_memory(error, "interior");
@@ -116,5 +143,23 @@ const ContactSolverKind solver_interior = {
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,
+    .solve = solve,
+    .destroy = destroy};
+
+static const SettingSpec net_settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
+                                           {"network", "file of the network (default: the scene's)"},
+                                           {NULL, NULL}};
+
+const ContactSolverKind solver_interior_net = {
+    .description = {.name = "interior-net",
+                    .summary = "interior with a network that places each contact before an iteration",
+                    .settings = net_settings,
+                    .title = "Interior point with a network",
+                    .needs_network = true,
+                    .twin = "interior",
+                    .chart = METHOD_RUNS("near=0.02", "near=0.001"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create_net,
     .solve = solve,
     .destroy = destroy};
