@@ -7,7 +7,7 @@
 
        M (v - v') = J_n^T l + J_t^T t
        z = J_n v - b,        l z = tau^2 m_n
-       J_t v = q - p,        p (mu l - t) = q (mu l + t) = tau^2 m_t mu
+       J_t v = q - p,        p (mu l - t) = q (mu l + t) = 4 tau^2 m_t mu
 
    For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
    an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
@@ -27,7 +27,7 @@
    Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); for contacts Kleinert,
    Simeon, Dressler, "Nonsmooth Contact Dynamics for the Large-Scale Simulation of Granular Material" (2017), and Acary,
    Armand, Nguyen, Shpakovych, "Second-Order Cone Programming for Frictional Contact Mechanics Using Interior Point
-   Algorithm" (2024), which solve conic programs with a symmetric matrix. Constants are hand-tuned.
+   Algorithm" (2024), which solve conic programs with a symmetric matrix.
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
@@ -121,10 +121,6 @@ static inline bool interior_pair_moves(const Interior *interior, const InteriorP
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
                    const ContactProblem *problem);
 
-/* m/s: how fast the contacts would miss their targets without any impulse, root mean square. A step of gravity makes
-   0.17 at rest, whatever the masses. */
-double interior_approach(const Interior *interior);
-
 /* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
@@ -132,13 +128,16 @@ void interior_close(Interior *interior, double speed, double depth);
 /* The parts of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first
    tau^2. Before each iteration tau^2 falls to `shrink` of itself, but not below `follow` times the squared estimate of
    the residual. */
-double interior_begin(Interior *interior);
+double interior_begin(Interior *interior, double least_scale);
 extern const double interior_shrink, interior_follow;
-enum { INTERIOR_START_SWEEPS = 2 };
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
-   and `iterations`. The residual is infinite or NaN if the iterations broke down. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, double near, int most);
+   and `iterations`. The residual is infinite or NaN if the iterations broke down.
+
+   least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
+   slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
+   suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, double least_scale, double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

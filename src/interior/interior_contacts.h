@@ -13,7 +13,9 @@ static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
 static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
 /* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its bounds. */
-static const double kept = 0.15, kept_slip = 0.15, kept_distance = 0.15;
+static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
+/* The targets of friction, as a multiple of those of normal impulses. */
+static const double slip_aim = 4;
 /* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
 static const double stiffest = 1e12;
 
@@ -21,7 +23,8 @@ static const double stiffest = 1e12;
 static inline void aim(InteriorGroup *g, Vec4 tau2) {
     const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
     g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
-    g->aim_tangent = larger(tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
+    g->aim_tangent =
+        larger(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
 }
 
 /* Impulses on the contacts of a group. */

@@ -170,16 +170,6 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     return true;
 }
 
-double interior_approach(const Interior *s) {
-    double sum = 0;
-    for (int i = 0; i < s->group_count; i++)
-        for (int k = 0; k < GROUP_SLOTS; k++) {
-            const double missing = s->groups[i].bias[k] - s->groups[i].free_normal[k];
-            if (missing > 0) sum += missing * missing; /* negative without a contact */
-        }
-    return s->contact_count > 0 ? sqrt(sum / s->contact_count) : 0;
-}
-
 void interior_close(Interior *s, double speed, double depth) {
     for (int i = 0; i < s->group_count; i++)
         for (int k = 0; k < GROUP_SLOTS; k++)

@@ -5,6 +5,8 @@
 #include "common/parallel.h"
 #include "interior_training/random_scene.h"
 #include "simulate/phases.h"
+#include "solvers/interior_net.h"
+#include "solvers/residual.h"
 
 #include <stdlib.h>
 
@@ -28,7 +30,7 @@ typedef struct Run {
 static bool wanted(Run *run, const ContactProblem *problem, int frame, bool *impact) {
     const Phase phase = phase_next(&run->tracker, problem, frame);
     *impact = phase == PHASE_IMPACT;
-    if (problem->contact_count == 0) return false;
+    if (!residual_motion_reaches(problem, INTERIOR_REST_BELOW)) return false;
     if (phase == PHASE_AFTER) return (frame - run->tracker.touch) % AFTER_EVERY == 0;
     return *impact || frame % REST_EVERY == 0;
 }

@@ -2,12 +2,14 @@
 #include "interior_training/unrolled_interior.h"
 
 #include "interior_training/interior_tape.h"
+#include "solvers/interior_net.h"
+#include "solvers/momentum.h"
 
 #include <math.h>
 #include <stddef.h>
 
 /* As in interior.c and interior_code.h. */
-static const double kept = 0.15, kept_slip = 0.15, kept_distance = 0.15, stiffest = 1e12;
+static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27, slip_aim = 4, stiffest = 1e12;
 
 /* The problem and the iterate. */
 typedef struct Nodes {
@@ -148,9 +150,9 @@ static void linearise(UnrolledInterior *u, Nodes *n, int step, Linear *by) {
     by->aim_normal =
         tape_larger(t, tape_multiply(t, aim_normal, n->mass_normal),
                     tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, n->l, n->l)), n->inverse_normal));
-    by->aim_tangent =
-        tape_larger(t, tape_multiply(t, tape_multiply(t, n->target, n->mass_tangent), n->friction),
-                    tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, bound, bound)), n->inverse_tangent));
+    by->aim_tangent = tape_larger(
+        t, tape_multiply(t, tape_scale(t, slip_aim, tape_multiply(t, n->target, n->mass_tangent)), n->friction),
+        tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, bound, bound)), n->inverse_tangent));
     by->dn = tape_multiply(t, n->l, by->over_z);
     const TapeId gap = tape_subtract(t, tape_subtract(t, n->normal, n->bias), n->z);
     by->rn = tape_subtract(t, tape_subtract(t, tape_multiply(t, by->aim_normal, by->over_z), n->l),
@@ -224,12 +226,10 @@ static void limit(Tape *t, Nodes *n, const Linear *g, const Changes *by) {
     const TapeId keep = tape_number(t, kept), keep_slip = tape_number(t, kept_slip);
     const TapeId distance = tape_number(t, kept_distance), almost = tape_number(t, 1 - 1e-13);
     const TapeId l = tape_larger(t, tape_add(t, n->l, by->l), tape_multiply(t, keep, n->l));
-    const TapeId bound = tape_multiply(t, n->friction, l), inner = tape_multiply(t, almost, bound);
-    const TapeId most =
-        tape_smaller(t, tape_subtract(t, bound, tape_multiply(t, distance, tape_subtract(t, g->bound, n->t))), inner);
-    const TapeId least = tape_larger(
-        t, tape_subtract(t, tape_multiply(t, distance, tape_add(t, g->bound, n->t)), bound), tape_negative(t, inner));
-    n->t = tape_larger(t, tape_smaller(t, tape_add(t, n->t, by->t), most), least);
+    const TapeId used = tape_divide(t, tape_magnitude(t, n->t), g->bound);
+    const TapeId share = tape_subtract(t, n->one, tape_multiply(t, distance, tape_subtract(t, n->one, used)));
+    n->t = tape_clamp(t, tape_add(t, n->t, by->t),
+                      tape_multiply(t, tape_smaller(t, share, almost), tape_multiply(t, n->friction, l)));
     n->l = l;
     n->z = tape_larger(t, tape_add(t, n->z, by->z), tape_multiply(t, keep, n->z));
     n->p = tape_larger(t, tape_add(t, n->p, by->p), tape_multiply(t, keep_slip, n->p));
@@ -330,8 +330,10 @@ static TapeId loss_of(UnrolledInterior *u, Nodes *n, TapeId reference, TapeId we
 }
 
 static bool load(UnrolledInterior *u, const ContactProblem *problem) {
+    float factors[INTERIOR_IMPACT_SWEEPS];
+    for (int s = 0; s < INTERIOR_IMPACT_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, INTERIOR_IMPACT_SWEEPS);
     return sweeps_begin_coloured(&u->sweeps, sweeps_best_kernel(), problem) &&
-           sweeps_run(&u->sweeps, INTERIOR_START_SWEEPS) &&
+           sweeps_run_momentum(&u->sweeps, factors, INTERIOR_IMPACT_SWEEPS) &&
            interior_load(&u->interior, interior_best(), &u->sweeps, problem);
 }
 
@@ -341,7 +343,7 @@ bool unrolled_interior_loss(UnrolledInterior *u, const ContactProblem *problem, 
     u->interior.net = NULL;
     if (!load(u, problem)) return false;
     if (u->interior.contact_count == 0) return true;
-    const double first_target = interior_begin(&u->interior);
+    const double first_target = interior_begin(&u->interior, INTERIOR_LEAST_SCALE);
     Nodes n = begin(u, weights);
     TapeId reference, masses;
     given_reference(u, problem, velocities, &reference, &masses);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solvers/residual.h"
 
+#include "sweeps/contact_velocity.h"
+
 static Vec2 point_velocity(Vec2 linear, float spin, Vec2 arm) { return vec2_add(linear, scalar_cross_vec2(spin, arm)); }
 
 /* (m/s)^2. normal: the accumulated impulse. Branchless: these branches mispredict. */
@@ -44,4 +46,44 @@ bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolutio
         sum += squared_residual(contact->bias, vec2_dot(velocity, contact->normal), solution->impulses[i].normal);
     }
     return problem->contact_count > 0 && sum >= enough;
+}
+
+/* (m/s)^2: of the changes that a visit would make. NaN remains. */
+static float squared_of_visit(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
+    const SweepPoint *point = &pair->points[k];
+    const ContactImpulse sum = pair->sums[k];
+    const Vec2 velocity = vec2_sub(point_velocity(vec2(b->x, b->y), b->spin, point->arm_b),
+                                   point_velocity(vec2(a->x, a->y), a->spin, point->arm_a));
+    const float slip = vec2_dot(velocity, vec2_cross_scalar(pair->normal, 1.0f));
+    const float gap = vec2_dot(velocity, pair->normal) - point->bias, held = sum.normal / point->mass_normal;
+    const float normal = gap >= held ? held : gap;
+    const float limit = pair->friction * sum.normal;
+    const float wanted = contact_clamp(sum.tangent - point->mass_tangent * slip, -limit, limit);
+    const float tangent = (sum.tangent - wanted) / point->mass_tangent;
+    return normal * normal + tangent * tangent;
+}
+
+bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit) {
+    const float enough = limit * limit * (float)contact_count;
+    float sum = 0;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepPair *pair = &sweeps->pairs[i];
+        const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
+        const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
+        for (int k = 0; k < sweep_pair_points(pair); k++) sum += squared_of_visit(pair, k, a, b);
+        if (!(sum < enough)) return true;
+    }
+    return false;
+}
+
+bool residual_motion_reaches(const ContactProblem *problem, float limit) {
+    bool reaches = false;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+        const Vec2 velocity = vec2_sub(point_velocity(b->velocity, b->angular_velocity, contact->arm_b),
+                                       point_velocity(a->velocity, a->angular_velocity, contact->arm_a));
+        reaches |= !(vec2_dot(velocity, velocity) < limit * limit);
+    }
+    return reaches;
 }

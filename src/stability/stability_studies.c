@@ -29,6 +29,7 @@ const StabilityStudy stability_studies[] = {
     {"heavy_on_five", "heavy_on_five", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 9},
     {"heavy_on_nine", "heavy_on_nine", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 18},
     {"plate", "plate", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 3},
+    {"gate", "gate", "mass", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 12},
     {"top_removed", "top_removed", "ratio", LOGARITHMIC(1, 200, 12), .stands = true, .weight = 5},
     {"tilted_stack", "tilted_stack", "shift", LINEAR(0, 0.1, 11), .stands = true, .weight = 7},
     {"overlap", "overlap", "spacing", LINEAR(0.4, 1, 13, .fails_low = true), .stands = true, .weight = 8},

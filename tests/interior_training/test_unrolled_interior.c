@@ -6,6 +6,8 @@
 #include "interior_training/recording.h"
 #include "interior_training/unrolled_interior.h"
 #include "reference/solution_error.h"
+#include "solvers/interior_net.h"
+#include "solvers/momentum.h"
 #include "solvers/solvers.h"
 
 #include <math.h>
@@ -46,15 +48,17 @@ static void any_weights(InteriorNet *net, double size) {
 
 /* The error of the kernels' answer after some iterations. */
 static double error_of(const ImpactProblem *item, const InteriorNet *net, int iterations) {
+    float factors[INTERIOR_IMPACT_SWEEPS];
     Sweeps sweeps = {0};
     Interior interior = {.net = net};
     BodyVelocity velocities[RANDOM_SCENE_BODIES + 1];
-    ContactSolution solution = {velocities,
-                                calloc((size_t)item->problem.contact_count + 1, sizeof(ContactImpulse)), 0, {0}};
+    ContactSolution solution = {
+        velocities, calloc((size_t)item->problem.contact_count + 1, sizeof(ContactImpulse)), 0, {0}};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), &item->problem));
-    assert_true(sweeps_run(&sweeps, INTERIOR_START_SWEEPS));
+    for (int s = 0; s < INTERIOR_IMPACT_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, INTERIOR_IMPACT_SWEEPS);
+    assert_true(sweeps_run_momentum(&sweeps, factors, INTERIOR_IMPACT_SWEEPS));
     assert_true(interior_load(&interior, interior_best(), &sweeps, &item->problem));
-    interior_iterate(&interior, interior_best(), 0, iterations);
+    interior_iterate(&interior, interior_best(), INTERIOR_LEAST_SCALE, 0, iterations);
     const bool finite = interior_end(&interior, &sweeps, &item->problem, &solution);
     const double found = finite ? solution_error(&item->problem, velocities, item->reference).rms : INFINITY;
     free(solution.impulses);
@@ -75,11 +79,10 @@ static void the_tape_has_the_answers_of_the_kernels(void **state) {
         double loss;
         const ImpactProblem *item = &problems.items[i];
         const InteriorNet *net = &nets[i % 2];
-        assert_true(unrolled_interior_loss(&unrolled, &item->problem, item->reference, net->weights, &task, &loss,
-                                           NULL));
+        assert_true(
+            unrolled_interior_loss(&unrolled, &item->problem, item->reference, net->weights, &task, &loss, NULL));
         for (int k = 0; k < ITERATIONS; k++, compared++) {
             const double found = unrolled.errors[k], expected = error_of(item, net, k + 1);
-            if (!(fabs(found - expected) <= 1e-5 + 1e-4 * expected)) printf("%zu %d %g %g\n",i,k,found,expected);
             different += !(fabs(found - expected) <= 1e-5 + 1e-4 * expected);
         }
     }
@@ -98,8 +101,8 @@ static void derivatives_are_those_of_finite_differences(void **state) {
     for (size_t i = 0; i < problems.count; i += 5) {
         const ImpactProblem *item = &problems.items[i];
         double slopes[INTERIOR_NET_WEIGHTS] = {0}, here, there, before;
-        assert_true(unrolled_interior_loss(&unrolled, &item->problem, item->reference, net.weights, &task, &here,
-                                           slopes));
+        assert_true(
+            unrolled_interior_loss(&unrolled, &item->problem, item->reference, net.weights, &task, &here, slopes));
         for (int k = 0; k < INTERIOR_NET_WEIGHTS; k++) {
             const double kept = net.weights[k];
             net.weights[k] = kept + step;

@@ -44,9 +44,9 @@ static void answer(const ContactProblem *problem, const InteriorKernels *kernels
     Sweeps sweeps = {0};
     Interior interior = {.net = net};
     assert_true(sweeps_begin_coloured(&sweeps, SWEEP_ONE_BY_ONE, problem));
-    assert_true(sweeps_run(&sweeps, INTERIOR_START_SWEEPS));
+    assert_true(sweeps_run(&sweeps, 2));
     assert_true(interior_load(&interior, kernels, &sweeps, problem));
-    interior_iterate(&interior, kernels, 1e-4, 6);
+    interior_iterate(&interior, kernels, 0.01, 1e-4, 6);
     interior_end(&interior, &sweeps, problem, found);
     interior_free(&interior);
     sweeps_free(&sweeps);

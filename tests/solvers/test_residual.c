@@ -131,6 +131,55 @@ static void sweeps_reduce_the_residual(void **state) {
     sweeps_free(&sweeps);
 }
 
+/* Between 0.9999 and 1.0001 of this. */
+static void assert_with_friction(const ContactProblem *problem, double residual) {
+    Sweeps sweeps = {0};
+    assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), problem, true, 1));
+    if (residual > 0)
+        assert_true(residual_of_visits_reaches(&sweeps, problem->contact_count, (float)(0.9999 * residual)));
+    assert_false(residual_of_visits_reaches(&sweeps, problem->contact_count, (float)(1.0001 * residual + 1e-6)));
+    sweeps_free(&sweeps);
+}
+
+/* Both boxes slide at 7 m/s. Without a normal impulse that is no error. With one of 1 N s, friction of 0.2 N s may brake
+   each contact of 1 kg by 0.2 m/s, and more does not. */
+static void slip_counts_as_far_as_friction_can_brake_it(void **state) {
+    (void)state;
+    Boxes boxes;
+    make_boxes(&boxes, 0, 0);
+    assert_with_friction(&boxes.problem, 0);
+    for (int k = 0; k < 2; k++) boxes.contacts[k].warm_normal = 1;
+    boxes.bodies[1].velocity.y = -1;
+    assert_with_friction(&boxes.problem, sqrt(2 * 0.2 * 0.2 / 4));
+    for (int k = 0; k < 2; k++) boxes.contacts[k].warm_tangent = -0.2f;
+    boxes.bodies[1].angular_velocity = 3 * 2 * 0.5f * 0.2f; /* what they take away */
+    assert_with_friction(&boxes.problem, 0);
+    boxes.contacts[2].mass_normal = NAN;
+    boxes.contacts[2].bias = NAN;
+    Sweeps sweeps = {0};
+    assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), &boxes.problem, true, 1));
+    assert_true(residual_of_visits_reaches(&sweeps, 4, 1e6f));
+    sweeps_free(&sweeps);
+}
+
+/* Before any impulse, in any direction. */
+static void the_motion_is_that_of_the_bodies(void **state) {
+    (void)state;
+    Boxes boxes;
+    make_boxes(&boxes, -3, 5);
+    for (int k = 0; k < 4; k++) {
+        boxes.contacts[k].warm_normal = 2;
+        boxes.contacts[k].bias = 9;
+    }
+    const float speed = sqrtf(7 * 7 + 5 * 5); /* of the box on the right */
+    assert_true(residual_motion_reaches(&boxes.problem, 0.9999f * speed));
+    assert_false(residual_motion_reaches(&boxes.problem, 1.0001f * speed));
+    boxes.bodies[2].velocity.y = NAN;
+    assert_true(residual_motion_reaches(&boxes.problem, 1e6f));
+    boxes.problem.contact_count = 0;
+    assert_false(residual_motion_reaches(&boxes.problem, 0.1f));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_residual_is_the_root_of_the_mean_square_over_contacts),
@@ -138,6 +187,8 @@ int main(void) {
         cmocka_unit_test(the_residual_is_that_after_the_warm_start),
         cmocka_unit_test(the_residual_is_measured_from_the_bias),
         cmocka_unit_test(spin_counts_at_the_arm),
+        cmocka_unit_test(slip_counts_as_far_as_friction_can_brake_it),
+        cmocka_unit_test(the_motion_is_that_of_the_bodies),
         cmocka_unit_test(random_problems_have_the_residual_of_the_definition),
         cmocka_unit_test(sweeps_reduce_the_residual),
     };
