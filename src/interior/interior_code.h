@@ -73,14 +73,12 @@ static void begin_blocks(const Interior *s, BlockLu *lu) {
 static void assemble(Interior *s, double target, Vec4 *right) {
     begin_blocks(s, &s->lu);
     const bool consulted = s->net != NULL && s->residual > INTERIOR_NET_UNTIL;
-    const InteriorNetStep net = consulted ? consult_begin(s, target) : (InteriorNetStep){0};
+    if (consulted) consult(s, target);
     momentum_left(s, right);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
-        Vec4 tau2 = all4(target);
-        if (consulted) tau2 *= consult(&net, g);
-        aim(g, tau2);
+        aim(g, all4(target) * (consulted ? g->aim_normal : all4(1)));
         linearise(g);
         push(pairs, right_side(g), right);
         for (int half = 0; half < GROUP_PAIRS; half++) {

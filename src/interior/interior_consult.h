@@ -41,26 +41,37 @@ static InteriorNetStep consult_begin(const Interior *s, double target) {
     return step;
 }
 
-/* Moves l, t and z, and returns the factor of the target of l z. */
-static inline Vec4 consult(const InteriorNetStep *net, InteriorGroup *g) {
+/* In pairs: a chain of sums would take as long as their latency. */
+static inline Vec4 sum_of(const Vec4 *x, const double *by, int count) {
+    Vec4 sum = x[0] * by[0] + x[1] * by[1];
+    for (int k = 2; k < count; k += 2) sum += k + 1 < count ? x[k] * by[k] + x[k + 1] * by[k + 1] : x[k] * by[k];
+    return sum;
+}
+
+/* Moves l, t and z, and leaves the factor of the aim in aim_normal. */
+static inline void consult_group(const InteriorNetStep *net, InteriorGroup *g) {
     const Vec4 inputs[INTERIOR_NET_INPUTS] = {(log2_of(g->l * g->inverse_normal) - net->scale) * 0.25,
                                               (log2_of(g->z) - net->scale) * 0.25,
                                               clamp4((g->normal - g->bias) / g->z - 1, all4(INTERIOR_NET_INPUT))};
     Vec4 hidden[INTERIOR_NET_HIDDEN], factors[INTERIOR_NET_OUTPUTS];
     for (int i = 0; i < INTERIOR_NET_HIDDEN; i++) {
-        const double *by = net->hidden + (ptrdiff_t)INTERIOR_NET_INPUTS * i;
-        Vec4 sum = all4(net->hidden_biases[i]);
-        for (int k = 0; k < INTERIOR_NET_INPUTS; k++) sum += inputs[k] * by[k];
-        hidden[i] = larger(sum, sum * INTERIOR_NET_LEAK);
+        const Vec4 x = sum_of(inputs, net->hidden + (ptrdiff_t)INTERIOR_NET_INPUTS * i, INTERIOR_NET_INPUTS) +
+                       net->hidden_biases[i];
+        hidden[i] = larger(x, x * INTERIOR_NET_LEAK);
     }
     for (int i = 0; i < INTERIOR_NET_OUTPUTS; i++) {
-        const double *by = net->output + (ptrdiff_t)INTERIOR_NET_HIDDEN * i;
-        Vec4 sum = all4(net->output_biases[i]);
-        for (int k = 0; k < INTERIOR_NET_HIDDEN; k++) sum += hidden[k] * by[k];
-        factors[i] = power2_of(clamp4(sum, all4(INTERIOR_NET_LIMIT)));
+        const Vec4 x = sum_of(hidden, net->output + (ptrdiff_t)INTERIOR_NET_HIDDEN * i, INTERIOR_NET_HIDDEN) +
+                       net->output_biases[i];
+        factors[i] = power2_of(clamp4(x, all4(INTERIOR_NET_LIMIT)));
     }
     g->l *= factors[0];
     g->t *= factors[0];
     g->z *= factors[1];
-    return factors[2];
+    g->aim_normal = factors[2];
+}
+
+/* A pass of its own: the processor overlaps the groups, whose chains of operations are long. */
+static void consult(Interior *s, double target) {
+    const InteriorNetStep net = consult_begin(s, target);
+    for (int i = 0; i < s->group_count; i++) consult_group(&net, &s->groups[i]);
 }

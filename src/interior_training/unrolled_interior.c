@@ -134,7 +134,7 @@ static void evaluate(Tape *t, const Nodes *n, int step, const TapeId *inputs, Ta
 
 static void linearise(UnrolledInterior *u, Nodes *n, int step, Linear *by) {
     Tape *t = &u->tape;
-    TapeId aim_normal = n->target;
+    TapeId aim = n->target;
     if (tape_values(t, n->estimate)[0] > INTERIOR_NET_UNTIL) {
         TapeId inputs[INTERIOR_NET_INPUTS], outputs[INTERIOR_NET_OUTPUTS];
         inputs_of(t, n, inputs);
@@ -142,17 +142,17 @@ static void linearise(UnrolledInterior *u, Nodes *n, int step, Linear *by) {
         n->l = tape_multiply(t, n->l, outputs[0]);
         n->t = tape_multiply(t, n->t, outputs[0]);
         n->z = tape_multiply(t, n->z, outputs[1]);
-        aim_normal = tape_multiply(t, aim_normal, outputs[2]);
+        aim = tape_multiply(t, aim, outputs[2]);
     }
     const TapeId softest = tape_number(t, 1 / stiffest);
     const TapeId bound = by->bound = tape_multiply(t, n->friction, n->l);
     by->over_z = tape_divide(t, n->one, n->z);
     by->aim_normal =
-        tape_larger(t, tape_multiply(t, aim_normal, n->mass_normal),
+        tape_larger(t, tape_multiply(t, aim, n->mass_normal),
                     tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, n->l, n->l)), n->inverse_normal));
-    by->aim_tangent = tape_larger(
-        t, tape_multiply(t, tape_scale(t, slip_aim, tape_multiply(t, n->target, n->mass_tangent)), n->friction),
-        tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, bound, bound)), n->inverse_tangent));
+    by->aim_tangent =
+        tape_larger(t, tape_multiply(t, tape_scale(t, slip_aim, tape_multiply(t, aim, n->mass_tangent)), n->friction),
+                    tape_multiply(t, tape_multiply(t, softest, tape_multiply(t, bound, bound)), n->inverse_tangent));
     by->dn = tape_multiply(t, n->l, by->over_z);
     const TapeId gap = tape_subtract(t, tape_subtract(t, n->normal, n->bias), n->z);
     by->rn = tape_subtract(t, tape_subtract(t, tape_multiply(t, by->aim_normal, by->over_z), n->l),
