@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_data.h"
 
-#include "common/parse.h"
 #include "simulate/method.h"
+#include "study/chart_rows.h"
 #include "study/pareto.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double lost_drift = 0.5; /* m, half a box */
 
 char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
 
@@ -22,37 +20,21 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     strcpy(out + length, cut ? "..." : "");
 }
 
-/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off", appended to empty texts. */
-static void split_setting(const char *setting, char *numbers, char *words) {
-    while (*setting != '\0') {
-        size_t length = strcspn(setting, ",");
-        char item[CHART_SETTING_SIZE];
-        snprintf(item, sizeof item, "%.*s", (int)length, setting);
-        const char *value = strchr(item, '=');
-        double number;
-        bool is_number = value != NULL && parse_double(value + 1, &number);
-        if (!is_number || numbers[0] != '\0') strcat(is_number ? numbers : words, ", ");
-        strcat(is_number ? numbers : words, item);
-        setting += length + (setting[length] == ',');
-    }
-}
-
 static bool is_set(const char *setting, const char *key) {
     const char *found = strstr(setting, key);
     return found != NULL && (found == setting || found[-1] == ',') && found[strlen(key)] == '=';
 }
 
-/* What sets a row apart from those with a fixed number of sweeps, and with the default limit. */
+/* What sets a row apart from those with a fixed number of sweeps. */
 static const char *rule_of(const ChartRow *row) {
     const MethodDescription *method = method_describe(row->method);
     const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
-    const bool more = is_set(row->setting, "more");
-    return more ? ", more" : near ? ", near" : "";
+    return near ? ", near" : "";
 }
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
-    split_setting(row->setting, numbers, words);
+    chart_split_setting(row->setting, numbers, words);
     snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, rule_of(row), words);
     chart_plain(label, numbers);
 }
@@ -73,6 +55,8 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
+        const MethodDescription *method = method_describe(table->rows[i].method);
+        line->no_push_out = method != NULL && method->no_push_out;
     }
     return true;
 }
@@ -81,17 +65,6 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
 static int panel_of(const ChartRow *row, const char *scene) {
     if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
     return row->phase == PHASE_IMPACT ? 0 : 1;
-}
-
-/* Whether the boxes had drifted before the bomb came. */
-static bool is_lost(const ChartTable *table, const ChartRow *row) {
-    for (int i = 0; i < table->count; i++) {
-        const ChartRow *rest = &table->rows[i];
-        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
-            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
-            return true;
-    }
-    return false;
 }
 
 static bool can_be_drawn(const ChartRow *row) {
@@ -144,7 +117,7 @@ static void add_rows(Chart *chart, const ChartTable *table, const char *scene, C
         char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
         if (panel_of(&table->rows[i], scene) < 0) continue;
         name_row(&table->rows[i], key, label);
-        if (is_lost(table, &table->rows[i]))
+        if (chart_row_lost(table->rows, table->count, &table->rows[i]))
             chart->lines[find_line(chart, key)].lost++;
         else
             rows[count++] = table->rows[i];

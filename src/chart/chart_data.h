@@ -12,13 +12,14 @@ enum {
     CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ", near" + 2 * CHART_SETTING_SIZE
 };
 
-/* A method with its non-numeric settings ("engine, warm=off"). Runs with a fixed number of sweeps, with a stopping rule
-   ("engine, near") and with a limit of its own ("engine, more") are lines of their own. */
+/* A method with its non-numeric settings ("engine, warm=off"). Runs with a stopping rule ("engine, near") are a line of
+   their own beside those with a fixed number of sweeps. */
 typedef struct ChartLine {
     char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
     char name[CHART_TEXT_SIZE];        /* safe for gnuplot, truncated */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
+    bool no_push_out;                  /* as in the method's description */
 } ChartLine;
 
 typedef struct ChartMark {

@@ -19,11 +19,11 @@ typedef struct ChartLayout {
     int columns, rows;   /* of the legend */
     double column_width; /* mm */
     double legend_top;   /* mm, middle of the first row */
-    int left_out, lost;
+    int foot_rows;       /* of the note below the legend */
     FILE *script;
 } ChartLayout;
 
-/* Computes columns and rows of the legend, and counts the table's rows that are not drawn. */
+/* Computes columns and rows of the legend and of the note below it. */
 void chart_lay_out_legend(ChartLayout *layout);
 
 /* Writes the legend and the note below it, as a plot over the whole page. */

@@ -11,36 +11,51 @@
 
 static const char front_name[] = "Pareto front of solvers";
 
+/* mm */
+static const double sample = 8, text_from = 9.2, letter = 1.2;
+
 static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
+
+/* What is not drawn or not exact. */
+static bool has_counts(const Chart *chart) {
+    int count = chart->floored;
+    for (int i = 0; i < chart->line_count; i++) count += chart->lines[i].left_out + chart->lines[i].lost;
+    return count > 0;
+}
+
+static bool has_no_push_out(const Chart *chart) {
+    bool any = false;
+    for (int i = 0; i < chart->line_count; i++) any |= chart->lines[i].no_push_out && is_drawn(&chart->lines[i]);
+    return any;
+}
 
 void chart_lay_out_legend(ChartLayout *layout) {
     size_t longest = strlen(front_name);
     int entries = 1;
     for (int i = 0; i < layout->chart->line_count; i++) {
         const ChartLine *line = &layout->chart->lines[i];
-        layout->left_out += line->left_out;
-        layout->lost += line->lost;
         if (!is_drawn(line)) continue;
         if (strlen(line->name) > longest) longest = strlen(line->name);
         entries++;
     }
     double room = CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN;
-    layout->columns = (int)(room / (13 + 1.35 * (double)longest));
+    layout->columns = (int)(room / (text_from + letter * (double)longest + 1));
     if (layout->columns < 1) layout->columns = 1;
     layout->rows = (entries + layout->columns - 1) / layout->columns;
     /* The fewest columns for this number of rows: the legend fills its width. */
     layout->columns = (entries + layout->rows - 1) / layout->rows;
     layout->column_width = room / layout->columns;
+    layout->foot_rows = has_counts(layout->chart) + has_no_push_out(layout->chart);
 }
 
-/* A sample of 8 mm from `left`, then the text. */
+/* A sample from `left`, then the text. */
 static void write_entry(const ChartLayout *layout, int entry, const char *text) {
     double left = LEFT_MARGIN + (entry % layout->columns) * layout->column_width;
     double y = layout->legend_top - LEGEND_ROW * (entry / layout->columns);
     FILE *script = layout->script;
-    fprintf(script, "set label '%s' at first %.3f,%.3f left font ',7.5'\n", text, left + 9.2, y);
-    fprintf(script, "$l%d << END\n%.3f %.3f\n%.3f %.3f\nEND\n", entry, left, y, left + 8, y);
-    fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + 4, y);
+    fprintf(script, "set label '%s' at first %.3f,%.3f left font ',7.5'\n", text, left + text_from, y);
+    fprintf(script, "$l%d << END\n%.3f %.3f\n%.3f %.3f\nEND\n", entry, left, y, left + sample, y);
+    fprintf(script, "$m%d << END\n%.3f %.3f\nEND\n", entry, left + sample / 2, y);
 }
 
 /* Lists the lines with a nonzero counter (at `offset` in ChartLine), as far as there is room. */
@@ -64,13 +79,36 @@ static void write_counts(const ChartLayout *layout, const char *why, size_t offs
     if (separator != why) fprintf(layout->script, ". ");
 }
 
-static void write_note(const ChartLayout *layout) {
-    if (layout->left_out + layout->lost + layout->chart->floored == 0) return;
-    fprintf(layout->script, "set label '");
-    write_counts(layout, "Unstable before the impact: ", offsetof(ChartLine, lost));
-    write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
-    if (layout->chart->floored > 0) fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
-    fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW / 2, LABEL_POINTS);
+static void begin_note(const ChartLayout *layout) { fprintf(layout->script, "set label '"); }
+
+/* row: from the bottom. */
+static void end_note(const ChartLayout *layout, int row) {
+    fprintf(layout->script, "' at first %.3f,%.3f left font ',%g'\n", LEFT_MARGIN, FOOT_ROW * (row + 0.5),
+            LABEL_POINTS);
+}
+
+static void write_notes(const ChartLayout *layout) {
+    const Chart *chart = layout->chart;
+    int row = 0;
+    if (has_counts(chart)) {
+        begin_note(layout);
+        write_counts(layout, "Unstable before the impact: ", offsetof(ChartLine, lost));
+        write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
+        if (chart->floored > 0) fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
+        end_note(layout, row++);
+    }
+    if (has_no_push_out(chart)) {
+        const char *separator = "";
+        begin_note(layout);
+        for (int i = 0; i < chart->line_count; i++) {
+            if (!chart->lines[i].no_push_out || !is_drawn(&chart->lines[i])) continue;
+            fprintf(layout->script, "%s%s", separator, chart->lines[i].name);
+            separator = ", ";
+        }
+        fprintf(layout->script,
+                ": error against the solution without the velocity that pushes overlapping boxes apart.");
+        end_note(layout, row++);
+    }
 }
 
 /* A third plot over the whole page, with axes in mm. */
@@ -86,7 +124,7 @@ void chart_write_legend(const ChartLayout *layout) {
         write_entry(layout, entry++, layout->chart->lines[i].name);
     }
     write_entry(layout, entry, front_name);
-    write_note(layout);
+    write_notes(layout);
     fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, PARETO_COLOUR);
     for (int i = 0; i < entry; i++) {
         ChartStyle style = chart_style(styles[i]);

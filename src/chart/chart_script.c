@@ -16,7 +16,7 @@ static const char *const panel_titles[CHART_PANELS] = {"Impact frames", "The 60 
 static ChartLayout lay_out(const Chart *chart, const char *title, FILE *script) {
     ChartLayout layout = {.chart = chart, .title = title, .script = script};
     chart_lay_out_legend(&layout);
-    double foot = layout.left_out + layout.lost + chart->floored > 0 ? FOOT_ROW : 0;
+    const double foot = FOOT_ROW * layout.foot_rows;
     layout.legend_top = foot + LEGEND_ROW * (layout.rows - 0.5) + 0.5;
     layout.y = log_axis(chart->error_least, chart->error_most);
     layout.y.from = layout.legend_top + LEGEND_ROW / 2 + axis_room;

@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #define CHART_WIDTH FIGURE_PAGE_WIDTH
-#define CHART_HEIGHT 85.0 /* mm */
+#define CHART_HEIGHT 100.0 /* mm */
 
 /* Writes the script of a chart; `title` must be safe (chart_plain). False if out of memory. */
 bool chart_script(const Chart *chart, const char *title, FILE *script);

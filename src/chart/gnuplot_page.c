@@ -126,11 +126,22 @@ void gnuplot_series_end(GnuplotPage *page, const GnuplotLook *look) {
     if (look->marks) chart_write_marks(page->plot, 'd', page->block, &look->style);
 }
 
-void gnuplot_text(GnuplotPage *page, double x, double y, const char *align, double points, const char *text) {
+static void write_text(GnuplotPage *page, double x, double y, const char *align, double points, const char *text) {
     fprintf(page->script, "set label ");
     write_quoted(page, text);
-    fprintf(page->script, " at screen %.6f,%.6f %s noenhanced font ',%g'\n", x / page->width, y / page->height, align,
+    fprintf(page->script, " at screen %.6f,%.6f %s noenhanced font ',%g'", x / page->width, y / page->height, align,
             points);
+}
+
+void gnuplot_text(GnuplotPage *page, double x, double y, const char *align, double points, const char *text) {
+    write_text(page, x, y, align, points, text);
+    fprintf(page->script, "\n");
+}
+
+void gnuplot_text_in(GnuplotPage *page, double x, double y, const char *align, double points, const char *text,
+                     GnuplotInk ink) {
+    write_text(page, x, y, align, points, text);
+    fprintf(page->script, " front tc rgb '%s' rotate by %g\n", ink.colour, ink.degrees);
 }
 
 void gnuplot_link(GnuplotPage *page, GnuplotBox box, const char *target, const char *title) {

@@ -76,6 +76,14 @@ void gnuplot_axis_label(GnuplotPage *page, char letter, const char *label);
 /* A text at (x, y) mm on the page; align is "left", "center" or "right". */
 void gnuplot_text(GnuplotPage *page, double x, double y, const char *align, double points, const char *text);
 
+/* The same in front of the series, in a colour, turned counter-clockwise. */
+typedef struct GnuplotInk {
+    const char *colour; /* "white" */
+    double degrees;
+} GnuplotInk;
+void gnuplot_text_in(GnuplotPage *page, double x, double y, const char *align, double points, const char *text,
+                     GnuplotInk ink);
+
 /* Makes an area of the SVG a link; `title` is its tooltip. */
 void gnuplot_link(GnuplotPage *page, GnuplotBox box, const char *target, const char *title);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
+#include "chart/equal_time_plot.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/options.h"
@@ -34,7 +35,8 @@ static const Option option_table[] = {
      "methods left out are reported)",
      OPTION_TEXT(Options, study.methods)},
     {"--launches", 0, "N|FILE.csv",
-     "Launches to score on: N held-out launches of the scene's family (default: 40), or a table with any of the "
+     "Launches to score on: N held-out launches of the scene's family (default: 40, fewer above 110 bodies), or a "
+     "table with any of the "
      "columns x,rotation,spin,mass,frame",
      OPTION_READ(read_launches, Options, study.launches)},
     {"--bomb-x", 0, "A:B:STEP", "Launches to score on: x from A to B in steps of STEP, m",
@@ -73,6 +75,10 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
+    bool drawn;
+    if (!equal_time_plot(csv, options->folder, &drawn, error)) return false;
+    printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", options->folder,
+           drawn ? ", equal_time.png, .svg, .pdf" : "");
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);

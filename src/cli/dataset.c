@@ -10,7 +10,7 @@
 typedef struct Options {
     DatasetOptions dataset;
     const char *scenes[DATASET_MAX_SCENES];
-    const char *output;
+    const char *output, *launches;
 } Options;
 
 static bool read_view(const Option *option, const char *text, void *value, Error *error) {
@@ -25,6 +25,8 @@ static const Option option_table[] = {
      "Launches of each scene: x from A to B in steps of STEP, m (default: 201 of the scene's family; none with only "
      "--random)",
      OPTION_RANGE(Options, dataset.bomb_x)},
+    {"--launches", 0, "FILE.csv", "Launches of each scene instead: a table with any of the columns x,rotation,spin",
+     OPTION_PATH(Options, launches)},
     {"--random", 0, "N",
      "Further, random launches of each scene: x within +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)",
      OPTION_INT(Options, dataset.random, 1, DATASET_MAX_LAUNCHES)},
@@ -58,14 +60,26 @@ static const CommandSpec spec = {
         "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
         "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse"};
 
+static bool record(const Options *options, Error *error) {
+    Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
+    progress_bar_end();
+    bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
+    if (ok) printf("%lld rows of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options->output);
+    dataset_destroy(dataset);
+    return ok;
+}
+
 bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     options.dataset.scenes = options.scenes;
-    Dataset *dataset = dataset_record(&options.dataset, progress_bar_begin("recording launches"), error);
-    progress_bar_end();
-    bool ok = dataset != NULL && dataset_write(dataset, options.output, error);
-    if (ok) printf("%lld rows of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options.output);
-    dataset_destroy(dataset);
+    if (options.launches == NULL) return record(&options, error);
+    if (options.dataset.bomb_x.count + options.dataset.random > 0)
+        return error_input(error, "--launches", "cannot be combined with --bomb-x or --random");
+    LaunchTable table;
+    if (!launches_read(&table, options.launches, error)) return false;
+    options.dataset.table = &table;
+    const bool ok = record(&options, error);
+    launches_free(&table);
     return ok;
 }

@@ -85,15 +85,31 @@ static bool store(const Trajectory *run, const Options *options, Error *error) {
     return ok && (options->hashes == NULL || trajectory_write_hashes(run, options->hashes, error));
 }
 
+/* What the method solved by simpler means than its own, if anything. */
+static void print_fallbacks(const NetworkFallbacks *fallbacks) {
+    const struct {
+        int count;
+        const char *what;
+    } rows[] = {{fallbacks->by_sweeps, "steps solved by sweeps instead"},
+                {fallbacks->beyond_training, "steps without the network, as they are unlike its training"},
+                {fallbacks->not_finite, "outputs of the network that were NaN, infinite or out of bounds"},
+                {fallbacks->outside_cone, "impulses of the network outside the friction cone"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].count > 0) printf("    %s: %d\n", rows[i].what, rows[i].count);
+}
+
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     if (!override_scene(scene, options, error)) return false;
-    Trajectory *run = simulate(scene, method, progress_bar_begin(scene->name), error);
+    NetworkFallbacks fallbacks = {0};
+    Trajectory *run = simulate_counting(scene, method, &fallbacks, progress_bar_begin(scene->name), error);
     progress_bar_end();
     bool ok = run != NULL && store(run, options, error);
-    if (ok)
+    if (ok) {
         printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", run->scene, run->method,
                run->frames - 1, (double)run->dt, run->bodies, trajectory_frame_hash(run, run->frames - 1),
                options->output != NULL ? " -> " : "", options->output != NULL ? options->output : "");
+        print_fallbacks(&fallbacks);
+    }
     trajectory_destroy(run);
     return ok;
 }

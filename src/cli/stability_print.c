@@ -105,7 +105,7 @@ bool stability_print(const char *folder, Error *error) {
     printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
     printf("their figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
     printf("why methods do not apply -> %s/refusals.csv\n", folder);
-    printf("outputs of networks that were discarded -> %s/fallbacks.csv\n", folder);
+    printf("discarded outputs of networks, steps that fell back -> %s/fallbacks.csv\n", folder);
     printf("drift and energy at rest -> %s/rest.csv\n", folder);
     return true;
 }

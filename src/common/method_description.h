@@ -26,8 +26,11 @@ typedef struct MethodDescription {
     const char *title;           /* in pictures: "Physics engine"; NULL: the method's text ("nncg:k=20") */
     const char *caption;         /* in pictures, between the title and the method's text; NULL: nothing */
     MethodRole role;
-    bool needs_network;  /* runs only if the setting `network` or the scene names a file */
-    const char *twin;    /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
+    bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
+                            that it is scored against have none of position correction either */
+    bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
+    bool needs_network; /* runs only if the setting `network` or the scene names a file */
+    const char *twin;   /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
                             settings otherwise. NULL: nothing is learned */
     const char *shipped; /* the setting in common use, which charts mark; NULL: none */
     /* What `twinbox chart`, `twinbox chart --quick` and `twinbox stability` run by default. NULL: one run, no settings

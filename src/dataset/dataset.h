@@ -50,9 +50,10 @@ static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
 typedef struct DatasetOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
-    /* Launches of each scene. Neither: 201 of its family. */
-    FloatRange bomb_x; /* m: swept, with the scene's rotation and spin; count may be 0 */
-    int random;        /* random: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
+    /* Launches of each scene. None of the three: 201 of its family. */
+    const LaunchTable *table; /* with neither of the others; NULL: none */
+    FloatRange bomb_x;        /* m: swept, with the scene's rotation and spin; count may be 0 */
+    int random;               /* random: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
     PairView view;
     PairTarget target;
     DatasetLabels labels;
@@ -62,8 +63,8 @@ typedef struct DatasetOptions {
 } DatasetOptions;
 
 /* Runs every launch of every scene with the engine and records it. The result does not depend on the number of threads.
-   ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, there are fewer than 5 launches per scene (one must be held
-   out), the target has no such labels, or progress requests a stop. */
+   ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, the launches vary in mass or frame,
+   there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress requests a stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 

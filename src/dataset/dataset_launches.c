@@ -17,44 +17,59 @@ static void put_launch(Dataset *dataset, int i, const Launch *launch) {
     dataset->launch_spin[i] = launch->spin;
 }
 
-/* A dataset has no column for masses. */
-static bool family_launches(const Scene *scene, Launch launches[LAUNCH_GRID], Error *error) {
-    if (scene_span_varies(&scene->bomb.mass))
-        return error_input(error, scene->name, "the mass of the bomb varies, which a dataset does not record");
-    return launches_for_training(scene, LAUNCH_GRID, launches, error);
-}
-
 int dataset_launches_each(const DatasetOptions *options) {
     const int given = options->bomb_x.count + options->random;
-    return given > 0 ? given : LAUNCH_GRID;
+    return options->table != NULL ? options->table->count : given > 0 ? given : LAUNCH_GRID;
 }
 
-/* Swept launches first, then random ones; none given: the scene's family. */
-static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
-                         const gsl_rng *generator, Error *error) {
-    const bool family = options->bomb_x.count + options->random == 0;
-    int i = 0;
-    for (int scene = 0; scene < options->scene_count; scene++) {
-        Launch launch = launch_of(scenes[scene]), launches[LAUNCH_GRID];
-        if (family && !family_launches(scenes[scene], launches, error)) return false;
-        for (int k = 0; family && k < LAUNCH_GRID; k++, i++) {
-            put_launch(dataset, i, &launches[k]);
-            dataset->launch_scene[i] = scene;
-        }
-        for (int k = 0; k < options->bomb_x.count; k++, i++) {
-            launch.x = range_value(&options->bomb_x, k);
-            put_launch(dataset, i, &launch);
-            dataset->launch_scene[i] = scene;
-        }
-        for (int k = 0; k < options->random; k++, i++) {
-            launch.x = draw(generator, random_x);
-            launch.rotation = draw(generator, random_rotation);
-            launch.spin = draw(generator, random_spin);
-            put_launch(dataset, i, &launch);
-            dataset->launch_scene[i] = scene;
+/* Swept launches first, then random ones. */
+static void draw_launches(const DatasetOptions *options, const Scene *scene, const gsl_rng *generator, Launch *out) {
+    for (int k = 0; k < options->bomb_x.count + options->random; k++) {
+        out[k] = launch_of(scene);
+        if (k < options->bomb_x.count) {
+            out[k].x = range_value(&options->bomb_x, k);
+        } else {
+            out[k].x = draw(generator, random_x);
+            out[k].rotation = draw(generator, random_rotation);
+            out[k].spin = draw(generator, random_spin);
         }
     }
-    return true;
+}
+
+/* A dataset has no columns for masses and frames. */
+static bool check_launch(const Scene *scene, const Launch *launch, Error *error) {
+    const Launch own = launch_of(scene);
+    return (launch->mass == own.mass && launch->frame == own.frame) ||
+           error_input(error, scene->name,
+                       "a dataset has one mass and one frame of the bomb; the launches have others");
+}
+
+static bool choose_launches(const DatasetOptions *options, const Scene *scene, const gsl_rng *generator, Launch *out,
+                            Error *error) {
+    bool ok = true;
+    if (options->table != NULL)
+        ok = launches_for(options->table, scene, out, error);
+    else if (options->bomb_x.count + options->random > 0)
+        draw_launches(options, scene, generator, out);
+    else
+        ok = launches_for_training(scene, LAUNCH_GRID, out, error);
+    for (int k = 0; ok && k < dataset_launches_each(options); k++) ok = check_launch(scene, &out[k], error);
+    return ok;
+}
+
+static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
+                         const gsl_rng *generator, Error *error) {
+    const int each = dataset_launches_each(options);
+    Launch *launches = malloc((size_t)each * sizeof *launches);
+    bool ok = launches != NULL || error_memory(error, "dataset");
+    for (int i = 0; ok && i < dataset->launches; i++) {
+        const int scene = i / each;
+        if (i % each == 0) ok = choose_launches(options, scenes[scene], generator, launches, error);
+        if (ok) put_launch(dataset, i, &launches[i % each]);
+        dataset->launch_scene[i] = scene;
+    }
+    free(launches);
+    return ok;
 }
 
 /* Draws the held-out launches. */

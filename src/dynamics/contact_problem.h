@@ -61,8 +61,16 @@ typedef struct NetworkFallbacks {
     int not_finite;      /* NaN, infinite or out of bounds; discarded */
     int outside_cone;    /* impulses that were clamped to the friction cone */
     int beyond_training; /* steps without the network, because the gate found them unlike its training data */
-    int by_sweeps;       /* steps that sweeps solved, because the residual of interior-point steps stayed high */
+    int by_sweeps;       /* steps that sweeps solved, because the residual of interior-point steps stayed high or the
+                            problem is too large for them */
 } NetworkFallbacks;
+
+static inline void network_fallbacks_add(NetworkFallbacks *sum, const NetworkFallbacks *step) {
+    sum->not_finite += step->not_finite;
+    sum->outside_cone += step->outside_cone;
+    sum->beyond_training += step->beyond_training;
+    sum->by_sweeps += step->by_sweeps;
+}
 
 /* What a solver fills in; the arrays are the caller's. */
 typedef struct ContactSolution {

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/unrolled_interior.h"
 
+#include "interior/interior_constants.h"
 #include "interior_training/interior_tape.h"
 #include "solvers/interior_net.h"
 #include "solvers/momentum.h"
 
 #include <math.h>
 #include <stddef.h>
-
-/* As in interior.c and interior_code.h. */
-static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27, slip_aim = 4, stiffest = 1e12;
 
 /* The problem and the iterate. */
 typedef struct Nodes {
@@ -343,7 +341,7 @@ bool unrolled_interior_loss(UnrolledInterior *u, const ContactProblem *problem, 
     u->interior.net = NULL;
     if (!load(u, problem)) return false;
     if (u->interior.contact_count == 0) return true;
-    const double first_target = interior_begin(&u->interior, INTERIOR_LEAST_SCALE);
+    const double first_target = interior_begin(&u->interior, INTERIOR_IMPACT_SCALE);
     Nodes n = begin(u, weights);
     TapeId reference, masses;
     given_reference(u, problem, velocities, &reference, &masses);

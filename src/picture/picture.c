@@ -78,13 +78,17 @@ static bool plan_path(Picture *picture, Error *error) {
     return true;
 }
 
-/* The rows of the legend depend on the scales, and the scales on the room that the rows leave: start with 0 rows. */
+/* The entries of the legend depend on the scales, and the scales on the room that its rows leave. So more rows may need
+   fewer: then the scales stay. */
 static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
-    for (int pass = 0; pass < 2; pass++) {
-        arrange(picture, options->width, options->height, pass == 0 ? 0 : legend_rows(picture));
+    int needed = 0;
+    for (int rows = 0; rows <= needed; rows++) {
+        arrange(picture, options->width, options->height, rows);
         if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->largest_distance, error))
             return false;
+        needed = legend_rows(picture);
     }
+    arrange(picture, options->width, options->height, needed);
     return true;
 }
 

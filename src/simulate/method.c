@@ -75,6 +75,7 @@ bool method_lacks_network(const Method *method, const Scene *scene) {
 }
 
 struct Stepper {
+    const MethodDescription *description;
     ContactSolver solver;         /* in the standard step */
     const SteppingKind *stepping; /* or NULL */
     void *state;
@@ -86,6 +87,7 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) 
         error_memory(error, method->text);
         return NULL;
     }
+    stepper->description = method->kind->description;
     stepper->stepping = method->kind->stepping;
     if (stepper->stepping != NULL) {
         stepper->state = stepper->stepping->create(&method->settings, scene, error);
@@ -105,6 +107,8 @@ void stepper_destroy(Stepper *stepper) {
         stepper->solver.kind->destroy(stepper->solver.state);
     free(stepper);
 }
+
+const MethodDescription *stepper_describe(const Stepper *stepper) { return stepper->description; }
 
 /* A contact solver whose cost a step meters. */
 typedef struct MeteredSolver {

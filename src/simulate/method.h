@@ -49,6 +49,9 @@ typedef struct Stepper Stepper;
 Stepper *stepper_create(const Method *method, const Scene *scene, Error *error);
 void stepper_destroy(Stepper *stepper);
 
+/* The description of its method. */
+const MethodDescription *stepper_describe(const Stepper *stepper);
+
 /* Advances the world by the scene's dt; on failure the world is unchanged. Afterwards world_problem() and
    world_solution() are those of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The constant predictor: the mean of a network's training data in place of its prediction, applied as pair-net or
-   contact-net applies the prediction. A baseline: a network has learned something only if it is more accurate. Fails by
-   design: the mean change is too large for a resting box and too small for a struck one. */
+   contact-net applies the prediction; their setting net=off does the same. A baseline: a network has learned something
+   only if it is more accurate. Fails by design: the mean change is too large for a resting box and too small for a
+   struck one. */
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 
@@ -23,6 +24,8 @@ const ContactSolverKind solver_constant = {
                     .settings = settings,
                     .role = METHOD_BASELINE,
                     .needs_network = true,
+                    .chart = METHOD_NO_RUNS,
+                    .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .solve = pair_solver_solve,

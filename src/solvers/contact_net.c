@@ -13,8 +13,8 @@
 #include "solvers/pair_solver.h"
 #include "solvers/solvers.h"
 
-static const SettingSpec settings[] = {{"network", "file of a network with the target points (default: the scene's)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"network", "file of a network with the target points (default: the scene's)"}, PAIR_SOLVER_NET, {NULL, NULL}};
 
 static void *create(const Settings *chosen, Error *error) {
     PairSolver *solver = pair_solver_create("contact-net", chosen, error);
@@ -32,7 +32,10 @@ const ContactSolverKind solver_contact_net = {
                         "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
                     .settings = settings,
                     .needs_network = true,
-                    .twin = "constant"},
+                    .twin = "contact-net:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
     .create = create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};

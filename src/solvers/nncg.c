@@ -169,13 +169,12 @@ static void destroy(void *state) {
     free(solver);
 }
 
-const ContactSolverKind solver_nncg = {
-    .description = {.name = "nncg",
-                    .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
-                    .settings = settings,
-                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.1", "near=0.02"),
-                    .chart_quick = METHOD_RUNS("k=20"),
-                    .stability_place = 5},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+const ContactSolverKind solver_nncg = {.description = {.name = "nncg",
+                                                       .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
+                                                       .settings = settings,
+                                                       .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                                                       .chart_quick = METHOD_RUNS("k=20"),
+                                                       .stability_place = 5},
+                                       .create = create,
+                                       .solve = solve,
+                                       .destroy = destroy};

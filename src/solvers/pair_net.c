@@ -29,6 +29,7 @@
 static const SettingSpec settings[] = {
     {"network", "file of the trained network (default: the scene's)"},
     {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
+    PAIR_SOLVER_NET,
     {NULL, NULL}};
 
 static bool check(const PairNetwork *network, const char *path, Error *error) {
@@ -58,7 +59,10 @@ const ContactSolverKind solver_pair_net = {
                     .settings = settings,
                     .title = "Neural network",
                     .needs_network = true,
-                    .twin = "constant"},
+                    .twin = "pair-net:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
     .create = create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};

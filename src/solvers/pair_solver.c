@@ -29,9 +29,12 @@ PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *
         return NULL;
     }
     solver->sweep_count = 10;
+    bool predicts = true;
     if (settings_int(chosen, "k", 1, SWEEPS_MAX, &solver->sweep_count, error) &&
-        pair_network_read(&solver->network, path, error))
+        settings_bool(chosen, "net", &predicts, error) && pair_network_read(&solver->network, path, error)) {
+        solver->network.constant = !predicts;
         return solver;
+    }
     pair_solver_destroy(solver);
     return NULL;
 }

@@ -11,7 +11,10 @@ typedef struct PairSolver {
     size_t count_capacity;
 } PairSolver;
 
-/* Reads the settings network and k (default: 10). NULL with error set if one is refused. name: of the method. */
+#define PAIR_SOLVER_NET \
+    { "net", "on|off: off predicts the mean of the training data for every pair (default: on)" }
+
+/* Reads the settings network, k (default: 10) and net. NULL with error set if one is refused. name: of the method. */
 PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error);
 void pair_solver_destroy(void *state);
 

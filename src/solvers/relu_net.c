@@ -72,7 +72,7 @@ const ContactSolverKind solver_relu_net = {
     .description = {.name = "relu-net",
                     .summary = "sequential impulses written as a ReLU network; nothing is trained",
                     .settings = settings,
-                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
+                    .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,

@@ -242,8 +242,9 @@ const ContactSolverKind solver_scene_net = {
                     .title = "Scene network",
                     .needs_network = true,
                     .twin = "scene-net:net=off",
-                    .chart =
-                        METHOD_RUNS("", "near=3", "near=0.5", "near=0.1", "near=0.1,more=200", "more=200", "net=off")},
+                    .chart = METHOD_RUNS("", "near=3", "more=200", "net=off", "more=200,net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
     .create = create,
     .solve = solve,
     .destroy = destroy};

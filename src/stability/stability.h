@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
    (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
-   outputs that were rejected (fallbacks.csv), drift of undisturbed bodies (rest.csv). */
+   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv). */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"

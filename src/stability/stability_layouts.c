@@ -65,6 +65,7 @@ static const CsvColumn fallback_columns[] = {
     COUNT(not_finite),
     COUNT(outside_cone),
     COUNT(beyond_training),
+    COUNT(by_sweeps),
 };
 
 const CsvLayout map_layout = CSV_LAYOUT("maps", map_columns, MapCell, .max_rows = STABILITY_MAX_CELLS);

@@ -148,9 +148,11 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
                         .energy = finite_or_nan(reading->gained),
                         .not_finite = reading->fallbacks.not_finite,
                         .outside_cone = reading->fallbacks.outside_cone,
-                        .beyond_training = reading->fallbacks.beyond_training};
-    if (contender->method.kind->description->needs_network && !study_parts_print(lines, &fallback_layout, &row, error))
-        return false;
+                        .beyond_training = reading->fallbacks.beyond_training,
+                        .by_sweeps = reading->fallbacks.by_sweeps};
+    const MethodDescription *method = contender->method.kind->description;
+    const bool may_fall_back = method->needs_network || method->falls_back;
+    if (may_fall_back && !study_parts_print(lines, &fallback_layout, &row, error)) return false;
     return !study->rests || study_parts_print(lines, &rest_layout, &row, error);
 }
 

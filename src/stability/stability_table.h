@@ -40,9 +40,9 @@ typedef struct RunRow {
     const char *study, *method, *setting, *parameter, *unit;
     double value;
     int steps;
-    int verdict;                                   /* rest.csv */
-    double drift, energy;                          /* rest.csv: VerdictReading's drift and gained, or NAN */
-    int not_finite, outside_cone, beyond_training; /* fallbacks.csv: as in NetworkFallbacks */
+    int verdict;                                              /* rest.csv */
+    double drift, energy;                                     /* rest.csv: VerdictReading's drift and gained, or NAN */
+    int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in NetworkFallbacks */
 } RunRow;
 
 extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout;

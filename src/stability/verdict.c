@@ -118,13 +118,6 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
     return failure.kind == ERROR_INPUT;
 }
 
-static void add_fallbacks(NetworkFallbacks *sum, const NetworkFallbacks *step) {
-    sum->not_finite += step->not_finite;
-    sum->outside_cone += step->outside_cone;
-    sum->beyond_training += step->beyond_training;
-    sum->by_sweeps += step->by_sweeps;
-}
-
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
                  const EnergyLog *converged, Error *error) {
     const VerdictRun run = {scene->gravity, scene->dt, scene->frames, stands, converged};
@@ -135,7 +128,7 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
     NetworkFallbacks fallbacks = {0};
     for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);
-        add_fallbacks(&fallbacks, &world_solution(world)->fallbacks);
+        network_fallbacks_add(&fallbacks, &world_solution(world)->fallbacks);
     }
     if (ok) {
         *reading = verdict_watch_end(&watch);

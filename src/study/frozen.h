@@ -8,7 +8,8 @@ typedef struct Snapshot {
     World *world;       /* before the step */
     int frame;          /* of the step */
     Phase phase;
-    ReferenceVelocity *reference; /* [bodies] converged velocities after the step */
+    ReferenceVelocity *reference;   /* [bodies] converged velocities after the step */
+    ReferenceVelocity *no_push_out; /* [bodies] the same for methods of that description; or NULL */
 } Snapshot;
 
 /* Zero-initialise. */
@@ -16,12 +17,14 @@ typedef struct SnapshotList {
     int count;
     Snapshot *items; /* [count] */
     size_t capacity;
-    double residual; /* m/s: the largest residual of the reference solves */
+    bool no_push_out; /* set by the caller: methods of that description will be scored, too */
+    double residual;  /* m/s: the largest residual of the reference solves */
 } SnapshotList;
 
 /* Adds sampled steps of the engine's run of a launched scene; the scene must outlive the list. */
 bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error);
 void snapshots_free(SnapshotList *list);
 
-/* Scores a method on every step. world: scratch space for a copy. */
+/* Scores a method on every step. world: scratch space for a copy. A method of the description no_push_out needs a list
+   with that flag. */
 bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES], Error *error);

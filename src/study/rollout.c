@@ -34,15 +34,15 @@ bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker,
 
 void rollout_free(Rollout *rollout) {
     world_destroy(rollout->world);
-    reference_free(&rollout->reference);
+    converged_step_free(&rollout->converged);
     run_log_free(&rollout->log);
     *rollout = (Rollout){0};
 }
 
-static bool score(Rollout *rollout, StepScores *scores, Error *error) {
+static bool score(Rollout *rollout, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
-    Reference *reference = &rollout->reference;
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    const Reference *reference = &rollout->converged.reference;
+    if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
     rollout->solves++;
     rollout->unconverged += reference->residual > SOLVE_CONVERGED;
     if (step_scores_add(scores, problem, world_solution(rollout->world)->velocities, reference->velocities))
@@ -60,6 +60,7 @@ static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error) {
     if (!begin(rollout, launched, error)) return false;
+    const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     for (int frame = 1; frame <= launched->frames; frame++) {
         const Step step = {.scene = launched, .frame = frame};
@@ -72,7 +73,8 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         }
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
-        if (scores != NULL && sampled(sampling, phase, &tracker, frame) && !score(rollout, &scores[phase], error))
+        if (scores != NULL && sampled(sampling, phase, &tracker, frame) &&
+            !score(rollout, push_out, &scores[phase], error))
             return false;
     }
     return true;

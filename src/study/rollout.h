@@ -2,8 +2,7 @@
 /* A closed-loop run of a method; each step is scored against its own converged solution. */
 #pragma once
 #include "common/error.h"
-#include "reference/reference.h"
-#include "simulate/method.h"
+#include "study/converged_step.h"
 #include "study/run_log.h"
 
 /* Errors of the scored steps. Zero-initialise; free with step_scores_free(). */
@@ -29,7 +28,7 @@ bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker,
 /* One thread's run in progress; zero-initialise, free with rollout_free. */
 typedef struct Rollout {
     World *world;
-    Reference reference;
+    ConvergedStep converged;
     RunLog log;
     int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
 } Rollout;

@@ -11,8 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether methods are scored against converged velocities without push-out. */
+static bool scores_without_push_out(const SceneStudy *study) {
+    for (int i = 0; i < study->contender_count; i++)
+        if (study->contenders[i]->method.kind->description->no_push_out) return true;
+    return false;
+}
+
 static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error *error) {
-    Launch *launches = launch_choice_make(choice, study->scene, study->size->launches, &study->launch_count, error);
+    Launch *launches = launch_choice_make(choice, study->scene, study->size.launches, &study->launch_count, error);
     if (launches == NULL) return false;
     size_t count = (size_t)study->launch_count;
     study->launches = malloc(count * sizeof *study->launches);
@@ -20,14 +27,30 @@ static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error
     study->snapshots = calloc(count, sizeof *study->snapshots);
     bool ok = study->launches != NULL && study->converged != NULL && study->snapshots != NULL;
     if (!ok) error_memory(error, "study");
-    for (int i = 0; ok && i < study->launch_count; i++) study->launches[i] = launch_scene(study->scene, &launches[i]);
+    for (int i = 0; ok && i < study->launch_count; i++) {
+        study->launches[i] = launch_scene(study->scene, &launches[i]);
+        study->snapshots[i].no_push_out = scores_without_push_out(study);
+    }
     free(launches);
     return ok;
 }
 
+/* A step takes time in proportion to its bodies, so larger scenes have fewer launches. */
+static StudySize size_for(const StudySize *full, const Scene *scene) {
+    enum { SMALL = 110, LEAST_LAUNCHES = 4, LEAST_TIMED = 2 }; /* SMALL: bodies */
+    StudySize size = *full;
+    if (scene->body_count <= SMALL) return size;
+    const int launches = size.launches * SMALL / scene->body_count,
+              timed = size.timed_launches * SMALL / scene->body_count;
+    size.launches = launches > LEAST_LAUNCHES ? launches : LEAST_LAUNCHES;
+    size.timed_launches = timed > LEAST_TIMED ? timed : LEAST_TIMED;
+    return size;
+}
+
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error) {
-    *study = (SceneStudy){.scene = scene_read(path, error), .size = size};
+    *study = (SceneStudy){.scene = scene_read(path, error)};
+    if (study->scene != NULL) study->size = size_for(size, study->scene);
     bool ok = study->scene != NULL && (study->scene->bomb.present || error_input(error, path, "the scene has no bomb"));
     if (ok) {
         study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
@@ -59,7 +82,7 @@ static bool prepare_launch(void *context, int i, Error *error) {
     Rollout rollout = {0};
     Stepper *stepper = method_parse(&method, "reference", error) ? stepper_create(&method, launched, error) : NULL;
     bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error) &&
-              snapshots_add(&study->snapshots[i], launched, &study->size->frozen, error);
+              snapshots_add(&study->snapshots[i], launched, &study->size.frozen, error);
     study->converged[i] = rollout.log;
     rollout.log = (RunLog){0};
     rollout_free(&rollout);
@@ -106,7 +129,7 @@ static bool score_launches(SceneStudy *study, Stepper *stepper, Scores *scores, 
         const Scene *launched = &study->launches[i];
         int scored[PHASES];
         for (int phase = 0; phase < PHASES; phase++) scored[phase] = scores->closed[phase].count;
-        ok = rollout_run(&rollout, stepper, launched, &study->size->closed, scores->closed, error);
+        ok = rollout_run(&rollout, stepper, launched, &study->size.closed, scores->closed, error);
         if (ok) scores->measures[i] = run_measures(&rollout.log, &study->converged[i], launched);
         if (ok) update_worst(scores, scored);
         ok = ok && snapshots_score(&study->snapshots[i], stepper, rollout.world, scores->frozen, error);
@@ -150,7 +173,7 @@ static bool choose_timed(const SceneStudy *study, Scene *launches, SnapshotList 
         int last = log->touch + study->scene->bomb.impact_frames + AFTER_FRAMES + 20;
         launches[i] = study->launches[from];
         if (last > options->last_frame) options->last_frame = last;
-        if (!snapshots_add(snapshots, &launches[i], &study->size->frozen, error)) return false;
+        if (!snapshots_add(snapshots, &launches[i], &study->size.frozen, error)) return false;
     }
     if (options->last_frame > study->scene->frames) options->last_frame = study->scene->frames;
     return true;
@@ -158,12 +181,12 @@ static bool choose_timed(const SceneStudy *study, Scene *launches, SnapshotList 
 
 bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progress, Error *error) {
     size_t contenders = (size_t)study->contender_count;
-    int timed = study->size->timed_launches < study->launch_count ? study->size->timed_launches : study->launch_count;
+    int timed = study->size.timed_launches < study->launch_count ? study->size.timed_launches : study->launch_count;
     Scene *launches = malloc((size_t)timed * sizeof *launches);
     StepCost(*costs[PROTOCOLS])[PHASES] = {malloc((contenders + 1) * sizeof(StepCost[PHASES])),
                                            malloc((contenders + 1) * sizeof(StepCost[PHASES]))};
     SnapshotList snapshots = {0};
-    TimingOptions options = {.launches = launches, .launch_count = timed, .repetitions = study->size->repetitions};
+    TimingOptions options = {.launches = launches, .launch_count = timed, .repetitions = study->size.repetitions};
     bool ok = launches != NULL && costs[0] != NULL && costs[1] != NULL;
     if (!ok) error_memory(error, "study");
     ok = ok && choose_timed(study, launches, &snapshots, &options, error) &&

@@ -19,12 +19,12 @@ typedef struct SceneStudy {
     const Contender **contenders; /* [contender_count] available for this scene */
     RunLog *converged;            /* [launch_count] */
     SnapshotList *snapshots;      /* [launch_count] */
-    const StudySize *size;
+    StudySize size;
     double frozen_residual;  /* m/s: largest residual of the reference solves of frozen steps */
     int solves, unconverged; /* reference solves in closed loop */
 } SceneStudy;
 
-/* Reads the scene and its launches. */
+/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. */
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/timing.h"
 
+#include "common/array.h"
 #include "simulate/simulate.h"
 #include "study/meter.h"
 #include "study/statistics.h"
@@ -14,11 +15,17 @@ typedef struct Meter {
     int64_t overhead;
 } Meter;
 
-/* Sums over steps, per phase. */
-typedef struct Tally {
-    int64_t solver[PHASES], step[PHASES];
-    int steps[PHASES];
-} Tally;
+/* The times of steps, in the order in which they ran: the same in all repetitions. */
+typedef struct StepTime {
+    int64_t solver, step;
+    Phase phase;
+} StepTime;
+
+typedef struct StepLog {
+    int count;
+    StepTime *items; /* [count] */
+    size_t capacity;
+} StepLog;
 
 typedef struct Cost {
     int64_t solver, step;
@@ -34,14 +41,15 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     return true;
 }
 
-static void count_step(Tally *tally, const Cost *cost, Phase phase) {
-    tally->solver[phase] += cost->solver;
-    tally->step[phase] += cost->step;
-    tally->steps[phase]++;
+static bool log_step(StepLog *log, const Cost *cost, Phase phase, Error *error) {
+    if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
+        return error_memory(error, "timing");
+    log->items[log->count++] = (StepTime){cost->solver, cost->step, phase};
+    return true;
 }
 
 /* Ends early if the state becomes NaN or infinite. */
-static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, Tally *tally,
+static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, StepLog *log,
                        Error *error) {
     World *world = scene_world(launched, error);
     if (world == NULL) return false;
@@ -49,8 +57,9 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
     Error failure = {0};
     Cost cost;
     for (int frame = 1; frame <= last_frame; frame++) {
-        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, &cost, &failure)) break;
-        count_step(tally, &cost, phase_next(&tracker, world_problem(world), frame));
+        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, &cost, &failure) ||
+            !log_step(log, &cost, phase_next(&tracker, world_problem(world), frame), &failure))
+            break;
     }
     world_destroy(world);
     if (failure.kind != ERROR_SYSTEM) return true;
@@ -58,24 +67,24 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
     return false;
 }
 
-static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, Tally *tally,
+static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, StepLog *log,
                        Error *error) {
     Cost cost;
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
         if (!world_copy(world, snapshot->world, error) ||
             !metered_step(stepper, world, (Step){.scene = snapshot->scene, .frame = snapshot->frame}, meter, &cost,
-                          error))
+                          error) ||
+            !log_step(log, &cost, snapshot->phase, error))
             return false;
-        count_step(tally, &cost, snapshot->phase);
     }
     return true;
 }
 
-/* One contender. solver, step: means of each repetition [PROTOCOLS][PHASES][repetitions]. */
+/* One contender. */
 typedef struct Timed {
     Stepper *stepper;
-    double *solver, *step;
+    StepLog *logs[PROTOCOLS]; /* [repetitions] each */
     double instructions[PROTOCOLS][PHASES];
 } Timed;
 
@@ -84,33 +93,39 @@ typedef struct Timing {
     const SnapshotList *snapshots;
     World *world;
     int count;
-    Timed *items; /* [count] */
+    Timed *items;  /* [count] */
+    double *times; /* scratch, [repetitions] */
 } Timing;
 
-static bool run_both(const Timing *timing, const Timed *timed, const Meter *meter, Tally tallies[PROTOCOLS],
+static bool run_both(const Timing *timing, const Timed *timed, const Meter *meter, StepLog *closed, StepLog *frozen,
                      Error *error) {
     for (int i = 0; i < timing->options->launch_count; i++)
-        if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter,
-                        &tallies[PROTOCOL_CLOSED], error))
+        if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
+                        error))
             return false;
-    return run_frozen(timed->stepper, timing->snapshots, timing->world, meter, &tallies[PROTOCOL_FROZEN], error);
+    return run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
 }
-
-static double per_step(int64_t sum, int steps) { return steps > 0 ? (double)sum / steps : NAN; }
 
 static bool repeat(Timing *timing, int repetition, const Meter *meter, Error *error) {
     for (int i = 0; i < timing->count; i++) {
-        Timed *timed = &timing->items[i];
-        Tally tallies[PROTOCOLS] = {0};
-        if (!run_both(timing, timed, meter, tallies, error)) return false;
-        for (int p = 0; p < PROTOCOLS; p++)
-            for (int phase = 0; phase < PHASES; phase++) {
-                int at = (p * PHASES + phase) * timing->options->repetitions + repetition;
-                timed->solver[at] = per_step(tallies[p].solver[phase], tallies[p].steps[phase]) / 1000;
-                timed->step[at] = per_step(tallies[p].step[phase], tallies[p].steps[phase]) / 1000;
-            }
+        const Timed *timed = &timing->items[i];
+        if (!run_both(timing, timed, meter, &timed->logs[PROTOCOL_CLOSED][repetition],
+                      &timed->logs[PROTOCOL_FROZEN][repetition], error))
+            return false;
     }
     return true;
+}
+
+/* Mean of the solver's counts in a phase. */
+static double mean_count(const StepLog *log, int phase) {
+    int64_t sum = 0;
+    int steps = 0;
+    for (int i = 0; i < log->count; i++) {
+        if ((int)log->items[i].phase != phase) continue;
+        sum += log->items[i].solver;
+        steps++;
+    }
+    return steps > 0 ? (double)sum / steps : NAN;
 }
 
 /* Without repetitions: counts do not vary. */
@@ -119,40 +134,68 @@ static bool count_instructions(Timing *timing, Error *error) {
     const Meter meter = {meter_instructions, 0};
     bool ok = true;
     for (int i = 0; ok && i < timing->count; i++) {
-        Tally tallies[PROTOCOLS] = {0};
-        if (can) ok = run_both(timing, &timing->items[i], &meter, tallies, error);
-        for (int p = 0; p < PROTOCOLS; p++)
+        StepLog logs[PROTOCOLS] = {0};
+        if (can)
+            ok = run_both(timing, &timing->items[i], &meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
+        for (int p = 0; p < PROTOCOLS; p++) {
             for (int phase = 0; phase < PHASES; phase++)
-                timing->items[i].instructions[p][phase] =
-                    can ? per_step(tallies[p].solver[phase], tallies[p].steps[phase]) : NAN;
+                timing->items[i].instructions[p][phase] = can ? mean_count(&logs[p], phase) : NAN;
+            free(logs[p].items);
+        }
     }
     if (can) meter_close_instructions();
     return ok;
 }
 
-static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions) {
-    double *solver = timed->solver + (protocol * PHASES + phase) * repetitions;
-    double *step = timed->step + (protocol * PHASES + phase) * repetitions;
-    return isnan(solver[0]) ? (StepCost){NAN, NAN, NAN, NAN, NAN}
-                            : (StepCost){.solver = statistics_quantile(solver, repetitions, 0.5),
-                                         .solver_q1 = statistics_quantile(solver, repetitions, 0.25),
-                                         .solver_q3 = statistics_quantile(solver, repetitions, 0.75),
-                                         .step = statistics_quantile(step, repetitions, 0.5),
-                                         .instructions = timed->instructions[protocol][phase]};
+/* Adds the quartiles and medians of step i over the repetitions. A repetition that another process interrupted in this
+   step does not count more than once. */
+static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i, double *times) {
+    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].step / 1000;
+    sum->step += statistics_quantile(times, repetitions, 0.5);
+    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].solver / 1000;
+    sum->solver += statistics_quantile(times, repetitions, 0.5);
+    sum->solver_q1 += statistics_quantile(times, repetitions, 0.25);
+    sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
+}
+
+static int fewest(const StepLog *logs, int repetitions) {
+    int count = logs[0].count;
+    for (int r = 1; r < repetitions; r++) count = logs[r].count < count ? logs[r].count : count;
+    return count;
+}
+
+/* times: scratch, [repetitions]. */
+static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
+    const StepLog *logs = timed->logs[protocol];
+    StepCost sum = {0};
+    int steps = 0;
+    for (int i = 0; i < fewest(logs, repetitions); i++) {
+        if ((int)logs[0].items[i].phase != phase) continue;
+        add_step(&sum, logs, repetitions, i, times);
+        steps++;
+    }
+    if (steps == 0) return (StepCost){NAN, NAN, NAN, NAN, NAN};
+    return (StepCost){.solver = sum.solver / steps,
+                      .solver_q1 = sum.solver_q1 / steps,
+                      .solver_q3 = sum.solver_q3 / steps,
+                      .step = sum.step / steps,
+                      .instructions = timed->instructions[protocol][phase]};
 }
 
 static bool timing_begin(Timing *timing, const Contender *const *contenders, Error *error) {
     const Scene *scene = &timing->options->launches[0];
-    size_t samples = (size_t)timing->options->repetitions * PROTOCOLS * PHASES;
+    const size_t repetitions = (size_t)timing->options->repetitions;
+    timing->times = malloc(repetitions * sizeof *timing->times);
     timing->items = calloc((size_t)timing->count, sizeof *timing->items);
-    if (timing->items == NULL) return error_memory(error, "timing");
+    if (timing->items == NULL || timing->times == NULL) return error_memory(error, "timing");
     for (int i = 0; i < timing->count; i++) {
         Timed *timed = &timing->items[i];
         timed->stepper = stepper_create(&contenders[i]->method, scene, error);
         if (timed->stepper == NULL) return false;
-        timed->solver = malloc(2 * samples * sizeof *timed->solver);
-        if (timed->solver == NULL) return error_memory(error, "timing");
-        timed->step = timed->solver + samples;
+        for (int p = 0; p < PROTOCOLS; p++) {
+            timed->logs[p] = calloc(repetitions, sizeof *timed->logs[p]);
+            if (timed->logs[p] == NULL) return error_memory(error, "timing");
+        }
     }
     timing->world = scene_world(scene, error);
     return timing->world != NULL;
@@ -160,10 +203,16 @@ static bool timing_begin(Timing *timing, const Contender *const *contenders, Err
 
 static void timing_end(Timing *timing) {
     for (int i = 0; timing->items != NULL && i < timing->count; i++) {
-        stepper_destroy(timing->items[i].stepper);
-        free(timing->items[i].solver);
+        const Timed *timed = &timing->items[i];
+        stepper_destroy(timed->stepper);
+        for (int p = 0; p < PROTOCOLS; p++) {
+            for (int r = 0; timed->logs[p] != NULL && r < timing->options->repetitions; r++)
+                free(timed->logs[p][r].items);
+            free(timed->logs[p]);
+        }
     }
     free(timing->items);
+    free(timing->times);
     world_destroy(timing->world);
 }
 
@@ -187,8 +236,8 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
     meter_unpin();
     for (int i = 0; ok && i < count; i++)
         for (int phase = 0; phase < PHASES; phase++) {
-            closed[i][phase] = summarise(&timing.items[i], PROTOCOL_CLOSED, phase, options->repetitions);
-            frozen[i][phase] = summarise(&timing.items[i], PROTOCOL_FROZEN, phase, options->repetitions);
+            closed[i][phase] = summarise(&timing.items[i], PROTOCOL_CLOSED, phase, options->repetitions, timing.times);
+            frozen[i][phase] = summarise(&timing.items[i], PROTOCOL_FROZEN, phase, options->repetitions, timing.times);
         }
     timing_end(&timing);
     return ok;

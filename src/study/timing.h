@@ -5,10 +5,11 @@
 #include "study/contenders.h"
 #include "study/frozen.h"
 
-/* Microseconds per step in one phase, over the repetitions; NaN if the phase does not occur. */
+/* Microseconds per step in one phase: means over the steps of the median and the quartiles that each step has over the
+   repetitions. NaN if the phase does not occur. */
 typedef struct StepCost {
-    double solver, solver_q1, solver_q3; /* median and quartiles of the solver alone */
-    double step;                         /* median of the whole step */
+    double solver, solver_q1, solver_q3; /* of the solver alone: median, quartiles */
+    double step;                         /* of the whole step: median */
     double instructions;                 /* of the solver; NaN if they cannot be counted */
 } StepCost;
 

@@ -9,12 +9,13 @@ run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o quick --quick
 says "stack: "
 equal "left out of single" "$(grep -A1 '^single: ' out | tail -n 1)" "    left out, as no network is named for them: scene-net"
 equal "left out of stack" "$(grep -A1 '^stack: ' out | grep -c 'left out')" 0
-says "left out unless named in --methods: relu-net, soft-step, avbd"
+says "left out unless named in --methods: constant, relu-net, interior"
 says "reference: residual at most"
 for file in chart-single.png chart-stack.png chart-stack.svg chart-stack.pdf; do
     [ -s "quick/$file" ] || fail "no $file"
 done
-equal "files" "$(ls quick | wc -l)" 7
+equal "files" "$(ls quick | wc -l)" 12
+says "error at equal time -> quick/equal_time.csv, equal_time_methods.csv, equal_time.png, .svg, .pdf"
 without_times quick/chart.csv >figures.csv
 diff "$sources/golden/chart_quick.csv" figures.csv >difference || fail "other numbers: $(head -5 difference)"
 /usr/bin/python3 - <<'PYTHON' || fail "times are not in order"
@@ -25,6 +26,29 @@ for row in csv.DictReader(open("quick/chart.csv")):
     if row["us_solver"]:
         assert float(row["us_solver_q1"]) <= float(row["us_solver"]) <= float(row["us_solver_q3"]), row
         assert float(row["us_step"]) > 0, row
+PYTHON
+
+/usr/bin/python3 - <<'PYTHON' || fail "equal_time.csv is not of this chart"
+import csv
+roles = {"reference", "playback", "constant"}
+chart = [row for row in csv.DictReader(open("quick/chart.csv"))
+         if row["protocol"] == "closed" and row["phase"] != "rest" and row["us_solver"] and row["method"] not in roles]
+table = list(csv.DictReader(open("quick/equal_time.csv")))
+assert len(table) == 3 * len(chart) > 100, (len(table), len(chart))
+for i, row in enumerate(table):
+    of = chart[i // 3]
+    for key in ("scene", "method", "setting", "phase", "launches", "us_solver"):
+        assert row[key] == of[key], (row, of)
+    assert row["statistic"] == ("mean", "median", "p95")[i % 3], row
+    assert row["error"] == of["error_" + row["statistic"]], (row, of)
+    assert (row["rival"] == "") == (row["reach"] == "before") == (row["rival_error"] == ""), row
+    assert row["rival"].split(",")[0] != row["method"], row
+    if row["ratio"]:
+        ratio = max(float(row["error"]), 1e-4) / float(row["rival_error"])
+        assert abs(float(row["ratio"]) / ratio - 1) < 1e-4, row
+    assert row["method"] != "momentum" or row["setting"] != "k=20" or row["time_momentum_20"] == "1", row
+methods = list(csv.DictReader(open("quick/equal_time_methods.csv")))
+assert {row["method"].split(",")[0] for row in methods} == {row["method"] for row in chart}, methods
 PYTHON
 
 few=engine:k=10,momentum:k=20,learned-momentum:k=20,substepping:substeps=10,pair-net

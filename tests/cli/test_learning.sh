@@ -36,6 +36,23 @@ assert inputs[first, 1] > 0.5 and inputs[first, 5] < -20 and inputs[first, 2:4].
 PYTHON
 
 # The readings that the paper leaves open.
+# A table and a sweep of the same places are the same launches; so are the scene's family and its grid.
+printf 'x\n-2\n-1\n0\n1\n2\n' >places.csv
+run 0 dataset single.yaml -o swept.npz --bomb-x=-2:2:1
+run 0 dataset single.yaml -o listed.npz --launches places.csv
+cmp -s swept.npz listed.npz || fail "a sweep and a table differ"
+run 0 dataset single.yaml -o grid.npz --bomb-x=-5:5:0.05
+run 0 dataset single.yaml -o family.npz
+cmp -s grid.npz family.npz || fail "the family of the single box is not its grid"
+run 2 dataset single.yaml -o none.npz --launches places.csv --random 5
+complains "--launches: error: cannot be combined with --bomb-x or --random"
+printf 'mass\n1\n2\n3\n4\n5\n' >masses.csv
+run 2 dataset single.yaml -o none.npz --launches masses.csv
+complains "single: error: a dataset has one mass and one frame of the bomb"
+sed 's/x: {[^}]*}/x: 4/' single.yaml >alone.yaml
+run 2 dataset alone.yaml -o none.npz
+complains "alone: error: the bomb has one launch and no family"
+
 run 0 dataset single.yaml -o raw.npz --random 10 --inputs raw --target net --labels reference
 says "of 10 launches -> raw.npz"
 run 0 dataset single.yaml -o mixed.npz --random 10 --bomb-x=-2:2:1 --inputs raw-unturned --target impulse

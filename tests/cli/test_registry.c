@@ -13,17 +13,21 @@
 
 static void *create(const Settings *chosen, Error *error) { return solver_engine.create(chosen, error); }
 
+/* Counts each step as one that sweeps solved instead. */
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    solution->fallbacks.by_sweeps = 1;
     return solver_engine.solve(state, problem, solution, error);
 }
 
 static void destroy(void *state) { solver_engine.destroy(state); }
 
-static const ContactSolverKind solver_of_test = {
-    .description = {.name = "of-test", .summary = "a solver that only a test has", .title = "Solver of a test"},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+static const ContactSolverKind solver_of_test = {.description = {.name = "of-test",
+                                                                 .summary = "a solver that only a test has",
+                                                                 .title = "Solver of a test",
+                                                                 .falls_back = true},
+                                                 .create = create,
+                                                 .solve = solve,
+                                                 .destroy = destroy};
 
 /* In place of simulate/methods.c, which is not linked. */
 const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING) METHOD_KIND_SOLVER(of_test){0}};
@@ -108,6 +112,27 @@ static void a_border_is_found_for_it(void **state) {
                      "\nbomb_speed,of-test,,speed,m/s,");
 }
 
+static void its_fallbacks_are_counted(void **state) {
+    (void)state;
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s", temporary_path("fallbacks"));
+    char *study[] = {"twinbox stability", "--scenes",   SOURCE_DIR "/scenes", "-o",      folder,
+                     "--study",           "bomb_speed", "--methods",          "of-test", NULL};
+    free(run_command(command_stability, study));
+    char *table = read_text(temporary_path("fallbacks/fallbacks.csv"));
+    int steps, by_sweeps;
+    assert_non_null(strstr(table, ",by_sweeps\n"));
+    assert_int_equal(
+        sscanf(strchr(table, '\n'), "\nbomb_speed,of-test,,speed,m/s,%*g,%d,0,0,0,%d\n", &steps, &by_sweeps), 2);
+    assert_true(steps > 10);
+    assert_int_equal(by_sweeps, steps);
+    free(table);
+    char *run[] = {"twinbox simulate", SOURCE_DIR "/scenes/single.yaml", "--frames", "7", "--method", "of-test", NULL};
+    char *printed = run_command(command_simulate, run);
+    assert_non_null(strstr(printed, "\n    steps solved by sweeps instead: 7\n"));
+    free(printed);
+}
+
 static void a_picture_has_its_title(void **state) {
     (void)state;
     Error error = {0};
@@ -125,8 +150,9 @@ static void a_picture_has_its_title(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(methods_lists_it), cmocka_unit_test(every_study_has_it),
-                                       cmocka_unit_test(a_chart_scores_it), cmocka_unit_test(a_border_is_found_for_it),
-                                       cmocka_unit_test(a_picture_has_its_title)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(methods_lists_it),          cmocka_unit_test(every_study_has_it),
+        cmocka_unit_test(a_chart_scores_it),         cmocka_unit_test(a_border_is_found_for_it),
+        cmocka_unit_test(its_fallbacks_are_counted), cmocka_unit_test(a_picture_has_its_title)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

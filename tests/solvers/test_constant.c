@@ -34,7 +34,30 @@ static void the_constant_says_what_the_data_were_on_average(void **state) {
     assert_near(v[2].linear.y, 4 * 2 * 4, 1e-5); /* normal (0, 1): 4 sweeps of the mean, twice 4 along the normal */
 }
 
+static void a_silenced_network_is_the_constant(void **state) {
+    (void)state;
+    static const PairTarget targets[] = {TARGET_POINTS, TARGET_PAIR};
+    for (int i = 0; i < 2; i++) {
+        Error error = {0};
+        char text[512];
+        BodyVelocity constant[3], silenced[3], network[3];
+        ContactImpulse impulses[2];
+        const ContactSolverKind *kind = targets[i] == TARGET_POINTS ? &solver_contact_net : &solver_pair_net;
+        const char *path = constant_network(PAIR_CONTACT, targets[i], targets[i] == TARGET_POINTS ? 4 : 2, six);
+        solve_by(&solver_constant, path, 4, &chain, constant, impulses);
+        solve_by(kind, path, 4, &chain, network, impulses);
+        snprintf(text, sizeof text, "network=%s,net=off", path);
+        ContactSolver solver = make_solver(kind, text);
+        ContactSolution solution = {silenced, impulses, 0, {0}};
+        assert_ok(solver.kind->solve(solver.state, &chain, &solution, &error), error);
+        assert_memory_equal(silenced, constant, sizeof constant);
+        assert_memory_not_equal(silenced, network, sizeof network);
+        free_solver(&solver);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_constant_says_what_the_data_were_on_average)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_constant_says_what_the_data_were_on_average),
+                                       cmocka_unit_test(a_silenced_network_is_the_constant)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

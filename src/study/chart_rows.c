@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/chart_rows.h"
+
+#include "common/parse.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double lost_drift = 0.5; /* m, half a box */
+
+void chart_split_setting(const char *setting, char *numbers, char *words) {
+    while (*setting != '\0') {
+        size_t length = strcspn(setting, ",");
+        char item[CHART_SETTING_SIZE];
+        snprintf(item, sizeof item, "%.*s", (int)length, setting);
+        const char *value = strchr(item, '=');
+        double number;
+        bool is_number = value != NULL && parse_double(value + 1, &number);
+        if (!is_number || numbers[0] != '\0') strcat(is_number ? numbers : words, ", ");
+        strcat(is_number ? numbers : words, item);
+        setting += length + (setting[length] == ',');
+    }
+}
+
+void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]) {
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
+    chart_split_setting(row->setting, numbers, words);
+    snprintf(family, CHART_FAMILY_SIZE, "%s%s", row->method, words);
+}
+
+bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
+    for (int i = 0; i < count; i++) {
+        const ChartRow *rest = &rows[i];
+        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
+            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The error of a method over its time, from runs with several settings. */
+#pragma once
+
+typedef struct CurvePoint {
+    double us, error; /* microseconds; m/s; both greater than 0 */
+} CurvePoint;
+
+/* Where a time lies on a curve: before its first point, between its points, or beyond the last. */
+typedef enum CurveReach { CURVE_BEFORE, CURVE_WITHIN, CURVE_BEYOND } CurveReach;
+
+/* Sorts the points and keeps those that no other beats in both: rising times, falling errors. Returns their number. */
+int error_curve_front(CurvePoint *points, int count);
+
+/* The error of such a front at a time: a straight line in log error over log time between neighbours. Before the first
+   point there is none, NaN: no setting is that quick. Beyond the last it is the last's. count >= 1. */
+double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach);
