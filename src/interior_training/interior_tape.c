@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/interior_tape.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Rows of one contact, by body. */
@@ -25,6 +26,7 @@ static void add3(double *x, const double *row, double by) {
 
 /* x += J_n^T normal + J_t^T tangent; NULL: zeros. The position of bodies that do not move stays zero. */
 static void push(const UnrolledInterior *u, const double *normal, const double *tangent, double *x) {
+    assert(x != NULL);
     for (int i = 0; i < slots_of(u); i++) {
         const InteriorPair *pair = pair_of(u, i);
         const Rows rows = rows_of(pair, i);

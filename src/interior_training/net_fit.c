@@ -2,6 +2,7 @@
 #include "interior_training/net_fit.h"
 
 #include "common/array.h"
+#include "interior_training/split_mix.h"
 
 #include <math.h>
 #include <omp.h>
@@ -33,15 +34,11 @@ bool net_fit_begin(NetFit *fit, Error *error) {
     return (fit->unrolled != NULL && fit->slopes != NULL && fit->losses != NULL) || error_memory(error, "interior-net");
 }
 
-/* Fisher and Yates; SplitMix64. */
+/* Fisher and Yates. */
 static void shuffle(int *order, int count, uint64_t seed) {
     for (int i = 0; i < count; i++) order[i] = i;
     for (int i = count - 1; i > 0; i--) {
-        uint64_t z = seed += UINT64_C(0x9e3779b97f4a7c15);
-        z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-        z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-        z ^= z >> 31;
-        const int j = (int)(z % (uint64_t)(i + 1)), kept = order[i];
+        const int j = (int)(split_mix(&seed) % (uint64_t)(i + 1)), kept = order[i];
         order[i] = order[j];
         order[j] = kept;
     }

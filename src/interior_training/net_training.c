@@ -2,6 +2,7 @@
 #include "interior_training/net_training.h"
 
 #include "interior_training/recording.h"
+#include "interior_training/split_mix.h"
 #include "solvers/interior_net.h"
 #include "solvers/solvers.h"
 
@@ -80,8 +81,8 @@ static bool hold_out(Trainer *trainer, Error *error) {
 static void first_weights(double *weights, uint64_t seed) {
     uint64_t state = seed;
     for (int i = 0; i < INTERIOR_NET_WEIGHTS; i++) {
-        state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-        weights[i] = i < INTERIOR_NET_OUTPUT_WEIGHTS ? first_weight * ((double)(state >> 33) * 0x1p-30 - 1) : 0;
+        const double unit = (double)(split_mix(&state) >> 11) * 0x1p-52 - 1;
+        weights[i] = i < INTERIOR_NET_OUTPUT_WEIGHTS ? first_weight * unit : 0;
     }
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/random_scene.h"
 
+#include "interior_training/split_mix.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,17 +19,9 @@ typedef struct Maker {
     float friction;
 } Maker;
 
-/* SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014). */
-static uint64_t next_bits(uint64_t *state) {
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return z ^ (z >> 31);
-}
-
 /* Uniform in low .. high. */
 static float draw(Maker *maker, double low, double high) {
-    return (float)(low + (high - low) * (double)(next_bits(&maker->state) >> 11) * 0x1p-53);
+    return (float)(low + (high - low) * (double)(split_mix(&maker->state) >> 11) * 0x1p-53);
 }
 
 static float draw_log(Maker *maker, double low, double high) {
@@ -36,7 +30,7 @@ static float draw_log(Maker *maker, double low, double high) {
 
 /* low .. high, both possible. */
 static int draw_int(Maker *maker, int low, int high) {
-    return low + (int)(next_bits(&maker->state) % (uint64_t)(high - low + 1));
+    return low + (int)(split_mix(&maker->state) % (uint64_t)(high - low + 1));
 }
 
 static BodyDef *add(Maker *maker, Vec2 size, float mass, Vec2 position) {
@@ -162,7 +156,7 @@ static BodyDef make_bomb(Maker *maker, const Shape *shape, bool from_above) {
 
 void random_scene_make(RandomScene *random, uint64_t seed, int number) {
     Maker maker = {random, seed, 0};
-    maker.state = next_bits(&maker.state) ^ ((uint64_t)number * UINT64_C(0xd1342543de82ef95));
+    maker.state = split_mix(&maker.state) ^ ((uint64_t)number * UINT64_C(0xd1342543de82ef95));
     maker.friction = draw(&maker, 0.1, 0.6);
     *random = (RandomScene){.scene = {.gravity = {0, -10},
                                       .dt = 1.0f / 60,

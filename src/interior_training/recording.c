@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/recording.h"
 
-#include "common/array.h"
 #include "common/parallel.h"
 #include "interior_training/random_scene.h"
 #include "simulate/phases.h"

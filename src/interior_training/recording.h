@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact problems of runs of random scenes, with their converged velocities: all impact frames, some of those after
-   and some at rest before the bomb. */
+/* Contact problems of runs of random scenes, with their converged velocities: all impact frames, and some of the frames
+   before and after. Steps at rest are left out, as the method does without the network there. */
 #pragma once
 #include "impact_training/impact_problems.h"
 
