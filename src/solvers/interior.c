@@ -28,6 +28,9 @@
 
 enum {
     REST_SWEEPS = 2,
+    IMPACT_SWEEPS = INTERIOR_IMPACT_SWEEPS,
+    MANY_BODIES = 128,    /* an iteration takes as long as 15 sweeps or more, */
+    MANY_SWEEPS = 12,     /* and these save more than they cost */
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
     CHECK_EVERY = 8
@@ -63,7 +66,8 @@ typedef struct State {
     Momentum momentum;
     InteriorNet net; /* of interior-net */
     float near;      /* m/s */
-    float start_factors[INTERIOR_IMPACT_SWEEPS], factors[FALLBACK_SWEEPS], more_factors[FALLBACK_MORE];
+    float start_factors[IMPACT_SWEEPS], many_factors[MANY_SWEEPS], factors[FALLBACK_SWEEPS],
+        more_factors[FALLBACK_MORE];
 } State;
 
 static const SettingSpec settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
@@ -88,8 +92,8 @@ static void *create(const Settings *chosen, Error *error) {
     }
     solver->near = near;
     large_islands_init(&solver->large);
-    for (int s = 0; s < INTERIOR_IMPACT_SWEEPS; s++)
-        solver->start_factors[s] = momentum_factor_tuned(s, INTERIOR_IMPACT_SWEEPS);
+    for (int s = 0; s < IMPACT_SWEEPS; s++) solver->start_factors[s] = momentum_factor_tuned(s, IMPACT_SWEEPS);
+    for (int s = 0; s < MANY_SWEEPS; s++) solver->many_factors[s] = momentum_factor_tuned(s, MANY_SWEEPS);
     for (int s = 0; s < FALLBACK_SWEEPS; s++) solver->factors[s] = momentum_factor_tuned(s, FALLBACK_SWEEPS);
     for (int s = 0; s < FALLBACK_MORE; s++) solver->more_factors[s] = momentum_factor_tuned(s, FALLBACK_MORE);
     return solver;
@@ -99,9 +103,10 @@ static float smaller(float x, float y) { return x < y ? x : y; }
 
 static bool start(State *solver, const ContactProblem *problem, bool rests) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) &&
-           (rests ? sweeps_run(sweeps, REST_SWEEPS)
-                  : sweeps_run_momentum(sweeps, solver->start_factors, INTERIOR_IMPACT_SWEEPS));
+    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return false;
+    if (rests) return sweeps_run(sweeps, REST_SWEEPS);
+    return problem->body_count > MANY_BODIES ? sweeps_run_momentum(sweeps, solver->many_factors, MANY_SWEEPS)
+                                             : sweeps_run_momentum(sweeps, solver->start_factors, IMPACT_SWEEPS);
 }
 
 /* False when memory is short. */
@@ -212,7 +217,7 @@ const ContactSolverKind solver_interior_net = {
                     .title = "Interior point with a network",
                     .needs_network = true,
                     .twin = "interior",
-                    .chart = METHOD_RUNS("near=0.1", "near=0.02", "near=0.001"),
+                    .chart = METHOD_RUNS("near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create_net,

@@ -35,13 +35,16 @@ static bool choose_launches(SceneStudy *study, const LaunchChoice *choice, Error
     return ok;
 }
 
-/* A step takes time in proportion to its bodies, so larger scenes have fewer launches. */
+/* A step takes time in proportion to its bodies, its converged solution even more. So larger scenes have fewer launches
+   and fewer scored steps after the impact. */
 static StudySize size_for(const StudySize *full, const Scene *scene) {
     enum { SMALL = 110, LEAST_LAUNCHES = 4, LEAST_TIMED = 2 }; /* SMALL: bodies */
     StudySize size = *full;
     if (scene->body_count <= SMALL) return size;
     const int launches = size.launches * SMALL / scene->body_count,
               timed = size.timed_launches * SMALL / scene->body_count;
+    size.closed.after *= 2;
+    size.closed.rest *= 4;
     size.launches = launches > LEAST_LAUNCHES ? launches : LEAST_LAUNCHES;
     size.timed_launches = timed > LEAST_TIMED ? timed : LEAST_TIMED;
     return size;
