@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/interior_tape.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* Rows of one contact, by body. */
@@ -26,7 +25,6 @@ static void add3(double *x, const double *row, double by) {
 
 /* x += J_n^T normal + J_t^T tangent; NULL: zeros. The position of bodies that do not move stays zero. */
 static void push(const UnrolledInterior *u, const double *normal, const double *tangent, double *x) {
-    assert(x != NULL);
     for (int i = 0; i < slots_of(u); i++) {
         const InteriorPair *pair = pair_of(u, i);
         const Rows rows = rows_of(pair, i);
@@ -34,7 +32,7 @@ static void push(const UnrolledInterior *u, const double *normal, const double *
         if (normal != NULL) add3(a, rows.normal_a, normal[i]), add3(b, rows.normal_b, normal[i]);
         if (tangent != NULL) add3(a, rows.tangent_a, tangent[i]), add3(b, rows.tangent_b, tangent[i]);
     }
-    memset(x + body_numbers(u) - 4, 0, 4 * sizeof *x);
+    for (int c = 1; c <= 4; c++) x[body_numbers(u) - c] = 0;
 }
 
 static double along(const UnrolledInterior *u, int slot, bool tangent, const double *x) {
