@@ -9,8 +9,9 @@
    too, as an error makes them spin. If the sweeps leave no more than rounding errors, the step ends with them: so it
    does in walls and pyramids at rest, and in stacks of few boxes.
 
-   Among more than 128 bodies some nearly always slide, and iterations towards the small tolerance of rest would cycle. Such
-   a step counts as an impact: mostly sweeps with momentum are enough for it.
+   In large islands with many loops, such as pyramids of more than 128 boxes, some bodies nearly always slide, and
+   iterations towards the small tolerance of rest would cycle. Such a step counts as an impact: mostly sweeps with
+   momentum are enough for it. Stacks have no loops, and stand whatever their number.
 
    Elsewhere sweeps with momentum make the start: each saves as much of an iteration as it costs.
 
@@ -34,6 +35,7 @@ enum {
     IMPACT_SWEEPS = INTERIOR_IMPACT_SWEEPS,
     MANY_BODIES = 128,    /* more: an iteration takes as long as 15 sweeps or more, */
     MANY_SWEEPS = 12,     /* and these save more than they cost */
+    MANY_LOOPS = 64,      /* of an island among many bodies: more are never at rest */
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
     CHECK_EVERY = 8
@@ -115,6 +117,13 @@ static bool start(State *solver, const ContactProblem *problem, bool rests) {
 }
 
 /* False when memory is short. */
+static bool find_rest(State *solver, const ContactProblem *problem, bool *rests) {
+    const int loops = problem->body_count > MANY_BODIES ? islands_most_loops(&solver->large.islands, problem) : 0;
+    *rests = loops <= MANY_LOOPS && !residual_motion_reaches(problem, rest_below);
+    return loops >= 0;
+}
+
+/* False when memory is short. */
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
@@ -189,7 +198,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!large_islands_find(&solver->large, problem, &left_to_sweeps, error)) return false;
     if (left_to_sweeps)
         return large_islands_solve(&solver->large, &solver->momentum, solver->near, problem, solution, error);
-    const bool rests = problem->body_count <= MANY_BODIES && !residual_motion_reaches(problem, rest_below);
+    bool rests;
+    if (!find_rest(solver, problem, &rests)) return error_memory(error, "interior");
     if (!start(solver, problem, rests)) return error_memory(error, "interior");
     const float enough = rests ? smaller(solver->near, rounding) : trusted * solver->near;
     if (!residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution))

@@ -453,6 +453,28 @@ static void stacks_at_rest_stay_in_place(void **state) {
     }
 }
 
+/* Stacks that do not touch do not depend on each other: eight of 20 stand as one does. */
+static void many_stacks_stand_as_one_does(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int k = 0; k < 8; k++)
+        for (int i = 0; i < 20; i++)
+            add_body(world, &(BodyDef){.size = {1, 1},
+                                       .mass = 1,
+                                       .friction = 0.2f,
+                                       .position = {5 * (float)(k - 4), 0.5f + (float)i}});
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, 900);
+    for (int k = 0; k < 8; k++) {
+        const Body *top = &world_bodies(world)[20 * (k + 1)];
+        assert_near(top->position.x, 5 * (float)(k - 4), 0.05f);
+        assert_near(top->position.y, 19.5f, 0.2f);
+    }
+    free_solver(&solver);
+    world_destroy(world);
+}
+
 /* Friction holds a box on a slope if and only if the slope is less than the friction; then the box is
    still, but for a micrometre per second next to the limit. */
 static void a_box_that_friction_holds_does_not_creep(void **state) {
@@ -534,6 +556,7 @@ int main(void) {
                                        cmocka_unit_test(a_nan_ends_in_the_fallback),
                                        cmocka_unit_test(tall_and_heavy_stacks_stand),
                                        cmocka_unit_test(stacks_at_rest_stay_in_place),
+                                       cmocka_unit_test(many_stacks_stand_as_one_does),
                                        cmocka_unit_test(a_box_that_friction_holds_does_not_creep),
                                        cmocka_unit_test(large_pyramids_are_left_to_sweeps_and_stacks_are_not),
                                        cmocka_unit_test(settings_out_of_range_are_refused)};
