@@ -50,9 +50,6 @@ static bool score(const Method *method, const Scene *scene, const ContactProblem
 }
 
 static bool score_all(const StoredProblem *stored, const Method *methods, int method_count, Error *error) {
-    /* For one problem: far more visits than a study may spend on each. */
-    const double tolerance = 1e-8;
-    const int max_visits = 10 * REFERENCE_MAX_VISITS;
     const ContactProblem *problem = &stored->problem;
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     Reference truth = {0};
@@ -62,10 +59,11 @@ static bool score_all(const StoredProblem *stored, const Method *methods, int me
                                 {0}};
     bool ok = solution.velocities != NULL && solution.impulses != NULL;
     if (!ok) error_memory(error, "solve");
-    ok = ok && reference_solve(&truth, problem, tolerance, max_visits, NULL, error);
+    ok = ok && reference_solve(&truth, problem, NULL, error);
     if (ok) {
-        printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d sweeps\n", stored->scene,
-               stored->frame, problem->body_count, problem->contact_count, truth.residual, truth.sweeps);
+        printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n",
+               stored->scene, stored->frame, problem->body_count, problem->contact_count, truth.residual,
+               truth.factorizations);
         printf("%-40s %12s %12s %12s\n", "method", "error m/s", "right  ", "residual m/s");
     }
     for (int i = 0; ok && i < method_count; i++) ok = score(&methods[i], &scene, problem, &truth, &solution, error);

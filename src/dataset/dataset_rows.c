@@ -30,7 +30,7 @@ static bool label(LaunchRecorder *recorder, const World *world, ContactSolution 
     *solution = *world_solution(world);
     if (recorder->dataset->labels == DATASET_BY_ENGINE) return true;
     Reference *reference = &recorder->reference;
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reference_solve(reference, problem, NULL, error)) return false;
     if (!reserve(&recorder->labels, problem, solution, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *v = &reference->velocities[i];

@@ -72,7 +72,7 @@ static bool solve_references(ImpactProblems *problems, const Progress *progress,
     bool ok = true;
     for (; ok && done < problems->count; done++) {
         ImpactProblem *item = &problems->items[done];
-        ok = reference_solve(&reference, &item->problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error);
+        ok = reference_solve(&reference, &item->problem, NULL, error);
         if (ok && !progress_report(progress, (double)done, (double)problems->count))
             ok = error_input(error, "recording", "stopped");
         if (!ok) break;

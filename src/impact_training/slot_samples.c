@@ -56,7 +56,6 @@ bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
 typedef struct Labels {
     SlotSample *items;
     Reference *references; /* [threads] */
-    int max_visits;
 } Labels;
 
 static bool label(void *context, int i, Error *error) {
@@ -64,8 +63,7 @@ static bool label(void *context, int i, Error *error) {
     SlotSample *sample = &labels->items[i];
     Reference *reference = &labels->references[omp_get_thread_num()];
     const size_t bodies = (size_t)sample->problem.body_count, contacts = (size_t)sample->problem.contact_count;
-    if (!reference_solve(reference, &sample->problem, REFERENCE_TOLERANCE, labels->max_visits, NULL, error))
-        return false;
+    if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
     sample->reference = malloc(bodies * sizeof *sample->reference + 1);
     sample->goal = malloc(contacts * sizeof *sample->goal + 1);
     if (sample->reference == NULL || sample->goal == NULL ||
@@ -77,11 +75,11 @@ static bool label(void *context, int i, Error *error) {
     return true;
 }
 
-bool slot_samples_label(SlotSamples *samples, int first, int max_visits, const Progress *progress, Error *error) {
+bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error) {
     const int threads = omp_get_max_threads();
     Reference *references = calloc((size_t)threads, sizeof *references);
     if (references == NULL) return error_memory(error, "labels");
-    Labels labels = {samples->items + first, references, max_visits};
+    Labels labels = {samples->items + first, references};
     const ParallelWork work = {label, &labels};
     bool ok = parallel_for(&work, samples->count - first, "labels", progress, error);
     for (int i = 0; i < threads; i++) reference_free(&references[i]);

@@ -37,8 +37,8 @@ bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int l
 /* Moves all of `from` to the end of the samples. False if out of memory. */
 bool slot_samples_move(SlotSamples *samples, SlotSamples *from);
 
-/* Solves the samples from index `first` by the reference, with at most max_visits contact visits each. */
-bool slot_samples_label(SlotSamples *samples, int first, int max_visits, const Progress *progress, Error *error);
+/* Solves the samples from index `first` by the reference. */
+bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error);
 
 /* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
    has projections. */

@@ -80,8 +80,6 @@ static void load_bodies(Interior *s, const ContactProblem *problem) {
     s->masses[s->lu.count] = s->inverses[s->lu.count] = (Vec4){0};
 }
 
-static double over(float x) { return x != 0 ? 1 / (double)x : 0; }
-
 /* The rows of a contact. */
 static void load_rows(InteriorGroup *group, int slot, InteriorPair *rows, int k, Vec2 normal, const SweepPoint *point) {
     const double x = (double)normal.x, y = (double)normal.y;
@@ -105,8 +103,8 @@ static void load_slot(InteriorGroup *group, int slot, const SweepPair *pair, int
     const double friction = (double)pair->friction;
     group->mass_normal[slot] = (double)point->mass_normal;
     group->mass_tangent[slot] = (double)point->mass_tangent;
-    group->inverse_normal[slot] = over(point->mass_normal);
-    group->inverse_tangent[slot] = over(point->mass_tangent);
+    group->inverse_normal[slot] = point->mass_normal > 0; /* see invert() */
+    group->inverse_tangent[slot] = point->mass_tangent > 0;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
     group->bias[slot] = (double)point->bias;
     group->answer_normal[slot] = (double)pair->sums[k].normal;
@@ -153,6 +151,13 @@ static void clear_slots(Interior *s, int i) {
     s->pairs[GROUP_PAIRS * i] = s->pairs[GROUP_PAIRS * i + 1] = none;
 }
 
+/* The inverses were 1 for a positive mass, else 0. */
+static void invert(InteriorGroup *g) {
+    const Vec4 one = {1, 1, 1, 1};
+    g->inverse_normal /= g->mass_normal + (one - g->inverse_normal);
+    g->inverse_tangent /= g->mass_tangent + (one - g->inverse_tangent);
+}
+
 bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem) {
     if (!reserve(s, sweeps) || !analyse(s, sweeps, problem)) return false;
     load_bodies(s, problem);
@@ -160,6 +165,7 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     s->contact_count = 0;
     for (int i = 0; i < s->group_count; i++) clear_slots(s, i);
     for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem);
+    for (int i = 0; i < s->group_count; i++) invert(&s->groups[i]);
     if (sweeps->pair_count % GROUP_PAIRS != 0) {
         const int spare = block_lu_spare(&s->lu);
         s->pairs[sweeps->pair_count].a = s->pairs[sweeps->pair_count].b = s->lu.count;

@@ -1,140 +1,193 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs contact problems into the groups of the reference's sweeps. */
+/* Packs contact problems into groups of four contacts. */
 #include "common/array.h"
-#include "reference/reference_units.h"
-#include "sweeps/colours.h"
+#include "reference/reference_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    SECOND_POINT = -1, /* in Reference.rounds: visited with the previous contact */
-    NUMBERS = 4        /* for each impulse */
-};
+enum { NUMBERS = 7 }; /* arrays of one Vec4 for each body */
 
-void reference_free(Reference *reference) {
-    free(reference->velocities);
-    free(reference->impulses);
-    free(reference->groups);
-    free(reference->momenta);
-    free(reference->numbers);
-    free(reference->rounds);
-    free(reference->taken);
-    *reference = (Reference){0};
+/* Without friction, a cone this narrow: its inside is not empty. */
+static const double friction_min = 1e-12;
+/* kg, kg m^2: of what cannot move in one of its directions. */
+static const double mass_max = 1e20;
+
+void reference_free(Reference *r) {
+    block_lu_free(&r->lu);
+    void *arrays[] = {r->velocities, r->impulses, r->groups,  r->pairs,  r->bodies,
+                      r->nodes,      r->edges,    r->edge_of, r->points, r->numbers};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    *r = (Reference){0};
 }
 
 static bool reserve(Reference *r, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
-    return array_reserve((void **)&r->velocities, &r->velocity_capacity, bodies, sizeof *r->velocities) &&
-           array_reserve((void **)&r->impulses, &r->impulse_capacity, contacts, sizeof *r->impulses) &&
-           array_reserve((void **)&r->momenta, &r->momenta_capacity, 3 * bodies, sizeof *r->momenta) &&
-           array_reserve((void **)&r->rounds, &r->round_capacity, contacts, sizeof *r->rounds) &&
-           array_reserve((void **)&r->taken, &r->taken_capacity, bodies, sizeof *r->taken);
+    const size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
+    const size_t pairs = contacts + REFERENCE_PAIRS, groups = pairs / REFERENCE_PAIRS + 1;
+    if (!array_reserve((void **)&r->velocities, &r->velocity_capacity, bodies, sizeof *r->velocities) ||
+        !array_reserve((void **)&r->impulses, &r->impulse_capacity, contacts, sizeof *r->impulses) ||
+        !array_reserve((void **)&r->groups, &r->group_capacity, groups, sizeof *r->groups) ||
+        !array_reserve((void **)&r->pairs, &r->pair_capacity, pairs, sizeof *r->pairs) ||
+        !array_reserve((void **)&r->bodies, &r->body_capacity, bodies, sizeof *r->bodies) ||
+        !array_reserve((void **)&r->nodes, &r->node_capacity, bodies, sizeof *r->nodes) ||
+        !array_reserve((void **)&r->edges, &r->edge_capacity, pairs, sizeof *r->edges) ||
+        !array_reserve((void **)&r->edge_of, &r->edge_of_capacity, pairs, sizeof *r->edge_of) ||
+        !array_reserve((void **)&r->points, &r->point_capacity, KEPT * groups, sizeof *r->points) ||
+        !array_reserve((void **)&r->numbers, &r->number_capacity, NUMBERS * bodies, sizeof *r->numbers))
+        return false;
+    Vec4 **arrays[NUMBERS] = {&r->masses,        &r->inverses,      &r->moved,        &r->changes,
+                              &r->first_changes, &r->kept[0].moved, &r->kept[1].moved};
+    for (size_t i = 0; i < NUMBERS; i++) *arrays[i] = r->numbers + i * bodies;
+    for (size_t i = 0; i < KEPT; i++) r->kept[i].points = r->points + i * groups;
+    return true;
 }
 
-static bool reserve_groups(Reference *r, int count) {
-    size_t groups = (size_t)count + 1;
-    r->group_count = count;
-    return array_reserve((void **)&r->groups, &r->group_capacity, groups, sizeof *r->groups) &&
-           array_reserve((void **)&r->numbers, &r->number_capacity, NUMBERS * groups, sizeof *r->numbers);
+/* Nodes are the moving bodies that touch something, in the order of the bodies. Returns their number. */
+static int number_bodies(Reference *r, const ContactProblem *problem) {
+    memset(r->nodes, 0, (size_t)problem->body_count * sizeof *r->nodes);
+    for (int i = 0; i < problem->contact_count; i++)
+        r->nodes[problem->contacts[i].a] = r->nodes[problem->contacts[i].b] = 1;
+    int count = 0;
+    for (int i = 0; i < problem->body_count; i++)
+        r->nodes[i] = r->nodes[i] && problem_body_moves(&problem->bodies[i]) ? count++ : -1;
+    return count;
 }
 
-static bool same_pair(const ContactPoint *x, const ContactPoint *y) { return x->a == y->a && x->b == y->b; }
-
-/* Pairs of the last round may share bodies: there, one pair per group. */
-static int lanes_of(int round) { return round < COLOURS - 1 ? REFERENCE_LANES : 1; }
-
-/* A round is a colour (sweeps/colours.h): its pairs share no moving body. Returns the number of groups. */
-static int find_rounds(Reference *r, const ContactProblem *problem) {
-    int pairs[COLOURS] = {0}, groups = 0;
-    memset(r->taken, 0, (size_t)problem->body_count * sizeof *r->taken);
+/* Pairs of one or two contacts, in the order of the problem. */
+static void find_pairs(Reference *r, const ContactProblem *problem) {
+    r->pair_count = 0;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        bool second = i > 0 && same_pair(contact, contact - 1) && r->rounds[i - 1] != SECOND_POINT;
-        r->rounds[i] = second ? SECOND_POINT : colours_take(r->taken, problem, contact);
-        if (!second && pairs[r->rounds[i]]++ % lanes_of(r->rounds[i]) == 0) groups++;
+        const bool same = i > 0 && contact[-1].a == contact->a && contact[-1].b == contact->b;
+        if (same && r->pairs[r->pair_count - 1].count == 1)
+            r->pairs[r->pair_count - 1].count++;
+        else
+            r->pairs[r->pair_count++] = (ReferencePair){.first = i, .count = 1};
     }
-    return groups;
+    r->group_count = (r->pair_count + REFERENCE_PAIRS - 1) / REFERENCE_PAIRS;
+    r->pairs[r->pair_count] = (ReferencePair){0};
 }
 
-/* Half a row: the effect of an impulse along x, y on one body. The velocity of a static body is added to the target. */
-static void load_half(ReferenceRow *row, double half[3][REFERENCE_LANES], int lane, double scale,
-                      const ProblemBody *body, Vec2 arm, double x, double y) {
-    const double inverse[] = {(double)body->inv_mass, (double)body->inv_mass, (double)body->inv_inertia};
-    const double velocity[] = {(double)body->velocity.x, (double)body->velocity.y, (double)body->angular_velocity};
-    const double along[] = {x, y, (double)arm.x * y - (double)arm.y * x};
-    for (int i = 0; i < 3; i++) {
-        if (inverse[i] == 0) row->target[lane] -= scale * along[i] * velocity[i];
-        half[i][lane] = scale * sqrt(inverse[i]) * along[i];
+static bool analyse(Reference *r, const ContactProblem *problem) {
+    const int count = number_bodies(r, problem);
+    find_pairs(r, problem);
+    int edges = 0;
+    for (int i = 0; i < r->pair_count; i++) {
+        const ContactPoint *contact = &problem->contacts[r->pairs[i].first];
+        const int a = r->nodes[contact->a], b = r->nodes[contact->b];
+        r->edge_of[i] = a >= 0 && b >= 0 ? edges : -1;
+        if (r->edge_of[i] >= 0) r->edges[edges++] = (BlockEdge){a, b};
     }
+    return block_lu_analyse(&r->lu, count, r->edges, edges);
 }
 
-static void load_row(ReferenceRow *row, int lane, const ContactProblem *problem, const ContactPoint *contact, double x,
-                     double y, double scale, double target) {
-    row->to_velocity[lane] = 1 / scale;
-    row->target[lane] = scale * target;
-    load_half(row, row->a, lane, scale, &problem->bodies[contact->a], contact->arm_a, -x, -y);
-    load_half(row, row->b, lane, scale, &problem->bodies[contact->b], contact->arm_b, x, y);
-}
+static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : mass_max; }
 
-static void load_contact(ReferenceGroup *group, int k, int lane, const ContactProblem *problem, int index) {
-    const ContactPoint *contact = &problem->contacts[index];
-    ReferenceImpulse scale = reference_scale(contact);
-    double x = (double)contact->normal.x, y = (double)contact->normal.y;
-    group->contacts[k][lane] = index;
-    group->a[lane] = contact->a;
-    group->b[lane] = contact->b;
-    load_row(&group->rows[2 * k], lane, problem, contact, x, y, scale.normal, (double)contact->bias);
-    load_row(&group->rows[2 * k + 1], lane, problem, contact, y, -x, scale.tangent, 0);
-    group->friction[k][lane] = (double)contact->friction * scale.normal / scale.tangent;
-}
-
-static double row_times_row(const ReferenceRow *x, const ReferenceRow *y, int lane) {
-    double sum = 0;
-    for (int i = 0; i < 3; i++) sum += x->a[i][lane] * y->a[i][lane] + x->b[i][lane] * y->b[i][lane];
-    return sum;
-}
-
-static void couple(ReferenceGroup *group, int lane) {
-    for (int row = 0, at = 0; row < REFERENCE_ROWS; row++)
-        for (int earlier = 0; earlier < row; earlier++)
-            group->coupling[at++][lane] = row_times_row(&group->rows[row], &group->rows[earlier], lane);
-}
-
-static void clear_group(ReferenceGroup *group, int spare_body) {
-    memset(group, 0, sizeof *group);
-    for (int lane = 0; lane < REFERENCE_LANES; lane++) {
-        group->a[lane] = group->b[lane] = spare_body;
-        for (int k = 0; k < REFERENCE_POINTS; k++) group->contacts[k][lane] = -1;
+static void load_bodies(Reference *r, const ContactProblem *problem) {
+    const int count = r->lu.count;
+    for (int i = 0; i < problem->body_count; i++) {
+        if (r->nodes[i] < 0) continue;
+        const ProblemBody *body = &problem->bodies[i];
+        const int k = r->lu.position[r->nodes[i]];
+        const double mass = mass_of(body->inv_mass), inverse = (double)body->inv_mass;
+        r->bodies[k] = i;
+        r->masses[k] = (Vec4){mass, mass, mass_of(body->inv_inertia), 0};
+        r->inverses[k] = (Vec4){inverse, inverse, (double)body->inv_inertia, 0};
     }
+    r->masses[count] = r->inverses[count] = r->moved[count] = r->changes[count] = (Vec4){0};
+    r->first_changes[count] = r->kept[0].moved[count] = r->kept[1].moved[count] = (Vec4){0};
 }
 
-/* The groups of one round, from *group on. */
-static void load_round(Reference *r, const ContactProblem *problem, int round, ReferenceGroup **group) {
-    int lane = 0;
-    for (int i = 0; i < problem->contact_count; i++) {
-        if (r->rounds[i] != round) continue;
-        if (lane == 0) clear_group(*group, problem->body_count);
-        load_contact(*group, 0, lane, problem, i);
-        if (i + 1 < problem->contact_count && r->rounds[i + 1] == SECOND_POINT)
-            load_contact(*group, 1, lane, problem, i + 1);
-        couple(*group, lane);
-        lane = (lane + 1) % lanes_of(round);
-        if (lane == 0) ++*group;
-    }
-    if (lane > 0) ++*group;
+/* The row of a direction at a contact point. */
+static Vec4 row_of(const ContactPoint *contact, double x, double y) {
+    return (Vec4){x, y, (double)contact->arm_b.x * y - (double)contact->arm_b.y * x,
+                  (double)contact->arm_a.y * x - (double)contact->arm_a.x * y};
+}
+
+static Vec4 relative_velocity(const ProblemBody *a, const ProblemBody *b) {
+    return (Vec4){(double)b->velocity.x - (double)a->velocity.x, (double)b->velocity.y - (double)a->velocity.y,
+                  (double)b->angular_velocity, (double)a->angular_velocity};
+}
+
+static void load_slot(ReferenceGroup *group, int slot, ReferencePair *pair, int k, const ContactProblem *problem) {
+    const ContactPoint *contact = &problem->contacts[pair->first + k];
+    const double x = (double)contact->normal.x, y = (double)contact->normal.y, friction = (double)contact->friction;
+    const Vec4 before = relative_velocity(&problem->bodies[contact->a], &problem->bodies[contact->b]);
+    pair->normal[k] = row_of(contact, x, y);
+    pair->tangent[k] = row_of(contact, y, -x);
+    group->weight[slot] = 1;
+    group->mass_normal[slot] = (double)contact->mass_normal;
+    group->mass_tangent[slot] = (double)contact->mass_tangent;
+    group->inverse_normal[slot] = 1 / (double)contact->mass_normal;
+    group->inverse_tangent[slot] = 1 / (double)contact->mass_tangent;
+    group->friction[slot] = friction > friction_min ? friction : friction_min;
+    group->free_normal[slot] = reference_sum(pair->normal[k] * before) - (double)contact->bias;
+    group->free_tangent[slot] = reference_sum(pair->tangent[k] * before);
+}
+
+/* A slot that takes part in all operations and has no effect. */
+static void clear_group(ReferenceGroup *group) {
+    const Vec4 one = {1, 1, 1, 1};
+    *group = (ReferenceGroup){.mass_normal = one, .mass_tangent = one, .friction = one, .free_normal = one};
+    group->now = (ReferencePoint){.l = one, .u = one, .w = one, .z = one, .p = one, .q = one};
+}
+
+static void load_pair(Reference *r, int i, const ContactProblem *problem) {
+    ReferencePair *pair = &r->pairs[i];
+    const int fixed = r->lu.count, spare = block_lu_spare(&r->lu);
+    pair->a = pair->b = fixed;
+    pair->place = (BlockPlace){spare, spare};
+    if (i >= r->pair_count) return;
+    const ContactPoint *contact = &problem->contacts[pair->first];
+    const int node_a = r->nodes[contact->a], node_b = r->nodes[contact->b];
+    if (node_a < 0 && node_b < 0) return; /* no impulse changes anything */
+    if (node_a >= 0) pair->a = r->lu.position[node_a];
+    if (node_b >= 0) pair->b = r->lu.position[node_b];
+    if (r->edge_of[i] >= 0) pair->place = r->lu.places[r->edge_of[i]];
+    r->contact_count += pair->count;
+    for (int k = 0; k < pair->count; k++)
+        load_slot(&r->groups[i / REFERENCE_PAIRS], i % REFERENCE_PAIRS * 2 + k, pair, k, problem);
 }
 
 bool reference_load(Reference *r, const ContactProblem *problem) {
-    if (!reserve(r, problem) || !reserve_groups(r, find_rounds(r, problem))) return false;
-    r->body_count = problem->body_count;
-    r->momenta_before = r->momenta + problem->body_count + 1;
-    r->momenta_direction = r->momenta_before + problem->body_count + 1;
-    ReferenceNumbers **rows[NUMBERS] = {&r->sums, &r->sums_before, &r->steps, &r->direction};
-    for (int i = 0; i < NUMBERS; i++) *rows[i] = r->numbers + i * r->group_count;
-    ReferenceGroup *group = r->groups;
-    for (int round = 0; round < COLOURS && group < r->groups + r->group_count; round++)
-        load_round(r, problem, round, &group);
+    if (!reserve(r, problem) || !analyse(r, problem)) return false;
+    load_bodies(r, problem);
+    r->contact_count = r->factorizations = r->attempts = 0;
+    for (int i = 0; i < r->group_count; i++) clear_group(&r->groups[i]);
+    for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) load_pair(r, i, problem);
     return true;
+}
+
+void reference_start(Reference *r, const ContactProblem *problem, const ContactImpulse *start) {
+    for (int i = 0; i < r->pair_count; i++)
+        for (int k = 0; k < r->pairs[i].count; k++) {
+            const ContactPoint *contact = &problem->contacts[r->pairs[i].first + k];
+            const ContactImpulse *given = start != NULL ? &start[r->pairs[i].first + k] : NULL;
+            ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
+            const int slot = i % REFERENCE_PAIRS * 2 + k;
+            group->normal[slot] = (double)(given != NULL ? given->normal : contact->warm_normal);
+            group->tangent[slot] = (double)(given != NULL ? given->tangent : contact->warm_tangent);
+        }
+}
+
+static void store_impulses(Reference *r, const ContactProblem *problem) {
+    for (int i = 0; i < r->pair_count; i++)
+        for (int k = 0; k < r->pairs[i].count; k++) {
+            const ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
+            const int slot = i % REFERENCE_PAIRS * 2 + k, contact = r->pairs[i].first + k;
+            const double limit = (double)problem->contacts[contact].friction * group->normal[slot];
+            const double tangent = group->tangent[slot];
+            r->impulses[contact].normal = group->normal[slot];
+            r->impulses[contact].tangent = tangent > limit ? limit : tangent < -limit ? -limit : tangent;
+        }
+}
+
+void reference_store(Reference *r, const ContactProblem *problem) {
+    store_impulses(r, problem);
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        const Vec4 moved = r->moved[r->nodes[i] >= 0 ? r->lu.position[r->nodes[i]] : r->lu.count];
+        r->velocities[i] = (ReferenceVelocity){(double)body->velocity.x + moved[0], (double)body->velocity.y + moved[1],
+                                               (double)body->angular_velocity + moved[2]};
+    }
 }

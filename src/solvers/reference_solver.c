@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference (reference/reference.h) as a contact solver, for runs of converged steps. Slow. A step that does not
-   converge ends with the result of its last sweep. */
+/* The reference (reference/reference.h) as a contact solver, for runs of converged steps. A step that does not
+   converge ends with its best answer. */
 #include "reference/reference.h"
 #include "solvers/solvers.h"
 
@@ -15,7 +15,7 @@ static void *create(const Settings *chosen, Error *error) {
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
-    if (!reference_solve(reference, problem, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error)) return false;
+    if (!reference_solve(reference, problem, NULL, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *velocity = &reference->velocities[i];
         solution->velocities[i] = (BodyVelocity){vec2((float)velocity->x, (float)velocity->y), (float)velocity->spin};
@@ -35,8 +35,7 @@ static void destroy(void *state) {
 
 const ContactSolverKind solver_reference = {
     .description = {.name = "reference",
-                    .summary =
-                        "the converged solution, in double precision by NNCG; errors are measured against it; slow",
+                    .summary = "the converged solution, by interior points in double; errors are measured against it",
                     .title = "Converged solution",
                     .role = METHOD_REFERENCE,
                     .stability_place = 6},

@@ -77,13 +77,12 @@ bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float l
 }
 
 bool residual_motion_reaches(const ContactProblem *problem, float limit) {
-    bool reaches = false;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
         const Vec2 velocity = vec2_sub(point_velocity(b->velocity, b->angular_velocity, contact->arm_b),
                                        point_velocity(a->velocity, a->angular_velocity, contact->arm_a));
-        reaches |= !(vec2_dot(velocity, velocity) < limit * limit);
+        if (!(vec2_dot(velocity, velocity) < limit * limit)) return true;
     }
-    return reaches;
+    return false;
 }

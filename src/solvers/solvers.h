@@ -14,7 +14,6 @@
     SOLVER(learned_momentum)      \
     SOLVER(block)                 \
     SOLVER(nncg)                  \
-    SOLVER(robust)                \
     STEPPING(substepping)         \
     SOLVER(pair_net)              \
     SOLVER(contact_net)           \

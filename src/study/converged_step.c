@@ -27,5 +27,5 @@ static bool remove_push_out(ConvergedStep *converged, ContactProblem *problem) {
 bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error) {
     ContactProblem solved = *problem;
     if (!push_out && !remove_push_out(converged, &solved)) return error_memory(error, "study");
-    return reference_solve(&converged->reference, &solved, REFERENCE_TOLERANCE, REFERENCE_MAX_VISITS, NULL, error);
+    return reference_solve(&converged->reference, &solved, NULL, error);
 }

@@ -3,7 +3,7 @@
 #pragma once
 #include "study/chart_csv.h"
 
-/* m/s: how far from converged the reference itself can be (reference/reference.h). Smaller errors count as equal. */
+/* m/s: smaller errors count as equal. */
 #define PARETO_RESOLUTION 1e-4
 
 /* True if a is certainly faster than b and not less accurate: its upper quartile of time is below b's lower quartile,

@@ -33,7 +33,8 @@ typedef struct Rollout {
     int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
 } Rollout;
 
-/* m/s, far below the differences between methods. Only states that a bad method made explode do not reach it. */
+/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
+   solution (reference/reference.h), do not reach it. */
 #define SOLVE_CONVERGED 1e-3
 
 void rollout_free(Rollout *rollout);

@@ -121,6 +121,27 @@ static void one_mark_and_one_panel_are_enough(void **state) {
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
+/* A note names the methods whose errors have another target; without them there is none. */
+static void a_target_without_push_out_is_noted(void **state) {
+    (void)state;
+    Error error = {0};
+    static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
+    const char *const end = strchr(rows, '\n') + 1;
+    char engine[200];
+    snprintf(engine, sizeof engine, "%.*s", (int)(end - rows), rows);
+    size_t size;
+    assert_ok(chart_plot(write_rows(rows), "stack", folder(), &error), error);
+    char *noted = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(noted, "soft-step, avbd: error against the solution without the velocity that pushes"));
+    assert_ok(chart_plot(write_rows(engine), "stack", folder(), &error), error);
+    char *silent = read_drawn("stack", "svg", &size);
+    assert_null(strstr(silent, "error against"));
+    free(noted);
+    free(silent);
+}
+
 /* The maximum number of methods, with the longest names and settings. */
 static void a_full_chart_is_drawn(void **state) {
     (void)state;
@@ -286,6 +307,7 @@ int main(void) {
         cmocka_unit_test(the_same_table_gives_the_same_files),
         cmocka_unit_test(tables_without_a_mark_are_refused),
         cmocka_unit_test(one_mark_and_one_panel_are_enough),
+        cmocka_unit_test(a_target_without_push_out_is_noted),
         cmocka_unit_test(a_full_chart_is_drawn),
         cmocka_unit_test(names_cannot_become_commands),
         cmocka_unit_test(texts_become_plain),

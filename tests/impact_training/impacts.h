@@ -7,7 +7,7 @@
 #include "impact_training/slot_rollout.h"
 #include "impact_training/slot_network_init.h"
 
-enum { IMPACT_STEPS = 8, IMPACT_VISITS = 20000 };
+enum { IMPACT_STEPS = 8 };
 
 static const float impact_gate = 2; /* m/s */
 static const SlotWidths small_widths = {16, 16, 16, 32};
@@ -55,7 +55,7 @@ static inline SlotSamples labelled_impacts(int launches) {
     SlotSamples samples = {0};
     Error error = {0};
     record_impacts(&samples, launches, 0);
-    assert_ok(slot_samples_label(&samples, 0, IMPACT_VISITS, NULL, &error), error);
+    assert_ok(slot_samples_label(&samples, 0, NULL, &error), error);
     return samples;
 }
 

@@ -56,7 +56,7 @@ static void labels_are_the_references(void **state) {
         for (int i = 0; i < samples.count; i++) {
             const SlotSample *sample = &samples.items[i];
             const ContactProblem *problem = &sample->problem;
-            assert_ok(reference_solve(&reference, problem, REFERENCE_TOLERANCE, IMPACT_VISITS, NULL, &error), error);
+            assert_ok(reference_solve(&reference, problem, NULL, &error), error);
             assert_memory_equal(sample->reference, reference.velocities,
                                 (size_t)problem->body_count * sizeof *sample->reference);
             for (int k = 0; k < problem->contact_count; k++) {
@@ -83,11 +83,11 @@ static void only_samples_from_the_given_index_are_labelled(void **state) {
     record_impacts(&samples, LAUNCHES, 0);
     const int half = samples.count / 2;
     const Progress stopping = {stop, NULL};
-    assert_ok(slot_samples_label(&samples, half, IMPACT_VISITS, NULL, &error), error);
+    assert_ok(slot_samples_label(&samples, half, NULL, &error), error);
     for (int i = 0; i < samples.count; i++) assert_int_equal(samples.items[i].goal != NULL, i >= half);
     slot_samples_free(&samples);
     record_impacts(&samples, LAUNCHES, 0);
-    assert_false(slot_samples_label(&samples, 0, IMPACT_VISITS, &stopping, &error));
+    assert_false(slot_samples_label(&samples, 0, &stopping, &error));
     assert_error(error, ERROR_INPUT, "labels: error: stopped after");
     slot_samples_free(&samples);
 }

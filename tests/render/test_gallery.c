@@ -21,7 +21,7 @@ static const char *const six[] = {"trajectories/stack-engine",
                                   "trajectories/stack-pair-net",
                                   "gallery/stack-momentum",
                                   "gallery/stack-contact-net",
-                                  "gallery/stack-robust",
+                                  "gallery/stack-interior",
                                   "gallery/stack-reference",
                                   NULL};
 static const char *const three[] = {"gallery/stack-reference", "trajectories/stack-engine", "gallery/stack-momentum",

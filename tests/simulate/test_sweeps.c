@@ -12,14 +12,14 @@ typedef struct Kernels {
 } Kernels;
 
 static bool agree(void *context, int frame, const World *world, Error *error) {
-    (void)frame, (void)error;
+    (void)error;
     const ContactProblem *problem = world_problem(world);
     static const float factors[19] = {0,    0.2f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.8f, 0.8f, 0.9f,
                                       0.9f, 0.9f, 0.9f, 0,    0.9f, 0.9f, 0.9f, 0.9f, 0.9f};
     Kernels *kernels = context;
     assert_kernels_agree(kernels->engine, problem, &engine_options, 10);
     assert_momentum_kernels_agree(kernels->momentum, problem, true, factors, 19);
-    assert_reference_kernels_agree(&kernels->reference, problem, 6);
+    if (frame % 8 == 0) assert_reference_kernels_agree(&kernels->reference, problem);
     return true;
 }
 

@@ -44,8 +44,6 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_block, "k=7,near=1e-4");
     steps_allocate_nothing_by(&solver_nncg, "");
     steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_robust, "");
-    steps_allocate_nothing_by(&solver_robust, "k=7,near=1e-4");
     steps_allocate_nothing_by(&solver_relu_net, "");
     steps_allocate_nothing_by(&solver_interior, "");
 }

@@ -10,12 +10,6 @@ static int judge_engine(void **state) {
     return 0;
 }
 
-static int judge_robust(void **state) {
-    (void)state;
-    judged = &solver_robust;
-    return 0;
-}
-
 static int judge_block(void **state) {
     (void)state;
     judged = &solver_block;
@@ -220,7 +214,6 @@ int main(void) {
                                                cmocka_unit_test(iterations_out_of_range_are_refused)};
     return cmocka_run_group_tests_name("engine", laws, judge_engine, NULL) +
            cmocka_run_group_tests_name("block", laws, judge_block, NULL) +
-           cmocka_run_group_tests_name("robust", laws, judge_robust, NULL) +
            cmocka_run_group_tests_name("interior", laws, judge_interior, NULL) +
            cmocka_run_group_tests(of_the_engine, NULL, NULL);
 }

@@ -23,7 +23,7 @@ static const struct {
 
 /* Solvers with the setting k. */
 static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_momentum, &solver_over_relaxation,
-                                                    &solver_nncg,   &solver_robust,   &solver_block};
+                                                    &solver_nncg, &solver_block};
 
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
@@ -182,7 +182,6 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_settings_refused(&solver_over_relaxation, "k=0", "k");
     assert_settings_refused(&solver_block, "k=0", "k");
     assert_settings_refused(&solver_nncg, "k=0", "k");
-    assert_settings_refused(&solver_robust, "k=0", "k");
     assert_settings_refused(&solver_relu_net, "k=0", "k");
     assert_settings_refused(&solver_nncg, "k=ten", "k");
     assert_settings_refused(&solver_over_relaxation, "omega=0", "omega");

@@ -6,8 +6,8 @@
 #include "solvers/residual.h"
 #include "solvers/stopping.h"
 
-static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_over_relaxation, &solver_block,
-                                                 &solver_nncg,   &solver_momentum,        &solver_robust};
+static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_over_relaxation, &solver_block, &solver_nncg,
+                                                 &solver_momentum};
 enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 4 /* those whose blocks continue as if in one run */ };
 
 /* Boxes side by side and on top of each other, which a heavy one strikes. */

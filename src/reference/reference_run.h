@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Interior points with a sparse direct solve over the bodies (interior/block_lu.h), run to the end.
+
+   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
+      sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
+   2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
+   3. If the path is lost, again from another distance.
+
+   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
+   on the start. */
+#pragma once
+#include "reference/reference_active.h"
+#include "reference/reference_path.h"
+#include "reference/reference_sweep.h"
+
+enum { START_SWEEPS = 2, MOST = 200, ATTEMPTS = 6, CARELESS = 3, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
+
+/* Distances of the start from its bounds, times its residual. The last attempts follow the path by its length. */
+static const double scales[ATTEMPTS] = {3, 30, 300, 30, 300, 3};
+static const double look_ahead[] = {1e3, 1e6, 1e9, 1e11, 1e13}, near_solution = 1e-5; /* m/s */
+
+static void keep_start(Reference *r) {
+    for (int i = 0; i < r->group_count; i++) {
+        r->groups[i].start_normal = r->groups[i].normal;
+        r->groups[i].start_tangent = r->groups[i].tangent;
+    }
+}
+
+static void take_best(Reference *r) {
+    for (int i = 0; i < r->group_count; i++) {
+        r->groups[i].normal = r->groups[i].best_normal;
+        r->groups[i].tangent = r->groups[i].best_tangent;
+    }
+    apply(r);
+}
+
+static bool is_rough(const Reference *r) { return r->best > REFERENCE_TOLERANCE / 4 && r->best < near_solution; }
+
+/* Near the solution the states of most contacts are clear, and sweeps find those of the others. */
+static bool finish(Reference *r) {
+    const int count = sizeof look_ahead / sizeof *look_ahead;
+    for (int round = 0; round < FINISH_ROUNDS && is_rough(r); round++) {
+        for (int i = 0; i < count && is_rough(r); i++) {
+            take_best(r);
+            keep_best(r, polish(r, REFERENCE_TOLERANCE / 10, look_ahead[i]));
+        }
+        take_best(r);
+        for (int i = 0; i < FINISH_SWEEPS && is_rough(r); i++) sweep(r);
+        apply(r);
+        keep_best(r, missed(r, NULL));
+    }
+    return r->best <= REFERENCE_TOLERANCE / 4;
+}
+
+static void run(Reference *r) {
+    for (int i = 0; i < START_SWEEPS; i++) sweep(r);
+    apply(r);
+    keep_start(r);
+    r->best = INFINITY;
+    keep_best(r, missed(r, NULL));
+    keep_best(r, polish(r, REFERENCE_TOLERANCE / 10, 1));
+    bool solved = r->best <= REFERENCE_TOLERANCE / 10;
+    for (; !solved && r->attempts < ATTEMPTS; r->attempts++) {
+        begin(r, scales[r->attempts]);
+        solved = follow(r, MOST, r->attempts >= CARELESS) || finish(r);
+    }
+    take_best(r);
+}
+
+static void run_from(Reference *r) {
+    apply(r);
+    run(r);
+}
+
+static double residual_of(Reference *r) {
+    apply(r);
+    return sweep(r);
+}
+
+const ReferenceKernels KERNELS = {run_from, residual_of};
