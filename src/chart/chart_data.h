@@ -47,9 +47,8 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep their order in the table, and thereby their style. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?', so that gnuplot cannot interpret them.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h), the
-   reference's own error, are drawn there. False with error set if nothing remains, or for more than CHART_MAX_LINES
-   lines. */
+   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h) are drawn
+   there. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 

@@ -94,7 +94,7 @@ static void write_notes(const ChartLayout *layout) {
         begin_note(layout);
         write_counts(layout, "Unstable before the impact: ", offsetof(ChartLine, lost));
         write_counts(layout, "Without time or error: ", offsetof(ChartLine, left_out));
-        if (chart->floored > 0) fprintf(layout->script, "The reference is accurate to %g m/s.", PARETO_RESOLUTION);
+        if (chart->floored > 0) fprintf(layout->script, "Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
         end_note(layout, row++);
     }
     if (has_no_push_out(chart)) {

@@ -122,13 +122,24 @@ bool interior_load(Interior *interior, const InteriorKernels *kernels, const Swe
    that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double depth);
 
+/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus `least_scale`. */
+typedef struct InteriorRule {
+    double impulse, gap, slip; /* how far they start beyond the values of the start, as shares of the scale */
+    double first;              /* tau^2 at the start, as a share of the squared scale */
+    double shrink,
+        follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
+} InteriorRule;
+
+extern const InteriorRule interior_at_impacts, interior_at_rest;
+
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down.
 
    least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
    slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
    suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, double least_scale, double near, int most);
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
+                      double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

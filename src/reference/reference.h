@@ -47,6 +47,7 @@ typedef struct Reference {
         double log_target;
     } kept[2];        /* interior points to go back to */
     int left;         /* factorizations that this attempt may still use */
+    double stiffest;  /* a contact resists by at most this times its effective mass */
     double best;      /* residual of the best answer, m/s */
     int32_t *bodies;  /* [lu.count] */
     int32_t *nodes;   /* [body_count] -1 for bodies without contact */
@@ -58,17 +59,16 @@ typedef struct Reference {
         edge_capacity, edge_of_capacity, point_capacity, number_capacity;
 } Reference;
 
-/* m/s. A solve aims at a tenth of it. Of 8,000 steps of scenes/stack and scenes/pyramid_settled with the engine
-   (2,000 of them impacts), all but one reach the tolerance; that one ends at 1.05e-9. So do all 6,000 steps of
-   runs with the reference itself. At rest the sweeps' contact states are mostly those of the solution: one or two
-   factorizations. Impacts take 16 factorizations on the stack (median; 25: 95%) and 40 on the pyramid (110); the first
-   attempt solves 97% of them. Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree
-   within 4e-7 m/s (RMS). In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008
-   m/s apart: redundant contacts drift so slowly that the residual of sweeps hardly shows it. In one of these piles
-   friction also allows several solutions, 0.02 m/s apart.
+/* m/s. A solve aims at a tenth of it. All 31,200 steps of scenes/stack and scenes/pyramid_settled with the engine (40
+   launches) reach it, and all 6,000 steps of runs with the reference itself. At rest the sweeps' contact states are
+   mostly those of the solution: one or two factorizations. Impacts take 16 factorizations on the stack (median; 25:
+   95%) and 40 on the pyramid (118); the first attempt solves 96% of them.
 
-   Some steps of piles between walls have no solution: position correction pushes boxes into each other, and no impulses
-   are large enough. Their residual stays high. */
+   Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree within 4e-7 m/s (RMS).
+   In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008 m/s apart: redundant
+   contacts drift so slowly that the residual of sweeps hardly shows it. In one of these piles friction also allows
+   several solutions, 0.02 m/s apart. Some steps of piles between walls have no solution: position correction pushes
+   boxes into each other, and no impulses are large enough. Their residual stays high. */
 #define REFERENCE_TOLERANCE 1e-9
 
 void reference_free(Reference *reference);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* With friction the central path may turn back: its target rises for a while before it falls again, and Newton's method
    ends at the fold. So the path is followed by its length, with the target as one more unknown. At a fold the
-   determinant changes its sign, which tells in what direction to go on. Lengths are measured in the logarithms of the
-   point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990), Euler-Newton
-   with orientation by the determinant. */
+   determinant changes its sign, which tells in what direction to continue. Lengths are measured in the logarithms of
+   the point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990):
+   Euler-Newton with orientation by the determinant. */
 #pragma once
 #include "reference/reference_point.h"
 
 enum { CORRECTIONS = 3, CORRECTIONS_FIRST = 20, GOOD_STEPS = 3 };
 
-static const double arc_share = 0.9;           /* of the way to the nearest bound that a step may go */
-static const double near_path = 0.5, lost = 3; /* distances from the path, in its length */
+static const double arc_share = 0.9;                          /* of the way to the nearest bound that a step may go */
+static const double near_path = 0.5, nearer = 0.25, lost = 3; /* distances from the path, in its length */
 static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
 
 static const double log_end = -23; /* of 1e-10 (m/s)^2 */
@@ -18,7 +18,7 @@ static const double log_end = -23; /* of 1e-10 (m/s)^2 */
 typedef struct Tracker {
     Reference *r;
     double log_target, length; /* of the next step along the path */
-    double off_before;
+    double near, off_before;
     int corrections, good;
     bool found; /* has been on the path */
 } Tracker;
@@ -102,7 +102,7 @@ static void track(Tracker *tracker) {
     const double newton = find_directions(r, exp(tracker->log_target)), along = product(r, false);
     const double norm = product(r, true) + 1, squared = newton - along * along / norm;
     const double off = squared > 0 ? sqrt(squared) : squared <= 0 ? 0 : INFINITY;
-    const bool forward = goes_forward(r), on_path = off <= near_path;
+    const bool forward = goes_forward(r), on_path = off <= tracker->near;
     if (on_path) {
         keep(r, KEPT_ON_PATH, tracker->log_target);
         tracker->found = true;
@@ -124,7 +124,11 @@ static void track(Tracker *tracker) {
 static bool pass_fold(Reference *r, bool to_end) {
     return_to(r, KEPT_ON_WAY);
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-    Tracker tracker = {.r = r, .log_target = log(mean_product(r, 0)), .length = length_first, .off_before = INFINITY};
+    Tracker tracker = {.r = r,
+                       .log_target = log(mean_product(r, 0)),
+                       .length = length_first,
+                       .near = to_end ? nearer : near_path,
+                       .off_before = INFINITY};
     keep(r, KEPT_ON_PATH, tracker.log_target);
     while (r->left > 0 && (to_end ? tracker.log_target > log_end : tracker.good < GOOD_STEPS)) {
         track(&tracker);

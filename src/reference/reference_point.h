@@ -12,9 +12,6 @@
 #pragma once
 #include "reference/reference_newton.h"
 
-/* A contact resists by at most this times its effective mass: below, redundant contacts drift; above, masses vanish
-   beside the stiffness. */
-static const double stiffest = 1e12;
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
 static const double rounding = 1e-12;
 static const double inside = 0.5, calm = 0.01; /* of the start: offset from the bounds, share of the scale; m/s */
@@ -47,7 +44,7 @@ static void begin(Reference *r, double scale) {
 }
 
 static void linearise(Reference *r) {
-    const Vec4 soft = reference_all(1 / stiffest);
+    const Vec4 soft = reference_all(1 / r->stiffest);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;
@@ -86,7 +83,7 @@ static void right_side(Reference *r) {
 
 /* The changes by the last solve into `step`. */
 static void direction(Reference *r) {
-    const Vec4 soft = reference_all(1 / stiffest);
+    const Vec4 soft = reference_all(1 / r->stiffest);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;

@@ -4,7 +4,7 @@
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
       sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
    2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
-   3. If the path is lost, again from another distance.
+   3. If the path is lost, again from another distance and with another stiffness.
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. */
@@ -13,10 +13,16 @@
 #include "reference/reference_path.h"
 #include "reference/reference_sweep.h"
 
-enum { START_SWEEPS = 2, MOST = 200, ATTEMPTS = 6, CARELESS = 3, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
+enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 
-/* Distances of the start from its bounds, times its residual. The last attempts follow the path by its length. */
-static const double scales[ATTEMPTS] = {3, 30, 300, 30, 300, 3};
+/* scale: distance of the start from its bounds, times its residual. stiffest: see Reference; with less, redundant
+   contacts drift, with more, rounding hides the masses. most: factorizations. carefully: by the path's length. */
+static const struct {
+    double scale, stiffest;
+    int most;
+    bool carefully;
+} attempts[] = {{3, 1e12, 200, false},  {30, 1e13, 200, false}, {300, 1e12, 200, false}, {30, 1e12, 400, true},
+                {300, 1e13, 400, true}, {3, 1e14, 400, true},   {10, 1e11, 400, true},   {1000, 1e12, 400, true}};
 static const double look_ahead[] = {1e3, 1e6, 1e9, 1e11, 1e13}, near_solution = 1e-5; /* m/s */
 
 static void keep_start(Reference *r) {
@@ -59,10 +65,12 @@ static void run(Reference *r) {
     r->best = INFINITY;
     keep_best(r, missed(r, NULL));
     keep_best(r, polish(r, REFERENCE_TOLERANCE / 10, 1));
+    const int count = sizeof attempts / sizeof *attempts;
     bool solved = r->best <= REFERENCE_TOLERANCE / 10;
-    for (; !solved && r->attempts < ATTEMPTS; r->attempts++) {
-        begin(r, scales[r->attempts]);
-        solved = follow(r, MOST, r->attempts >= CARELESS) || finish(r);
+    for (; !solved && r->attempts < count; r->attempts++) {
+        r->stiffest = attempts[r->attempts].stiffest;
+        begin(r, attempts[r->attempts].scale);
+        solved = follow(r, attempts[r->attempts].most, attempts[r->attempts].carefully) || finish(r);
     }
     take_best(r);
 }

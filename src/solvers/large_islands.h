@@ -2,12 +2,17 @@
 /* Problems that `interior` leaves to sweeps with momentum. The time of a factorization grows with the power 1.5 of the
    bodies in an island (interior/islands.h); an iteration takes as long as 20 sweeps at 496 boxes in a pyramid, 45 at
    1,275 and 120 at 4,950. Beyond about 750 boxes sweeps are as accurate in the same time. Stacks and rows of any number
-   of bodies have no loops, and are not left to sweeps. */
+   of bodies have no loops, and are not left to sweeps.
+
+   Interior-point steps only for the bodies that sweeps leave unsolved, with the impulses of all others kept, gain nothing
+   on average: on eight frozen impacts of 1,276 and 2,401 boxes the error at equal time was 1.2 to 1.4 times that of sweeps
+   (geometric mean). They help where a wall is struck from the side. Under the top of a pyramid all impulses change down
+   to the ground. */
 #pragma once
 #include "interior/islands.h"
 #include "solvers/momentum.h"
 
-enum { LARGE_SWEEPS = 20, LARGE_MORE = 240 }; /* sweeps, and those that may follow while the residual is too large */
+enum { LARGE_SWEEPS = 20, LARGE_MORE = 96 }; /* sweeps, and those that may follow while the residual is too large */
 
 /* Zero-initialise. */
 typedef struct LargeIslands {

@@ -68,6 +68,18 @@ static void rings_fill_in_by_their_chords(void **state) {
     }
 }
 
+/* Without edges, and with all: nothing can fill in. */
+static void extremes_do_not_fill_in(void **state) {
+    (void)state;
+    for (int count = 100; count <= 300; count += 100) {
+        assert_int_equal(fill_of(count, 0), 0);
+        int edge_count = 0;
+        for (int a = 0; a < count; a++)
+            for (int b = 0; b < a; b++) edges[edge_count++] = (BlockEdge){a, b};
+        assert_int_equal(fill_of(count, edge_count), 0);
+    }
+}
+
 /* A wall of side x side nodes with neighbours across and above. */
 static int make_wall(int side) {
     int count = 0;
@@ -122,11 +134,10 @@ static void earlier_graphs_leave_no_trace(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(trees_do_not_fill_in),
-                                       cmocka_unit_test(stars_and_chains_do_not_fill_in),
-                                       cmocka_unit_test(rings_fill_in_by_their_chords),
-                                       cmocka_unit_test(walls_fill_in_little),
-                                       cmocka_unit_test(the_order_of_a_wall_is_the_same_everywhere),
-                                       cmocka_unit_test(earlier_graphs_leave_no_trace)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_do_not_fill_in),          cmocka_unit_test(stars_and_chains_do_not_fill_in),
+        cmocka_unit_test(rings_fill_in_by_their_chords), cmocka_unit_test(extremes_do_not_fill_in),
+        cmocka_unit_test(walls_fill_in_little),          cmocka_unit_test(the_order_of_a_wall_is_the_same_everywhere),
+        cmocka_unit_test(earlier_graphs_leave_no_trace)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
