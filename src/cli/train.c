@@ -50,7 +50,8 @@ static void add_kind(Options *options, HelpTexts *texts, int k) {
     const TrainKind *kind = train_kinds[k];
     const size_t used = strlen(texts->usage);
     snprintf(texts->usage + used, sizeof texts->usage - used, "%s%s%s%s", k == 0 ? "" : "\n--kind ",
-             k == 0 ? "" : kind->name, k == 0 ? "" : " ", kind->input);
+             k == 0 ? "" : kind->name, k == 0 || kind->input == NULL ? "" : " ",
+             kind->input != NULL ? kind->input : "");
     snprintf(texts->headings[k], TEXT_SIZE, "%s%s: %s.", kind->name, k == 0 ? " (default)" : "", kind->summary);
     add_row(options, (Option){.help = texts->headings[k]});
     for (const Option *option = kind->options; option->name != NULL; option++) {
@@ -81,6 +82,10 @@ static const TrainKind *find_kind(const char *name, Error *error) {
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {
     *request = (TrainRequest){find_kind(options->kind, error), options->input, options->output, {NULL}};
     if (request->kind == NULL) return false;
+    if ((request->input == NULL) != (request->kind->input == NULL))
+        return request->input == NULL
+                   ? error_input(error, request->kind->name, "a file to train on is needed: %s", request->kind->input)
+                   : error_input(error, request->input, "%s takes no file to train on", request->kind->name);
     for (int i = 0; request->kind->options[i].name != NULL; i++)
         request->values[i] = request->kind->options[i].standard;
     for (int i = 0; i < options->row_count; i++) {
@@ -102,7 +107,7 @@ bool command_train(int argc, char **argv, Error *error) {
     const CommandSpec spec = {
         .options = options.rows,
         .input = {.value = texts.usage, .needed = "a dataset (or scene) is needed", OPTION_PATH(Options, input)},
-        .inputs = {1, 1, "file"},
+        .inputs = {0, 1, "file"},
         .help = "Train the network of a method, or its learned factors. Ctrl-C stops and keeps the best found so far.\v"
                 "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
                 "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};

@@ -8,7 +8,8 @@
 #define TRAIN_KINDS(KIND)   \
     KIND(pair_net)          \
     KIND(momentum_schedule) \
-    KIND(scene_net)
+    KIND(scene_net)         \
+    KIND(interior_net)
 
 /* What to train, as on the command line. */
 typedef struct TrainRequest {
@@ -18,7 +19,7 @@ typedef struct TrainRequest {
 } TrainRequest;
 
 typedef struct TrainKind {
-    const char *name, *input, *summary; /* input: what the help calls the file to train on */
+    const char *name, *input, *summary; /* input: what the help calls the file to train on; NULL: none */
     const Option *options;              /* in the order of a command; those not given have the value `standard` */
     bool (*train)(const TrainRequest *request, Error *error);
 } TrainKind;

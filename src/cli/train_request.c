@@ -34,7 +34,7 @@ static void append(char *command, size_t size, const char *before, const char *t
 void train_describe(const TrainRequest *request, char *command, size_t size) {
     snprintf(command, size, "twinbox train");
     if (request->kind != train_kinds[0]) append(command, size, " --kind ", request->kind->name);
-    append(command, size, " ", request->input);
+    if (request->input != NULL) append(command, size, " ", request->input);
     append(command, size, " -o ", request->output);
     for (int i = 0; request->kind->options[i].name != NULL; i++) {
         const Option *option = &request->kind->options[i];

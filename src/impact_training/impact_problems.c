@@ -27,7 +27,8 @@ void impact_problems_free(ImpactProblems *problems) {
     *problems = (ImpactProblems){0};
 }
 
-static bool add(ImpactProblems *problems, const ContactProblem *problem, bool impact) {
+bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem, const ReferenceVelocity *reference,
+                         bool impact) {
     if (!array_reserve((void **)&problems->items, &problems->capacity, problems->count + 1, sizeof *problems->items))
         return false;
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
@@ -40,7 +41,21 @@ static bool add(ImpactProblems *problems, const ContactProblem *problem, bool im
     if (body_copy == NULL || contact_copy == NULL || item.reference == NULL) return false;
     memcpy(body_copy, problem->bodies, bodies * sizeof *body_copy);
     memcpy(contact_copy, problem->contacts, contacts * sizeof *contact_copy);
+    if (reference != NULL) memcpy(item.reference, reference, bodies * sizeof *reference);
     return true;
+}
+
+bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from) {
+    const bool ok = array_reserve((void **)&problems->items, &problems->capacity, problems->count + from->count,
+                                  sizeof *problems->items);
+    if (ok && from->count > 0)
+        memcpy(problems->items + problems->count, from->items, from->count * sizeof *from->items);
+    if (ok) {
+        problems->count += from->count;
+        from->count = 0;
+    }
+    impact_problems_free(from);
+    return ok;
 }
 
 static bool observe(void *context, int frame, const World *world, Error *error) {
@@ -50,7 +65,7 @@ static bool observe(void *context, int frame, const World *world, Error *error) 
     Phase phase = phase_next(tracker, problem, frame);
     bool sampled = phase == PHASE_AFTER && (frame - tracker->touch - tracker->impact_frames) % AFTER_STEP == 0;
     if (phase != PHASE_IMPACT && !sampled) return true;
-    return add(recording->problems, problem, phase == PHASE_IMPACT) || error_memory(error, "recording");
+    return impact_problems_add(recording->problems, problem, NULL, phase == PHASE_IMPACT) || error_memory(error, "recording");
 }
 
 static bool run_launches(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x, Error *error) {

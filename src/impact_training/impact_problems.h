@@ -23,6 +23,13 @@ typedef struct ImpactProblems {
 
 void impact_problems_free(ImpactProblems *problems);
 
+/* Appends a copy. reference: [body_count]; NULL: left to be filled. False when memory is short. */
+bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem, const ReferenceVelocity *reference,
+                         bool impact);
+
+/* Appends the items of `from`, which is empty afterwards. False when memory is short. */
+bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from);
+
 /* Runs every launch. Omits problems whose reference does not converge. ERROR_INPUT if the scene has no bomb, no launch
    touches a box, or progress stops the recording. */
 bool impact_problems_record(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x,

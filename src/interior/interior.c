@@ -25,8 +25,8 @@ const InteriorKernels *interior_best(void) {
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
-/* Moves the start to the inside of all bounds. */
-static void begin(Interior *s, const InteriorRule *rule, double scale) {
+double interior_begin(Interior *s, const InteriorRule *rule, double least_scale) {
+    const double scale = scale_of_residual * s->residual + least_scale;
     const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
@@ -40,13 +40,13 @@ static void begin(Interior *s, const InteriorRule *rule, double scale) {
             g->q[k] = larger(slip, 0) + beyond;
         }
     }
+    return s->first_target = rule->first * scale * scale;
 }
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
                       double near, int most) {
     const double scale = scale_of_residual * s->residual + least_scale;
-    begin(s, rule, scale);
-    double target = rule->first * scale * scale, estimate = 0;
+    double target = interior_begin(s, rule, least_scale), estimate = 0;
     for (s->iterations = 0; s->iterations < most;) {
         const double next = larger(rule->shrink * target, rule->follow * estimate * estimate);
         target = next < target ? next : target;

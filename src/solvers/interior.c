@@ -20,6 +20,7 @@
    friction jams a pile. */
 #include "interior/interior.h"
 
+#include "solvers/interior_net.h"
 #include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
@@ -30,7 +31,7 @@
 
 enum {
     REST_SWEEPS = 2,
-    IMPACT_SWEEPS = 6,    /* with momentum */
+    IMPACT_SWEEPS = INTERIOR_IMPACT_SWEEPS,
     MANY_BODIES = 128,    /* more: an iteration takes as long as 15 sweeps or more, */
     MANY_SWEEPS = 12,     /* and these save more than they cost */
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
@@ -41,7 +42,7 @@ enum {
 /* m/s. A step is at rest if all bodies move by less than `rest_below` relative to each other where they touch; a step of
    gravity makes 0.17, and 1 at 10 Hz. Not their mean: it is small if a bomb strikes one of many boxes. At rest the
    tolerance is at most `rest_near`. */
-static const float rest_below = 1.2f, rest_near = 1e-4f;
+static const float rest_below = INTERIOR_REST_BELOW, rest_near = 1e-4f;
 /* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which exceed
    the residual more than those of iterations. */
 static const float trusted = 0.3f;
@@ -59,7 +60,8 @@ typedef struct Attempt {
 } Attempt;
 
 enum { ATTEMPTS = 2 };
-static const Attempt at_rest[ATTEMPTS] = {{1e-6, 10}, {0.1, 40}}, at_impact[ATTEMPTS] = {{0.01, 50}, {1, 40}};
+static const Attempt at_rest[ATTEMPTS] = {{1e-6, 10}, {0.1, 40}},
+                     at_impact[ATTEMPTS] = {{INTERIOR_IMPACT_SCALE, 50}, {1, 40}};
 /* Impacts of more than MANY_BODIES cycle more often, from any start: then sweeps take over. */
 static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 30}, {0, 0}};
 
@@ -67,7 +69,8 @@ typedef struct State {
     Interior interior;
     LargeIslands large;
     Momentum momentum;
-    float near; /* m/s */
+    InteriorNet net; /* of interior-net */
+    float near;      /* m/s */
     float start_factors[IMPACT_SWEEPS], many_factors[MANY_SWEEPS], factors[FALLBACK_SWEEPS],
         more_factors[FALLBACK_MORE];
 } State;
@@ -153,6 +156,32 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
            momentum_solve(&solver->momentum, problem, solver->factors, FALLBACK_SWEEPS, solution, error);
 }
 
+bool interior_net_make(ContactSolver *solver, const InteriorNet *net, Error *error) {
+    const Settings none = {0};
+    State *state = create(&none, error);
+    if (state == NULL) return false;
+    state->net = *net;
+    state->interior.net = &state->net;
+    *solver = (ContactSolver){&solver_interior_net, state};
+    return true;
+}
+
+static void *create_net(const Settings *chosen, Error *error) {
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) {
+        error_input(error, "interior-net", "the scene names no network for it: use interior-net:network=FILE");
+        return NULL;
+    }
+    State *solver = create(chosen, error);
+    if (solver == NULL) return NULL;
+    if (!interior_net_read(&solver->net, path, error)) {
+        destroy(solver);
+        return NULL;
+    }
+    solver->interior.net = &solver->net;
+    return solver;
+}
+
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Sweeps *sweeps = &solver->momentum.sweeps;
@@ -181,5 +210,23 @@ const ContactSolverKind solver_interior = {
                     .chart_quick = METHOD_NO_RUNS,
                     .stability_place = 2},
     .create = create,
+    .solve = solve,
+    .destroy = destroy};
+
+static const SettingSpec net_settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
+                                           {"network", "file of the network (default: the scene's)"},
+                                           {NULL, NULL}};
+
+const ContactSolverKind solver_interior_net = {
+    .description = {.name = "interior-net",
+                    .summary = "interior with a network that places each contact before an iteration",
+                    .settings = net_settings,
+                    .title = "Interior point with a network",
+                    .needs_network = true,
+                    .twin = "interior",
+                    .chart = METHOD_RUNS("near=0.02", "near=0.001"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create_net,
     .solve = solve,
     .destroy = destroy};

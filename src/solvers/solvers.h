@@ -24,7 +24,8 @@
     SOLVER(relu_net)              \
     STEPPING(soft_step)           \
     STEPPING(avbd)                \
-    SOLVER(interior)
+    SOLVER(interior)              \
+    SOLVER(interior_net)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;

@@ -12,6 +12,8 @@ equal "options of momentum-schedule" "$(listed 'momentum-schedule: ')" "bomb-x i
 equal "options of scene-net" "$(listed 'scene-net: ')" \
     "iterations launches momentum rounds seed smallest sweeps width within "
 says "  or:  twinbox train [OPTION...] --kind scene-net SCENE"
+equal "options of interior-net" "$(listed 'interior-net: ')" "epochs rounds scenes seed "
+says "  or:  twinbox train [OPTION...] --kind interior-net"
 
 # Refused before a file is read; the kind may come first or last.
 run 2 train --kind scene-net nowhere.yaml -o x.npz --optimizer lm
@@ -23,9 +25,15 @@ complains "--smallest: error: is an option of scene-net, not of pair-net"
 run 2 train --kind pair-net nowhere.npz -o x.npz --width 16
 complains "--width: error: is an option of scene-net, not of pair-net"
 run 2 train --kind magic nowhere.npz -o x.npz
-complains "--kind: error: 'magic' is not a kind; known: pair-net, momentum-schedule, scene-net"
+complains "--kind: error: 'magic' is not a kind; known: pair-net, momentum-schedule, scene-net, interior-net"
 run 2 train --kind momentum-schedule nowhere.yaml -o x.npz --seed 2 --iterations 1
 complains "nowhere.yaml"
+run 2 train -o x.npz
+complains "pair-net: error: a file to train on is needed: DATA.npz"
+run 2 train --kind interior-net nowhere.yaml -o x.npz
+complains "nowhere.yaml: error: interior-net takes no file to train on"
+run 3 train --kind interior-net -o nowhere/x.npz
+complains "nowhere/x.npz.part: error: cannot write"
 run 2 train one.npz two.npz -o x.npz
 complains "only 1 file can be given ('two.npz' is one more)"
 
@@ -36,6 +44,7 @@ run 0 dataset single.yaml -o pairs.npz --bomb-x=-2:2:1
 run 0 train --loss smooth-l1 pairs.npz --iterations 3 -o pair.npz --hidden tanh
 run 0 train single.yaml --bomb-x=1:2:1 --iterations 1 -o schedule.npz --kind momentum-schedule
 run 0 train --kind scene-net stack.yaml -o scene.npz --launches 10 --rounds 1 --iterations 1 --width 16
+run 0 train --kind interior-net -o interior.npz --scenes 7 --rounds 1 --epochs 1
 stored() { /usr/bin/python3 -c "import numpy; print(numpy.load('$1')['command'])"; }
 equal "command of pair-net" "$(stored pair.npz)" \
     "twinbox train pairs.npz -o pair.npz --layers 10-10-2 --optimizer adam --iterations 3 --seed 1 --hidden tanh --loss smooth-l1"
@@ -43,4 +52,7 @@ equal "command of momentum-schedule" "$(stored schedule.npz)" \
     "twinbox train --kind momentum-schedule single.yaml -o schedule.npz --iterations 1 --seed 1 --bomb-x=1:2:1"
 equal "command of scene-net" "$(stored scene.npz)" \
     "twinbox train --kind scene-net stack.yaml -o scene.npz --launches 10 --rounds 1 --iterations 1 --width 16 --sweeps 14 --momentum on --seed 1"
+equal "command of interior-net" "$(stored interior.npz)" \
+    "twinbox train --kind interior-net -o interior.npz --scenes 7 --rounds 1 --epochs 1 --seed 1"
+run 0 simulate "$scenes/stack.yaml" --method interior-net:network=interior.npz -o run.npz
 finish
