@@ -15,7 +15,7 @@
 static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55, name_slope = 1.15,
                     foot = 16, bar_height = 2.6, bar_width = 62, note_width = 76;
 static const double degrees = 40;
-static const double strongest = 300; /* ratio, and its inverse, with the full colour */
+static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
 
 typedef struct Layout {
     const EqualTimeGrid *grid;
@@ -118,7 +118,7 @@ static void draw_names(const Layout *layout) {
 
 /* The scale of colours, as a bar of steps. */
 static void draw_scale(const Layout *layout) {
-    static const double marks[] = {1.0 / 300, 1.0 / 30, 1, 30, 300};
+    static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
     enum { STEPS = 61 };
     GnuplotPage *page = layout->page;
     const double bottom = 8.8;

@@ -128,6 +128,13 @@ complains "0: error:"
 sed 's/x: {[^}]*}/x: 4/' "$scenes/single.yaml" | sed "s|networks/|$scenes/networks/|" >alone.yaml
 run 2 chart alone.yaml -o none $few
 complains "alone: error: the bomb has one launch and no family"
+# Large scenes have fewer launches, unless their number is given.
+sed "s|networks/|$scenes/networks/|; s|size: \[100, 20\]|size: [2000, 20]|" "$scenes/single.yaml" |
+    sed '/^bodies:/a\  - {pattern: row, count: 200, spacing: [2, 0], mass: 1, size: [1, 1], position: [50, 0.5]}' >large.yaml
+run 0 chart large.yaml -o large $few
+says "large: 1 methods and settings, 4 launches"
+run 0 chart large.yaml -o large $few --launches 5
+says "large: 1 methods and settings, 5 launches"
 # A family of the scene alone decides.
 sed 's/x: 4/x: {from: 1, to: 3}/' alone.yaml >family.yaml
 run 0 chart family.yaml -o family $few --launches 2
