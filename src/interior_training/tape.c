@@ -31,7 +31,7 @@ static TapeId append(Tape *tape, int operation, TapeId a, TapeId b, int length) 
         return -1;
     }
     tape->nodes[tape->count] = (TapeNode){operation, a, b, length, tape->used};
-    tape->used += (size_t)length;
+    tape->used += ((size_t)length + 1) / 2 * 2; /* an even number: a node may be read as vectors of 16 bytes */
     return tape->count++;
 }
 
