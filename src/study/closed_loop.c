@@ -127,7 +127,7 @@ static double time_states(Stepper *stepper, World *world, const SnapshotList *st
         if (!world_copy(world, state->world, error)) return -1;
         const int64_t before = meter_time();
         if (!stepper_step(stepper, world, &step, error)) return -1;
-        sum += meter_time() - before - overhead;
+        sum += meter_without(meter_time() - before, overhead);
     }
     return 1e-3 * (double)sum / states->count;
 }

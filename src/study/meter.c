@@ -41,6 +41,8 @@ int64_t meter_time_overhead(void) {
     return least;
 }
 
+int64_t meter_without(int64_t passed, int64_t overhead) { return passed > overhead ? passed - overhead : 0; }
+
 static int counter = -1;
 
 bool meter_open_instructions(void) {

@@ -14,6 +14,8 @@ int64_t meter_time(void);
 
 /* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
 int64_t meter_time_overhead(void);
+/* `passed` without the overhead; at least 0, as the overhead itself varies by some nanoseconds. */
+int64_t meter_without(int64_t passed, int64_t overhead);
 
 /* Instructions of this thread since the counter was opened; 0 if it is not available. */
 bool meter_open_instructions(void);

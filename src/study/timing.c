@@ -36,8 +36,8 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     step.meter = &inner;
     int64_t begun = meter->now();
     if (!simulate_step(stepper, world, &step, error)) return false;
-    cost->step = meter->now() - begun - 3 * meter->overhead; /* with two calls inside the step */
-    cost->solver = inner.solving - meter->overhead;
+    cost->step = meter_without(meter->now() - begun, 3 * meter->overhead); /* with two calls inside the step */
+    cost->solver = meter_without(inner.solving, meter->overhead);
     return true;
 }
 

@@ -18,6 +18,12 @@ static void time_does_not_go_back(void **state) {
     assert_true(meter_time_overhead() >= 0);
 }
 
+static void no_work_takes_no_negative_time(void **state) {
+    (void)state;
+    assert_int_equal(meter_without(30, 20), 10);
+    assert_int_equal(meter_without(20, 30), 0);
+}
+
 static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
     (void)state;
     cpu_set_t before, pinned, after;
@@ -46,6 +52,7 @@ static void instructions_grow_with_the_work(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(time_does_not_go_back),
+                                       cmocka_unit_test(no_work_takes_no_negative_time),
                                        cmocka_unit_test(a_thread_is_pinned_to_one_core_and_let_go),
                                        cmocka_unit_test(instructions_grow_with_the_work)};
     return cmocka_run_group_tests(tests, NULL, NULL);
