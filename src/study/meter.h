@@ -9,7 +9,7 @@
 void meter_pin(void);
 void meter_unpin(void);
 
-/* Nanoseconds of processor time of the calling thread: what other processes take in between does not count. */
+/* Nanoseconds of a monotonic clock. */
 int64_t meter_time(void);
 
 /* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
