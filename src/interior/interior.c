@@ -7,14 +7,15 @@
 
 /* Tuned on frozen impacts of stacks, towers, gates, pyramids, walls, piles and dominoes of 7 to 45 boxes, for the fewest
    iterations to 0.02 and 0.001 m/s. */
-const InteriorRule interior_at_impacts = {
+const InteriorRule interior_quick = {
     .impulse = 3, .gap = 0.06, .slip = 0.11, .first = 0.005, .shrink = 0.04, .follow = 0.03};
-/* Hand-tuned: with the rule of impacts large pyramids at rest do not converge. */
-const InteriorRule interior_at_rest = {
+/* Hand-tuned: where quick iterations break down, and for large pyramids at rest. */
+const InteriorRule interior_gentle = {
     .impulse = 0.5, .gap = 0.5, .slip = 0.5, .first = 0.25, .shrink = 0.15, .follow = 0.05};
 static const double scale_of_residual = 4;
-/* Iterations have broken down, as in a problem without a solution, if the residual exceeds the scale by this, m/s. */
-static const double lost = 1e6;
+/* Iterations have broken down if the residual exceeds `lost_share` times the scale by `lost` (m/s): with friction, the path
+   to the solution can turn back, and then they jump about. */
+static const double lost_share = 10, lost = 1;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
@@ -43,6 +44,18 @@ double interior_begin(Interior *s, const InteriorRule *rule, double least_scale)
     return s->first_target = rule->first * scale * scale;
 }
 
+/* Impulses are stored in float. Between jammed bodies they can grow without an effect on velocities, until their rounding
+   makes velocities of `rounded` (m/s). */
+static bool is_jammed(const Interior *s) {
+    const double rounded = 0.1, largest = rounded * 0x1p24; /* of impulse / effective mass */
+    bool jammed = false;
+    for (int i = 0; i < s->group_count; i++) {
+        const Vec4 speed = s->groups[i].answer_normal * s->groups[i].inverse_normal;
+        jammed |= (speed[0] > largest) | (speed[1] > largest) | (speed[2] > largest) | (speed[3] > largest);
+    }
+    return jammed;
+}
+
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
                       double near, int most) {
     const double scale = scale_of_residual * s->residual + least_scale;
@@ -52,12 +65,13 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, const Interio
         target = next < target ? next : target;
         s->residual = estimate = kernels->iterate(s, target);
         s->iterations++;
-        if (!(estimate < lost + scale)) break;
+        if (!(estimate < lost + lost_share * scale)) break;
         if (estimate > near && s->iterations < most) continue;
         s->residual = kernels->answer(s);
+        if (is_jammed(s)) s->residual = INFINITY;
         if (!(s->residual > near)) return;
     }
-    if (!(estimate < lost + scale)) s->residual = INFINITY;
+    if (!(estimate < lost + lost_share * scale)) s->residual = INFINITY;
 }
 
 static bool store_bodies(const Interior *s, const ContactProblem *problem, ContactSolution *solution) {

@@ -133,7 +133,7 @@ typedef struct InteriorRule {
         follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
 } InteriorRule;
 
-extern const InteriorRule interior_at_impacts, interior_at_rest;
+extern const InteriorRule interior_quick, interior_gentle;
 
 /* A part of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first tau^2. */
 double interior_begin(Interior *interior, const InteriorRule *rule, double least_scale);

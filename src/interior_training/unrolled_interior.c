@@ -64,8 +64,8 @@ static UnrolledNodes begin(UnrolledInterior *u, const double *weights) {
 
 /* The schedule of interior_iterate(). */
 static void next_target(Tape *t, UnrolledNodes *n, int step) {
-    TapeId next = tape_scale(t, interior_at_impacts.shrink, n->target);
-    if (step > 0) next = tape_larger(t, next, tape_scale(t, interior_at_impacts.follow, tape_square(t, n->estimate)));
+    TapeId next = tape_scale(t, interior_quick.shrink, n->target);
+    if (step > 0) next = tape_larger(t, next, tape_scale(t, interior_quick.follow, tape_square(t, n->estimate)));
     n->target = tape_smaller(t, next, n->target);
 }
 
@@ -125,7 +125,7 @@ bool unrolled_interior_loss(UnrolledInterior *u, const ContactProblem *problem, 
     u->interior.net = NULL;
     if (!load(u, problem)) return false;
     if (u->interior.contact_count == 0) return true;
-    const double first_target = interior_begin(&u->interior, &interior_at_impacts, INTERIOR_IMPACT_SCALE);
+    const double first_target = interior_begin(&u->interior, &interior_quick, INTERIOR_IMPACT_SCALE);
     UnrolledNodes n = begin(u, weights);
     TapeId reference, masses;
     given_reference(u, problem, velocities, &reference, &masses);

@@ -54,18 +54,19 @@ static const float rounding = 3e-8f;
    overlap by less than `shallow` (m) aim to close by up to `closing` (m/s): both exceed the rounding of positions. */
 static const double shallow = (double)CONTACT_SLOP / 20, closing = 0.001;
 
-/* Iterations from the start of the sweeps, near the bounds first. If these cycle, it is better to start from there again,
-   further inside, than from where they are. */
+/* Iterations from the start of the sweeps, near the bounds first. If these break down or cycle, it is better to start from
+   there again, further inside, than from where they are. */
 typedef struct Attempt {
+    const InteriorRule *rule;
     double least_scale; /* m/s */
     int iterations;
 } Attempt;
 
 enum { ATTEMPTS = 2 };
-static const Attempt at_rest[ATTEMPTS] = {{1e-6, 10}, {0.1, 40}},
-                     at_impact[ATTEMPTS] = {{INTERIOR_IMPACT_SCALE, 50}, {1, 40}};
-/* Impacts of more than MANY_BODIES cycle more often, from any start: then sweeps take over. */
-static const Attempt at_impact_of_many[ATTEMPTS] = {{0.1, 30}, {0, 0}};
+static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, 10}, {&interior_gentle, 0.1, 40}},
+                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, 14}, {&interior_gentle, 10, 25}};
+/* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
+static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 10, 25}, {NULL, 0, 0}};
 
 typedef struct State {
     Interior interior;
@@ -127,12 +128,11 @@ static bool find_rest(State *solver, const ContactProblem *problem, bool *rests)
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
-    const InteriorRule *rule = rests ? &interior_at_rest : &interior_at_impacts;
     const Attempt *attempts = rests ? at_rest : problem->body_count > MANY_BODIES ? at_impact_of_many : at_impact;
-    for (int i = 0; i < ATTEMPTS && attempts[i].iterations > 0; i++) {
+    for (int i = 0; i < ATTEMPTS && attempts[i].rule != NULL; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
-        interior_iterate(&solver->interior, kernels, rule, attempts[i].least_scale, (double)near,
+        interior_iterate(&solver->interior, kernels, attempts[i].rule, attempts[i].least_scale, (double)near,
                          attempts[i].iterations);
         if (solver->interior.residual <= (double)near) return true;
     }

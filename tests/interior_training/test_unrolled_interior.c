@@ -46,7 +46,7 @@ static void any_weights(InteriorNet *net, double size) {
     }
 }
 
-/* The error of the kernels' answer after some iterations. */
+/* The error of the kernels' answer after some iterations; infinite if they broke down. */
 static double error_of(const ImpactProblem *item, const InteriorNet *net, int iterations) {
     float factors[INTERIOR_IMPACT_SWEEPS];
     Sweeps sweeps = {0};
@@ -58,9 +58,11 @@ static double error_of(const ImpactProblem *item, const InteriorNet *net, int it
     for (int s = 0; s < INTERIOR_IMPACT_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, INTERIOR_IMPACT_SWEEPS);
     assert_true(sweeps_run_momentum(&sweeps, factors, INTERIOR_IMPACT_SWEEPS));
     assert_true(interior_load(&interior, interior_best(), &sweeps, &item->problem));
-    interior_iterate(&interior, interior_best(), &interior_at_impacts, INTERIOR_IMPACT_SCALE, 0, iterations);
+    interior_iterate(&interior, interior_best(), &interior_quick, INTERIOR_IMPACT_SCALE, 0, iterations);
     const bool finite = interior_end(&interior, &sweeps, &item->problem, &solution);
-    const double found = finite ? solution_error(&item->problem, velocities, item->reference).rms : INFINITY;
+    const double found = finite && isfinite(interior.residual)
+                             ? solution_error(&item->problem, velocities, item->reference).rms
+                             : INFINITY;
     free(solution.impulses);
     interior_free(&interior);
     sweeps_free(&sweeps);
@@ -72,7 +74,7 @@ static void the_tape_has_the_answers_of_the_kernels(void **state) {
     (void)state;
     enum { ITERATIONS = 3 };
     const InteriorTask task = {.first = 1, .last = ITERATIONS, .floor = 1};
-    int different = 0, compared = 0;
+    int different = 0, compared = 0, broken = 0;
     InteriorNet nets[2] = {{.command = ""}, {.command = ""}};
     any_weights(&nets[1], 0.4);
     for (size_t i = 0; i < problems.count; i++) {
@@ -81,13 +83,17 @@ static void the_tape_has_the_answers_of_the_kernels(void **state) {
         const InteriorNet *net = &nets[i % 2];
         assert_true(
             unrolled_interior_loss(&unrolled, &item->problem, item->reference, net->weights, &task, &loss, NULL));
-        for (int k = 0; k < ITERATIONS; k++, compared++) {
+        for (int k = 0; k < ITERATIONS; k++) {
             const double found = unrolled.errors[k], expected = error_of(item, net, k + 1);
+            broken += !isfinite(expected);
+            if (!isfinite(expected)) continue;
+            compared++;
             different += !(fabs(found - expected) <= 1e-5 + 1e-4 * expected);
         }
     }
     /* Kernels stop where the residual is exactly 0. */
     if (different > compared / 100) fail_msg("%d of %d answers differ", different, compared);
+    assert_true(broken < compared / 20);
 }
 
 /* Central differences, where those to both sides agree: at a kink there is no derivative. */
