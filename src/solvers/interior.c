@@ -66,7 +66,7 @@ enum { ATTEMPTS = 2 };
 static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, 10}, {&interior_gentle, 0.1, 40}},
                      at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, 14}, {&interior_gentle, 10, 25}};
 /* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
-static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 10, 25}, {NULL, 0, 0}};
+static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 1, 25}, {NULL, 0, 0}};
 
 typedef struct State {
     Interior interior;
