@@ -5,6 +5,27 @@
 
 static inline Vec4 vec4(double x, double y, double z, double w) { return (Vec4){x, y, z, w}; }
 
+/* The coordinates of a pair are the linear velocity of body b minus that of body a, the spin of b, and the spin of a. From
+   the impulse on b in these to that on a. */
+static inline Vec4 as_body_a(Vec4 x) { return vec4(x[0], x[1], x[3], x[2]) * vec4(-1, -1, 1, 1); }
+
+/* Adds a matrix over the coordinates of a pair, given by columns, to the blocks of bodies a and b. */
+static inline void block_add_pair(Block3 *blocks, int a, int b, BlockPlace place, const Vec4 columns[4]) {
+    Block3 *aa = &blocks[a], *bb = &blocks[b];
+    Block3 *ab = &blocks[place.row_a], *ba = &blocks[place.row_b];
+    for (int c = 0; c < 2; c++) {
+        const Vec4 of_a = as_body_a(columns[c]);
+        bb->column[c] += columns[c];
+        ba->column[c] -= columns[c];
+        ab->column[c] += of_a;
+        aa->column[c] -= of_a;
+    }
+    bb->column[2] += columns[2];
+    ba->column[2] += columns[3];
+    ab->column[2] += as_body_a(columns[2]);
+    aa->column[2] += as_body_a(columns[3]);
+}
+
 /* block times the first three numbers of `by`. */
 static inline Vec4 block_times(const Block3 *block, const Vec4 *by) {
     const double *x = (const double *)by;

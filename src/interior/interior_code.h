@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-/* A pair's coordinates to those of body a: minus the linear velocity, spin of a. */
-static inline Vec4 as_body_a(Vec4 x) { return vec4(x[0], x[1], x[3], x[2]) * vec4(-1, -1, 1, 1); }
-
 /* x = M (v' - v) */
 static void momentum_left(const Interior *s, Vec4 *x) {
     for (int k = 0; k < s->lu.count; k++) x[k] = s->masses[k] * (s->start[k] - s->velocities[k]);
@@ -42,23 +39,6 @@ static inline void stiffness(const InteriorGroup *g, const InteriorPair *pair, i
                  (along[1] * g->normal_a[slot + 1] + across[1] * g->tangent_a[slot + 1]);
 }
 
-/* Adds the pair to the blocks of its bodies. */
-static inline void add_stiffness(Block3 *blocks, const InteriorPair *pair, const Vec4 columns[4]) {
-    Block3 *aa = &blocks[pair->a], *bb = &blocks[pair->b];
-    Block3 *ab = &blocks[pair->place.row_a], *ba = &blocks[pair->place.row_b];
-    for (int c = 0; c < 2; c++) {
-        const Vec4 of_a = as_body_a(columns[c]);
-        bb->column[c] += columns[c];
-        ba->column[c] -= columns[c];
-        ab->column[c] += of_a;
-        aa->column[c] -= of_a;
-    }
-    bb->column[2] += columns[2];
-    ba->column[2] += columns[3];
-    ab->column[2] += as_body_a(columns[2]);
-    aa->column[2] += as_body_a(columns[3]);
-}
-
 /* The masses, and zeros elsewhere. */
 static void begin_blocks(const Interior *s, BlockLu *lu) {
     for (int k = 0; k < lu->count; k++) {
@@ -84,7 +64,7 @@ static void assemble(Interior *s, double target, Vec4 *right) {
         for (int half = 0; half < GROUP_PAIRS; half++) {
             Vec4 columns[4];
             stiffness(g, &pairs[half], 2 * half, columns);
-            add_stiffness(s->lu.blocks, &pairs[half], columns);
+            block_add_pair(s->lu.blocks, pairs[half].a, pairs[half].b, pairs[half].place, columns);
         }
     }
 }

@@ -10,8 +10,6 @@
 #include "reference/reference_parts.h"
 #include <string.h>
 
-static inline Vec4 as_body_a(Vec4 x) { return (Vec4){-x[0], -x[1], x[3], x[2]}; }
-
 static void push(const Reference *r, bool answer, Vec4 *x) {
     for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];
@@ -79,23 +77,6 @@ static inline void stiffness(const ReferenceGroup *g, const ReferencePair *pair,
     }
 }
 
-/* Coordinates of body a: minus the linear velocity, spin of a. */
-static inline void add_stiffness(Block3 *blocks, const ReferencePair *pair, const Vec4 columns[4]) {
-    Block3 *aa = &blocks[pair->a], *bb = &blocks[pair->b];
-    Block3 *ab = &blocks[pair->place.row_a], *ba = &blocks[pair->place.row_b];
-    for (int c = 0; c < 2; c++) {
-        const Vec4 of_a = as_body_a(columns[c]);
-        bb->column[c] += columns[c];
-        ba->column[c] -= columns[c];
-        ab->column[c] += of_a;
-        aa->column[c] -= of_a;
-    }
-    bb->column[2] += columns[2];
-    ba->column[2] += columns[3];
-    ab->column[2] += as_body_a(columns[2]);
-    aa->column[2] += as_body_a(columns[3]);
-}
-
 static void factor_matrix(Reference *r) {
     BlockLu *lu = &r->lu;
     for (int k = 0; k < lu->count; k++) {
@@ -106,7 +87,7 @@ static void factor_matrix(Reference *r) {
     for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
         Vec4 columns[4];
         stiffness(&r->groups[i / REFERENCE_PAIRS], &r->pairs[i], i % REFERENCE_PAIRS * 2, columns);
-        add_stiffness(lu->blocks, &r->pairs[i], columns);
+        block_add_pair(lu->blocks, r->pairs[i].a, r->pairs[i].b, r->pairs[i].place, columns);
     }
     block_lu_factor(lu);
     r->factorizations++;
