@@ -65,7 +65,8 @@ static bool observe(void *context, int frame, const World *world, Error *error) 
     Phase phase = phase_next(tracker, problem, frame);
     bool sampled = phase == PHASE_AFTER && (frame - tracker->touch - tracker->impact_frames) % AFTER_STEP == 0;
     if (phase != PHASE_IMPACT && !sampled) return true;
-    return impact_problems_add(recording->problems, problem, NULL, phase == PHASE_IMPACT) || error_memory(error, "recording");
+    return impact_problems_add(recording->problems, problem, NULL, phase == PHASE_IMPACT) ||
+           error_memory(error, "recording");
 }
 
 static bool run_launches(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x, Error *error) {

@@ -51,9 +51,8 @@ static void instructions_grow_with_the_work(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(time_does_not_go_back),
-                                       cmocka_unit_test(no_work_takes_no_negative_time),
-                                       cmocka_unit_test(a_thread_is_pinned_to_one_core_and_let_go),
-                                       cmocka_unit_test(instructions_grow_with_the_work)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(time_does_not_go_back), cmocka_unit_test(no_work_takes_no_negative_time),
+        cmocka_unit_test(a_thread_is_pinned_to_one_core_and_let_go), cmocka_unit_test(instructions_grow_with_the_work)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
