@@ -13,9 +13,6 @@ const InteriorRule interior_quick = {
 const InteriorRule interior_gentle = {
     .impulse = 0.5, .gap = 0.5, .slip = 0.5, .first = 0.25, .shrink = 0.15, .follow = 0.05};
 static const double scale_of_residual = 4;
-/* Iterations have broken down if the residual exceeds `lost_share` times the scale by `lost` (m/s): with friction, the path
-   to the solution can turn back, and then they jump about. */
-static const double lost_share = 10, lost = 1;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
@@ -57,21 +54,21 @@ static bool is_jammed(const Interior *s) {
 }
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
-                      double near, int most) {
-    const double scale = scale_of_residual * s->residual + least_scale;
+                      double lost, double near, int most) {
+    const double scale = scale_of_residual * s->residual + least_scale, too_large = lost * (scale + 0.1);
     double target = interior_begin(s, rule, least_scale), estimate = 0;
     for (s->iterations = 0; s->iterations < most;) {
         const double next = larger(rule->shrink * target, rule->follow * estimate * estimate);
         target = next < target ? next : target;
         s->residual = estimate = kernels->iterate(s, target);
         s->iterations++;
-        if (!(estimate < lost + lost_share * scale)) break;
+        if (!(estimate < too_large)) break;
         if (estimate > near && s->iterations < most) continue;
         s->residual = kernels->answer(s);
         if (is_jammed(s)) s->residual = INFINITY;
         if (!(s->residual > near)) return;
     }
-    if (!(estimate < lost + lost_share * scale)) s->residual = INFINITY;
+    if (!(estimate < too_large)) s->residual = INFINITY;
 }
 
 static bool store_bodies(const Interior *s, const ContactProblem *problem, ContactSolution *solution) {

@@ -143,9 +143,12 @@ double interior_begin(Interior *interior, const InteriorRule *rule, double least
 
    least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
    slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
-   suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
+   suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts.
+
+   lost: iterations have broken down if the residual exceeds the scale by this factor. With friction the path to the
+   solution can turn back, and then they jump about for long before they converge, if they do. */
 void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
-                      double near, int most);
+                      double lost, double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

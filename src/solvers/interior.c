@@ -58,15 +58,20 @@ static const double shallow = (double)CONTACT_SLOP / 20, closing = 0.001;
    there again, further inside, than from where they are. */
 typedef struct Attempt {
     const InteriorRule *rule;
-    double least_scale; /* m/s */
+    double least_scale, lost; /* as for interior_iterate() */
     int iterations;
 } Attempt;
 
-enum { ATTEMPTS = 2 };
-static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, 10}, {&interior_gentle, 0.1, 40}},
-                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, 14}, {&interior_gentle, 10, 25}};
+enum { ATTEMPTS = 2, FEW_BODIES = 32 };
+static const double patient = 1e6, hasty = 10; /* for `lost` */
+static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, hasty, 10}, {&interior_gentle, 0.1, hasty, 40}},
+                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, hasty, 14},
+                                            {&interior_gentle, 10, hasty, 25}};
+/* Sweeps are no substitute in stacks, and iterations are cheap there. */
+static const Attempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, patient, 50},
+                                                   {&interior_gentle, 10, patient, 40}};
 /* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
-static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 1, 25}, {NULL, 0, 0}};
+static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 1, hasty, 25}, {0}};
 
 typedef struct State {
     Interior interior;
@@ -124,16 +129,20 @@ static bool find_rest(State *solver, const ContactProblem *problem, bool *rests)
     return loops >= 0;
 }
 
+static const Attempt *impact_attempts(int bodies) {
+    return bodies > MANY_BODIES ? at_impact_of_many : bodies > FEW_BODIES ? at_impact : at_impact_of_few;
+}
+
 /* False when memory is short. */
 static bool iterate(State *solver, const ContactProblem *problem, bool rests) {
     const InteriorKernels *kernels = interior_best();
     const float near = rests ? smaller(solver->near, rest_near) : solver->near;
-    const Attempt *attempts = rests ? at_rest : problem->body_count > MANY_BODIES ? at_impact_of_many : at_impact;
+    const Attempt *attempts = rests ? at_rest : impact_attempts(problem->body_count);
     for (int i = 0; i < ATTEMPTS && attempts[i].rule != NULL; i++) {
         if (!interior_load(&solver->interior, kernels, &solver->momentum.sweeps, problem)) return false;
         if (rests) interior_close(&solver->interior, fmin((double)solver->near, closing), shallow);
-        interior_iterate(&solver->interior, kernels, attempts[i].rule, attempts[i].least_scale, (double)near,
-                         attempts[i].iterations);
+        interior_iterate(&solver->interior, kernels, attempts[i].rule, attempts[i].least_scale, attempts[i].lost,
+                         (double)near, attempts[i].iterations);
         if (solver->interior.residual <= (double)near) return true;
     }
     return true;

@@ -58,7 +58,7 @@ static double error_of(const ImpactProblem *item, const InteriorNet *net, int it
     for (int s = 0; s < INTERIOR_IMPACT_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, INTERIOR_IMPACT_SWEEPS);
     assert_true(sweeps_run_momentum(&sweeps, factors, INTERIOR_IMPACT_SWEEPS));
     assert_true(interior_load(&interior, interior_best(), &sweeps, &item->problem));
-    interior_iterate(&interior, interior_best(), &interior_quick, INTERIOR_IMPACT_SCALE, 0, iterations);
+    interior_iterate(&interior, interior_best(), &interior_quick, INTERIOR_IMPACT_SCALE, 1e6, 0, iterations);
     const bool finite = interior_end(&interior, &sweeps, &item->problem, &solution);
     const double found = finite && isfinite(interior.residual)
                              ? solution_error(&item->problem, velocities, item->reference).rms

@@ -46,7 +46,7 @@ static void answer(const ContactProblem *problem, const InteriorKernels *kernels
     assert_true(sweeps_begin_coloured(&sweeps, SWEEP_ONE_BY_ONE, problem));
     assert_true(sweeps_run(&sweeps, 2));
     assert_true(interior_load(&interior, kernels, &sweeps, problem));
-    interior_iterate(&interior, kernels, &interior_quick, 0.01, 1e-4, 6);
+    interior_iterate(&interior, kernels, &interior_quick, 0.01, 1e6, 1e-4, 6);
     interior_end(&interior, &sweeps, problem, found);
     interior_free(&interior);
     sweeps_free(&sweeps);
