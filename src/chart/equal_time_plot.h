@@ -7,5 +7,5 @@
 
 /* Reads a chart.csv and writes folder/equal_time.csv and equal_time_methods.csv, and the latter as a figure,
    folder/equal_time.png, .svg and .pdf: a row for each scene, a column for each method, in each cell its error as a ratio to
-   that of its best rival in the same time. *drawn: false if no method has a rival, so that there is nothing to draw. */
+   that of its best rival in the same time. *drawn: false if no method has a rival. */
 bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error);

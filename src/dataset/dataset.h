@@ -64,7 +64,8 @@ typedef struct DatasetOptions {
 
 /* Runs every launch of every scene with the engine and records it. The result does not depend on the number of threads.
    ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, the launches vary in mass or frame,
-   there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress requests a stop. */
+   there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress
+   requests a stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 

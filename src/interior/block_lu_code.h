@@ -5,8 +5,8 @@
 
 static inline Vec4 vec4(double x, double y, double z, double w) { return (Vec4){x, y, z, w}; }
 
-/* The coordinates of a pair are the linear velocity of body b minus that of body a, the spin of b, and the spin of a. From
-   the impulse on b in these to that on a. */
+/* The coordinates of a pair: linear velocity of body b minus that of body a, spin of b, spin of a. Turns an impulse in
+   these into that on body a. */
 static inline Vec4 as_body_a(Vec4 x) { return vec4(x[0], x[1], x[3], x[2]) * vec4(-1, -1, 1, 1); }
 
 /* Adds a matrix over the coordinates of a pair, given by columns, to the blocks of bodies a and b. */

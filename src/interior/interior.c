@@ -23,8 +23,10 @@ const InteriorKernels *interior_best(void) {
 
 static double larger(double x, double y) { return x > y ? x : y; }
 
+static double scale_of(const Interior *s, double least_scale) { return scale_of_residual * s->residual + least_scale; }
+
 double interior_begin(Interior *s, const InteriorRule *rule, double least_scale) {
-    const double scale = scale_of_residual * s->residual + least_scale;
+    const double scale = scale_of(s, least_scale);
     const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
@@ -55,7 +57,7 @@ static bool is_jammed(const Interior *s) {
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
                       double lost, double near, int most) {
-    const double scale = scale_of_residual * s->residual + least_scale, too_large = lost * (scale + 0.1);
+    const double too_large = lost * (scale_of(s, least_scale) + 0.1);
     double target = interior_begin(s, rule, least_scale), estimate = 0;
     for (s->iterations = 0; s->iterations < most;) {
         const double next = larger(rule->shrink * target, rule->follow * estimate * estimate);

@@ -31,8 +31,8 @@
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
    shows it, and the method `interior` then uses sweeps (solvers/interior.c). Beyond some hundred bodies the time of the
-   factorization grows faster than the number of contacts (block_lu.h). Same bits on every instruction set: double, a fixed order of
-   operations, no fused multiply-add. */
+   factorization grows faster than the number of contacts (block_lu.h). Same bits on every instruction
+   set: double, a fixed order of operations, no fused multiply-add. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "interior/block_lu.h"
@@ -145,8 +145,8 @@ double interior_begin(Interior *interior, const InteriorRule *rule, double least
    slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
    suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts.
 
-   lost: iterations have broken down if the residual exceeds the scale by this factor. With friction the path to the
-   solution can turn back, and then they jump about for long before they converge, if they do. */
+   lost: iterations have broken down if the residual exceeds this multiple of the scale and 0.1 m/s together. With
+   friction the path to the solution can turn back. Then iterations jump about for long, and may never converge. */
 void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
                       double lost, double near, int most);
 

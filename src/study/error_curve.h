@@ -12,6 +12,6 @@ typedef enum CurveReach { CURVE_BEFORE, CURVE_WITHIN, CURVE_BEYOND } CurveReach;
 /* Sorts the points and keeps those that no other beats in both: rising times, falling errors. Returns their number. */
 int error_curve_front(CurvePoint *points, int count);
 
-/* The error of such a front at a time: a straight line in log error over log time between neighbours. Before the first
-   point there is none, NaN: no setting is that quick. Beyond the last it is the last's. count >= 1. */
+/* The error of such a front at a time: a straight line in log error over log time between neighbours. NaN before
+   the first point, as no setting is that quick. Beyond the last point it is the last point's error. count >= 1. */
 double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach);

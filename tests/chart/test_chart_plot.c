@@ -121,7 +121,7 @@ static void one_mark_and_one_panel_are_enough(void **state) {
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
-/* A note names the methods whose errors have another target; without them there is none. */
+/* A note names the methods whose errors have another target. Without such methods the chart has no note. */
 static void a_target_without_push_out_is_noted(void **state) {
     (void)state;
     Error error = {0};
