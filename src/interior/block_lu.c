@@ -35,15 +35,15 @@ static bool reserve(BlockLu *lu, int count, int edge_count) {
 }
 
 /* Lists of neighbours, without the repeated ones. */
-static void connect(BlockLu *lu) {
+static void connect(BlockLu *lu, int edge_count) {
     int32_t *start = lu->start;
     memset(start, 0, ((size_t)lu->count + 2) * sizeof *start);
-    for (int i = 0; i < lu->edge_count; i++) {
+    for (int i = 0; i < edge_count; i++) {
         start[lu->edges[i].a + 2]++;
         start[lu->edges[i].b + 2]++;
     }
     for (int i = 0; i < lu->count; i++) start[i + 2] += start[i + 1];
-    for (int i = 0; i < lu->edge_count; i++) {
+    for (int i = 0; i < edge_count; i++) {
         lu->neighbour[start[lu->edges[i].a + 1]++] = lu->edges[i].b;
         lu->neighbour[start[lu->edges[i].b + 1]++] = lu->edges[i].a;
     }
@@ -138,9 +138,7 @@ bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_c
     if (!reserve(lu, count, edge_count)) return false;
     lu->count = count;
     if (size > 0) memcpy(lu->edges, edges, size);
-    lu->edge_count = edge_count;
-    connect(lu);
-    lu->edge_count = -1;
+    connect(lu, edge_count);
     const BlockGraph graph = {count, lu->start, lu->neighbour};
     if (!block_order_choose(&lu->choice, &graph, lu->order)) return false;
     for (int k = 0; k < count; k++) lu->position[lu->order[k]] = k;

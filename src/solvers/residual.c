@@ -13,10 +13,15 @@ static float squared_residual(float bias, float normal_velocity, float normal) {
     return residual * residual;
 }
 
+/* m/s: of body b relative to body a. */
+static Vec2 sweep_velocity(const SweepPoint *point, const SweepBody *a, const SweepBody *b) {
+    return vec2_sub(point_velocity(vec2(b->x, b->y), b->spin, point->arm_b),
+                    point_velocity(vec2(a->x, a->y), a->spin, point->arm_a));
+}
+
 static float squared_of_point(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
-    const Vec2 velocity = vec2_sub(point_velocity(vec2(b->x, b->y), b->spin, point->arm_b),
-                                   point_velocity(vec2(a->x, a->y), a->spin, point->arm_a));
+    const Vec2 velocity = sweep_velocity(point, a, b);
     return squared_residual(point->bias, vec2_dot(velocity, pair->normal), pair->sums[k].normal);
 }
 
@@ -52,8 +57,7 @@ bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolutio
 static float squared_of_visit(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
     const ContactImpulse sum = pair->sums[k];
-    const Vec2 velocity = vec2_sub(point_velocity(vec2(b->x, b->y), b->spin, point->arm_b),
-                                   point_velocity(vec2(a->x, a->y), a->spin, point->arm_a));
+    const Vec2 velocity = sweep_velocity(point, a, b);
     const float slip = vec2_dot(velocity, vec2_cross_scalar(pair->normal, 1.0f));
     const float gap = vec2_dot(velocity, pair->normal) - point->bias, held = sum.normal / point->mass_normal;
     const float normal = gap >= held ? held : gap;

@@ -10,8 +10,8 @@ typedef struct StabilityScan {
     const ContenderList *methods;
 } StabilityScan;
 
-/* Writes the rows of the tables "stability", "refusals", "fallbacks" (every unshifted run of a method that may fall back) and "rest"
-   (every unshifted run, if study.rests), ordered by method; methods run in parallel. Omits methods that set their own
+/* Writes the rows of the tables "stability", "refusals", "fallbacks" (every unshifted run of a method
+   that may fall back) and "rest" (every unshifted run, if study.rests), ordered by method; methods run in parallel. Omits methods that set their own
    number of sweeps if the study scans it. `scan` is a StabilityScan. */
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error);
 
