@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "image/difference_picture.h"
 
+#include "image/image_compare.h"
+
 #include <math.h>
 
 typedef struct Stop {

@@ -4,7 +4,7 @@
 #include "image/image.h"
 
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255.
-   Masked pixels (see image_compare_masked()) are hatched. Both pictures must have the same size. NULL with error set
+   Masked pixels (see image/image_compare.h) are hatched. Both pictures must have the same size. NULL with error set
    if out of memory. */
 Image *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, Error *error);
 

@@ -3,6 +3,7 @@
 #include "image/flip.h"
 
 #include "image/flip_filter.h"
+#include "image/image_compare.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Allocation, hash and comparison of pictures. */
+/* Allocation and hash of pictures. */
 #include "image/image.h"
 
 #include "common/hash.h"
@@ -56,63 +56,4 @@ uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows
         hash = add_number(hash, rows[y], 8);
     }
     return hash;
-}
-
-static int channel_difference(const Image *a, const Image *b, size_t i) {
-    if (a->pixels16 == NULL && b->pixels16 == NULL) return abs(a->pixels[i] - b->pixels[i]);
-    int deep_a = a->pixels16 != NULL ? a->pixels16[i] : a->pixels[i] * 257;
-    int deep_b = b->pixels16 != NULL ? b->pixels16[i] : b->pixels[i] * 257;
-    return (abs(deep_a - deep_b) + 256) / 257;
-}
-
-int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
-    int largest = 0;
-    for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++) {
-        int difference = channel_difference(a, b, i);
-        if (difference > largest) largest = difference;
-    }
-    return largest;
-}
-
-static void count_pixel(ImageDifference *difference, int x, int y, int here) {
-    if (difference->pixels++ == 0) {
-        difference->first_x = difference->left = x, difference->right = x + 1;
-        difference->first_y = difference->top = y;
-    }
-    if (here > difference->largest) difference->largest = here;
-    if (x < difference->left) difference->left = x;
-    if (x >= difference->right) difference->right = x + 1;
-    difference->bottom = y + 1;
-}
-
-static bool equal_row(const Image *a, const Image *b, size_t first) {
-    return a->pixels16 == NULL && b->pixels16 == NULL &&
-           memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
-}
-
-static int64_t count_masked(const uint8_t *masked, size_t pixels) {
-    int64_t count = 0;
-    for (size_t i = 0; masked != NULL && i < pixels; i++) count += masked[i] != 0;
-    return count;
-}
-
-void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, ImageDifference *difference) {
-    bool same_size = a->width == b->width && a->height == b->height;
-    *difference = (ImageDifference){.same_size = same_size, .first_x = -1, .first_y = -1};
-    if (!same_size) return;
-    size_t width = (size_t)a->width, all = width * (size_t)a->height;
-    difference->counted = (int64_t)all - count_masked(masked, all);
-    for (int y = 0; y < a->height; y++) {
-        size_t first = (size_t)y * width;
-        if (equal_row(a, b, first)) continue;
-        for (size_t x = 0; x < width; x++) {
-            int here = image_pixel_difference(a, b, first + x);
-            if (here > 0 && (masked == NULL || masked[first + x] == 0)) count_pixel(difference, (int)x, y, here);
-        }
-    }
-    difference->equal = difference->pixels == 0;
-}
-
-void image_compare(const Image *a, const Image *b, ImageDifference *difference) {
-    image_compare_masked(a, b, NULL, difference);
 }

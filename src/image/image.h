@@ -50,20 +50,3 @@ uint64_t image_hash(const Image *image);
 /* The same for a picture of a sequence: rows[height] holds the row hashes of the previous picture. `changed` flags
    the rows that differ; NULL: all. */
 uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows);
-
-/* If the sizes differ, only same_size is set. */
-typedef struct ImageDifference {
-    bool equal, same_size;
-    int64_t pixels;               /* differing */
-    int64_t counted;              /* not masked */
-    int largest;                  /* largest difference of a channel, 0..255, rounded up */
-    int first_x, first_y;         /* first differing pixel, row by row; -1, -1 if equal */
-    int left, top, right, bottom; /* bounds of the differences; right and bottom are exclusive */
-} ImageDifference;
-void image_compare(const Image *a, const Image *b, ImageDifference *difference);
-
-/* The largest difference of a channel of one pixel, as above. Both pictures must have the same size. */
-int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
-
-/* masked[height, width]: pixels with a nonzero mask are ignored; NULL: none. */
-void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, ImageDifference *difference);

@@ -4,6 +4,7 @@
    name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
 #pragma once
 #include "common/progress.h"
+#include "image/image_compare.h"
 #include "image/mask.h"
 #include "image/sequence.h"
 #include "trajectory/trajectory.h"

@@ -3,6 +3,7 @@
 #pragma once
 #include "gl/canvas.h"
 #include "gl/context.h"
+#include "image/image_compare.h"
 
 enum { SCREEN_SIDE = 96, SCREENS = 2 };
 static const uint32_t BLACK = 0x000000, WHITE = 0xFFFFFF;

@@ -4,6 +4,7 @@
 #include "testing.h"
 
 #include "common/file.h"
+#include "image/image_compare.h"
 #include "image/png_encoder.h"
 
 static uint32_t seed = 1;

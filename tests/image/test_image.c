@@ -2,7 +2,7 @@
 /* Comparison and hash of synthetic pictures. */
 #include "testing.h"
 
-#include "image/image.h"
+#include "image/image_compare.h"
 
 static Image *a, *b;
 

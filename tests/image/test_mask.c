@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "image/mask.h"
 
 enum { WIDTH = 6, HEIGHT = 4 };

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "common/file.h"
-#include "image/image.h"
+#include "image/image_compare.h"
 #include "pngs.h"
 
 static Image *patterned(int width, int height) {

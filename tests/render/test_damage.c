@@ -3,6 +3,7 @@
    whole: equal pixels and equal bytes, along the runs of golden/ and across jumps. */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "image/png_encoder.h"
 #include "mesa.h"
 #include "gl/damage.h"

@@ -4,6 +4,7 @@
    golden/, the program writes the pictures of its runs into its gallery/, as `golden/renew` does. */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "image/png_encoder.h"
 #include "mesa.h"
 #include "simulate/method.h"

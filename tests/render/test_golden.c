@@ -4,6 +4,7 @@
    written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "mesa.h"
 #include "simulate/method.h"
 #include "render/render.h"

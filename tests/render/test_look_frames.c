@@ -2,6 +2,7 @@
 /* Every look gives equal pixels in both contexts, and drawn whole or row by row, for all contents of the runs. */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "look_runs.h"
 #include "mesa.h"
 #include "render/renderer.h"

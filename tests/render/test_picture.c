@@ -2,6 +2,7 @@
 /* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
 #include "testing.h"
 
+#include "image/image_compare.h"
 #include "mesa.h"
 #include "picture/panel.h"
 #include "render/render.h"

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The options of twinbox compare. */
+#pragma once
+#include "image/mask.h"
+
+typedef struct CompareOptions {
+    const char *paths[2], *report;
+    int count, megabytes;
+    bool fuzzy;         /* given, then: */
+    int max_difference; /* of a channel */
+    double max_share;   /* of the pixels */
+    int max_pixels;
+    Mask mask;
+} CompareOptions;
+
+/* Reads the command line. False with error set if it is wrong, or after --help. */
+bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error);
+void compare_options_free(CompareOptions *options);

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Comparison of two pictures, pixel by pixel. */
+#pragma once
+#include "image/image.h"
+
+/* If the sizes differ, only same_size is set. */
+typedef struct ImageDifference {
+    bool equal, same_size;
+    int64_t pixels;               /* differing */
+    int64_t counted;              /* not masked */
+    int largest;                  /* largest difference of a channel, 0..255, rounded up */
+    int first_x, first_y;         /* first differing pixel, row by row; -1, -1 if equal */
+    int left, top, right, bottom; /* bounds of the differences; right and bottom are exclusive */
+} ImageDifference;
+void image_compare(const Image *a, const Image *b, ImageDifference *difference);
+
+/* The largest difference of a channel of one pixel, as above. Both pictures must have the same size. */
+int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
+
+/* masked[height, width]: pixels with a nonzero mask are ignored; NULL: none. */
+void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, ImageDifference *difference);
