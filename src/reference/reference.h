@@ -46,7 +46,9 @@ typedef struct Reference {
         Vec4 *moved;
         double log_target;
     } kept[2];        /* interior points to go back to */
-    int left;         /* factorizations that this attempt may still use */
+    double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
+    int most;         /* factorizations that a solve may use */
+    int left;         /* that this attempt may still use */
     double stiffest;  /* a contact resists by at most this times its effective mass */
     double best;      /* residual of the best answer, m/s */
     int32_t *bodies;  /* [lu.count] */
@@ -76,6 +78,10 @@ void reference_free(Reference *reference);
 /* Solves until the residual is at most REFERENCE_TOLERANCE. start: initial impulses [contact_count]; NULL: the
    problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
+
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations. `residual` is
+   then the largest change by one more visit of a contact while all others stay. */
+bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, int most, Error *error);
 
 /* The residual of a method's impulses [contact_count]; its velocities do not count. False when memory is short. */
 bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,

@@ -59,7 +59,8 @@ static double centre_step(Reference *r) {
 }
 
 static bool follow(Reference *r, int most, bool carefully) {
-    const double good = 0.8, short_step = 0.1, near_end = 1e-4; /* (m/s)^2 */
+    const double good = 0.8, short_step = 0.1;
+    const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
     int stuck = 0;
     bool begun = false;
     for (r->left = most; r->left > 0;) {
@@ -68,7 +69,7 @@ static bool follow(Reference *r, int most, bool carefully) {
         const double mean = mean_product(r, 0);
         if (!(mean > 0) || isinf(mean)) break;
         if (mean < near_end) answer(r);
-        if (r->best <= REFERENCE_TOLERANCE / 10 || (r->best <= REFERENCE_TOLERANCE / 4 && length < 0.5)) return true;
+        if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);
         if (length >= good && forward) {
             keep(r, KEPT_ON_WAY, log(mean));
@@ -81,5 +82,5 @@ static bool follow(Reference *r, int most, bool carefully) {
         carefully = false;
     }
     answer(r);
-    return r->best <= REFERENCE_TOLERANCE / 4;
+    return r->best <= r->enough;
 }
