@@ -36,24 +36,13 @@ static void answer(Reference *r) {
 
 static double at_most(double x, double limit) { return x < limit ? x : limit; }
 
-/* One step. Returns its length, as a share of the full step. */
-static double centre_step(Reference *r) {
-    for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-    const double mean = mean_product(r, 0);
-    linearise(r);
-    factor_matrix(r);
-    r->left--;
-    towards(r, 0, 0);
-    right_side(r);
-    solve_changes(r);
-    direction(r);
-    const double share = at_most(step_room(r), 1), ratio = mean_product(r, share) / mean;
+/* One step from products of this mean. Returns its length, as a share of the full step. */
+static double centre_step(Reference *r, double mean) {
+    begin_step(r, 0);
+    const double share = at_most(end_step(r), 1), ratio = mean_product_after(r, share) / mean;
     const double shrink = at_most(ratio * ratio * ratio, 1);
-    towards(r, mean * (shrink > least_shrink ? shrink : least_shrink), share);
-    right_side(r);
-    solve_changes(r);
-    direction(r);
-    const double length = at_most(bound_share * step_room(r), 1);
+    begin_next_step(r, mean * (shrink > least_shrink ? shrink : least_shrink), share);
+    const double length = at_most(bound_share * end_step(r), 1);
     move(r, length);
     return length;
 }
@@ -63,10 +52,10 @@ static bool follow(Reference *r, int most, bool carefully) {
     const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
     int stuck = 0;
     bool begun = false;
+    double mean = mean_product(r);
     for (r->left = most; r->left > 0;) {
-        const double length = centre_step(r);
-        for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-        const double mean = mean_product(r, 0);
+        const double length = centre_step(r, mean);
+        mean = mean_product(r);
         if (!(mean > 0) || isinf(mean)) break;
         if (mean < near_end) answer(r);
         if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
@@ -78,6 +67,7 @@ static bool follow(Reference *r, int most, bool carefully) {
         stuck = length < short_step || !forward ? stuck + 1 : 0;
         if (stuck < 2 && !(carefully && length >= good)) continue;
         if (!begun || !pass_fold(r, carefully)) break;
+        mean = mean_product(r);
         stuck = 0;
         carefully = false;
     }
