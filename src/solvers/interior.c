@@ -72,11 +72,10 @@ typedef struct Attempt {
 enum { ATTEMPTS = 2, FEW_BODIES = 32 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, hasty, 10}, {&interior_gentle, 0.1, hasty, 40}},
-                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, hasty, 14},
+                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, hasty, 20},
                                             {&interior_gentle, 10, hasty, 25}};
-/* Sweeps are no substitute in stacks, and iterations are cheap there. */
-static const Attempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, patient, 50},
-                                                   {&interior_gentle, 10, patient, 40}};
+/* Those of stacks find back after many jumps. */
+static const Attempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, patient, 30}, {0}};
 /* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
 static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 1, hasty, 25}, {0}};
 
