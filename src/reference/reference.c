@@ -37,6 +37,15 @@ bool reference_solve_to(Reference *r, const ContactProblem *problem, double tole
     return true;
 }
 
+void reference_round(const Reference *r, const ContactProblem *problem, ContactSolution *solution) {
+    for (int i = 0; i < problem->body_count; i++) {
+        const ReferenceVelocity *velocity = &r->velocities[i];
+        solution->velocities[i] = (BodyVelocity){vec2((float)velocity->x, (float)velocity->y), (float)velocity->spin};
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        solution->impulses[i] = (ContactImpulse){(float)r->impulses[i].normal, (float)r->impulses[i].tangent};
+}
+
 bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
                         Error *error) {
     if (!reference_load(r, problem)) return error_memory(error, "reference");

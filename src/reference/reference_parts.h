@@ -21,7 +21,7 @@ typedef struct ReferencePoint {
 struct ReferenceGroup {
     Vec4 weight, mass_normal, mass_tangent, inverse_normal, inverse_tangent; /* kg and 1/kg, effective masses */
     Vec4 friction;                                                           /* mu */
-    Vec4 normal_x, normal_y;        /* the rows, as those of the pairs; the tangent is (normal_y, -normal_x) */
+    Vec4 normal_x, normal_y; /* the rows, as those of the pairs; the tangent is (normal_y, -normal_x) */
     Vec4 normal_b, normal_a, tangent_b, tangent_a; /* m, of the spins of b and a */
     Vec4 free_normal, free_tangent; /* m/s: velocities before the contacts along the rows; normal: minus the bias */
     Vec4 start_normal, start_tangent, normal, tangent, best_normal, best_tangent; /* N s, impulses inside the cone */

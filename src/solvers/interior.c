@@ -24,13 +24,12 @@
    friction jams a pile. */
 #include "interior/interior.h"
 
-#include "reference/reference.h"
+#include "solvers/central_path.h"
 #include "solvers/interior_net.h"
 #include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
 #include "solvers/solvers.h"
-#include "sweeps/contact_velocity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,7 +40,6 @@ enum {
     MANY_BODIES = 128,    /* more: an iteration takes as long as 15 sweeps or more, */
     MANY_SWEEPS = 12,     /* and these save more than they cost */
     MANY_LOOPS = 64,      /* of an island among many bodies: more are never at rest */
-    PATH_FACTORIZATIONS = 200,
     FALLBACK_SWEEPS = 14, /* with momentum, and then more while the residual is too large */
     FALLBACK_MORE = 96,
     CHECK_EVERY = 8
@@ -163,36 +161,6 @@ static bool iterate_and_again(State *solver, const ContactProblem *problem, bool
     return iterate(solver, problem, rests) && (!rests || is_solved(solver) || iterate(solver, problem, false));
 }
 
-static bool is_path_solved(const State *solver, const ContactProblem *problem) {
-    const Reference *path = &solver->path;
-    bool solved = path->residual <= (double)solver->near;
-    for (int i = 0; i < problem->contact_count; i++)
-        solved &= path->impulses[i].normal <= interior_impulse_max * (double)problem->contacts[i].mass_normal;
-    return solved;
-}
-
-/* Rounded into the cone. */
-static ContactImpulse impulse_of(const ReferenceImpulse *impulse, float friction) {
-    const float normal = (float)impulse->normal, limit = friction * normal;
-    return (ContactImpulse){normal, contact_clamp((float)impulse->tangent, -limit, limit)};
-}
-
-/* Stores the end of the central path if it is a solution. */
-static bool follow_path(State *solver, const ContactProblem *problem, ContactSolution *solution, bool *solved,
-                        Error *error) {
-    Reference *path = &solver->path;
-    if (!reference_solve_to(path, problem, (double)solver->near, PATH_FACTORIZATIONS, error)) return false;
-    *solved = is_path_solved(solver, problem);
-    if (!*solved) return true;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ReferenceVelocity *v = &path->velocities[i];
-        solution->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
-    }
-    for (int i = 0; i < problem->contact_count; i++)
-        solution->impulses[i] = impulse_of(&path->impulses[i], problem->contacts[i].friction);
-    return true;
-}
-
 static bool sweep(State *solver, const ContactProblem *problem) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) ||
@@ -261,7 +229,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!iterate_and_again(solver, problem, rests)) return error_memory(error, "interior");
     const bool finite = interior_end(&solver->interior, sweeps, problem, solution);
     bool solved = finite && is_solved(solver);
-    if (!solved && !follow_path(solver, problem, solution, &solved, error)) return false;
+    if (!solved && !central_path_solve(&solver->path, problem, (double)solver->near, solution, &solved, error))
+        return false;
     return solved || fall_back(solver, finite, problem, solution, error);
 }
 
