@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture/picture.h"
 
+#include "common/method_look.h"
 #include "picture/camera_path.h"
 #include "picture/caption.h"
 #include "picture/card.h"
@@ -61,6 +62,7 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
         picture->runs[i] = runs[i];
         if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
     }
+    method_colours_assign(picture->methods, count, picture->colours);
     arrange(picture, width, height, 0);
     find_largest_distances(picture);
     return true;
@@ -99,6 +101,7 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
         picture->notes[i] = options->notes[i];
         if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
     }
+    method_colours_assign(picture->methods, picture->count, picture->colours);
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
@@ -120,6 +123,15 @@ int picture_run_frame(const Picture *picture, int run, int frame) {
 
 int picture_run(const Picture *picture, int panel) {
     return picture->look.compare == LOOK_DIFFERENCE ? panel + 1 : panel;
+}
+
+const BodyColors *picture_body_colors(const Picture *picture, int run) {
+    return &picture->theme->bodies[picture->colours[run]];
+}
+
+uint32_t picture_ghost_color(const Picture *picture, int run) {
+    const BodyColors *colors = picture_body_colors(picture, run);
+    return picture->theme->ghost_is_band ? colors->band : colors->fill;
 }
 
 bool picture_colors_distance(const Picture *picture, int run) {
