@@ -5,9 +5,9 @@
 
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "common/folder.h"
 #include "common/hash.h"
 
-#include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
-enum { LOOK_EVERY = 250 /* ms */, STILL = 2 /* looks */, MAX_DEPTH = 32 };
+enum { LOOK_EVERY = 250 /* ms */, STILL = 2 /* looks */ };
 
 static bool is_watched(const char *name) {
     const char *ending = strrchr(name, '.');
@@ -31,24 +31,21 @@ static uint64_t hash_file(const char *path, const struct stat *status) {
     return hash_xxh3(parts, sizeof parts);
 }
 
-/* A sum, because the order of a folder's entries may change without a change of the files. */
-static uint64_t hash_folder(const char *folder, int depth) {
-    uint64_t sum = 0;
-    DIR *directory = opendir(folder);
-    if (directory == NULL) return 0;
-    for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+/* What cannot be listed counts as one state: the comparison tells why, and a change ends that state. */
+static uint64_t hash_folder(const char *folder) {
+    uint64_t hash = 0;
+    FolderList list;
+    if (!folder_list(&list, folder, is_watched, true, &(Error){0})) return 0;
+    for (size_t i = 0; i < list.count; i++) {
         char path[PATH_MAX];
         struct stat status;
-        if (entry->d_name[0] == '.' || !file_path(path, sizeof path, &(Error){0}, "%s/%s", folder, entry->d_name) ||
-            lstat(path, &status) != 0)
+        if (!file_path(path, sizeof path, &(Error){0}, "%s/%s", folder, list.names[i]) || stat(path, &status) != 0)
             continue;
-        if (S_ISDIR(status.st_mode) && depth < MAX_DEPTH)
-            sum += hash_folder(path, depth + 1);
-        else if (is_watched(entry->d_name) && stat(path, &status) == 0)
-            sum += hash_file(path, &status);
+        const uint64_t both[] = {hash, hash_file(path, &status)};
+        hash = hash_xxh3(both, sizeof both);
     }
-    closedir(directory);
-    return sum;
+    folder_list_free(&list);
+    return hash;
 }
 
 static uint64_t hash_inputs(const CompareOptions *options) {
@@ -57,7 +54,7 @@ static uint64_t hash_inputs(const CompareOptions *options) {
         struct stat status;
         if (stat(options->paths[i], &status) != 0) continue;
         hashes[i] =
-            1 + (S_ISDIR(status.st_mode) ? hash_folder(options->paths[i], 0) : hash_file(options->paths[i], &status));
+            1 + (S_ISDIR(status.st_mode) ? hash_folder(options->paths[i]) : hash_file(options->paths[i], &status));
     }
     return hash_xxh3(hashes, sizeof hashes);
 }
