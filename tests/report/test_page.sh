@@ -93,6 +93,11 @@ cat >probe.html <<'PROBE'
     note("sorted by name", shown().join(), ...place());
     note("figures", document.querySelector("#rows [aria-selected=true] .row-figures").textContent);
     const marks = () => document.querySelectorAll(".ring").length;
+    await press("8");
+    note("marks of both pictures", marks(), [...document.querySelectorAll(".ring")].map(mark => mark.dataset.number));
+    await press("5");
+    note("regions", get("regions-part").hidden, ...[...document.querySelectorAll("#regions li")].map(item => item.textContent), get("more-regions").textContent);
+    note("causes", get("causes-part").hidden, get("causes").textContent);
     note("marks", marks() > 0, get("ring-button").getAttribute("aria-pressed"));
     await press("m");
     note("no marks", marks(), get("ring-button").getAttribute("aria-pressed"));
@@ -132,8 +137,19 @@ cat >probe.html <<'PROBE'
 })();
 </script>
 PROBE
-# A difference in a corner: a mark around most of the picture is left out.
-sed -i 's/"box": \[[^]]*\]/"box": [10, 10, 20, 20]/' report/report.html
+# Two regions instead of those found, and a cause: a mark around most of the picture is left out.
+/usr/bin/python3 - <<'PYTHON'
+import json, re
+page = open("report/report.html").read()
+begin, data, end = re.fullmatch(r'(.*<script type="application/json" id="data">)(.*?)(</script>.*)', page, re.DOTALL).groups()
+data = json.loads(data)
+data["causes"] = ["frames 1 to 4: body 1 moved by <b>"]
+for frame in data["frames"]:
+    frame["region_count"] = 3
+    frame["regions"] = [{"box": [10, 10, 20, 24], "pixels": 99, "name": "body 1 moved"},
+                        {"box": [40, 40, 50, 50], "pixels": 7, "name": None}]
+open("report/report.html", "w").write(begin + json.dumps(data).replace("<", "\\u003c") + end)
+PYTHON
 if command -v chromium >/dev/null; then
     browse report/report.html
     says "title: twinbox compare: physics changed, 1 frame missing, 1 frame extra"
@@ -162,6 +178,9 @@ if command -v chromium >/dev/null; then
     says "sorted by name: frame_000000.png,frame_000001.png,frame_000002.png,frame_000004.png,frame_000005.png | frame_000001.png | physics changed | 2 of 5"
     says "figures: FLIP 0."
     says "marks: true | true"
+    says "marks of both pictures: 4 | 1,1,2,2"
+    says "regions: false | body 1 moved: 10 x 14 pixels at (10, 10), 99 of them differ | 10 x 10 pixels at (40, 40), 7 of them differ | and 1 more"
+    says "causes: false | frames 1 to 4: body 1 moved by <b>"
     says "no marks: 0 | false"
     says "zoom: 1 | 80px"
     says "end: frame_000005.png | extra | 5 of 5 | mode-actual | actual:80"

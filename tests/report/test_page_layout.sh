@@ -108,6 +108,7 @@ cat >probe.html <<'PROBE'
     }
     for (const [graphic, behind] of [["--accent", "--page"], ["--accent", "--panel"], ["--bad", "--panel"], ["--ring", "--panel"], ["--ring", "--stage"]])
       measure(graphic + " on " + behind, "rgb(" + rgb(of(graphic)) + ")", rgb(of(behind)), 3);
+    measure("number of a mark", "rgb(255, 255, 255)", rgb(of("--mark")), 4.5);
     note("pairs", pairs.size >= 15);
     note("low contrast", low.join("; "));
     note("scheme", luminance(ground(document.body)) < 0.5 ? "dark" : "light");

@@ -61,20 +61,37 @@
                            : {scale: below, right: 0, down: height * below + GAP};
   }
 
-  /* Outlines a box in each picture that is beside another one. */
-  function mark(box, width, height, {scale, right, down}) {
+  /* Of the differences: regions, largest first, or all of them in one. */
+  const regions = () => frame().regions && frame().regions.length > 0 ? frame().regions : frame().box ? [{box: frame().box}] : [];
+
+  /* Outlines a region in each picture that is beside another one. */
+  function mark({box}, i, width, height, {scale, right, down}) {
     /* A mark around most of the picture would be useless. */
     if (!ring || (box[2] - box[0]) * (box[3] - box[1]) > 0.5 * width * height) return;
     const margin = 6, places = right + down > 0 ? [[0, 0], [right, down]] : [[0, 0]];
     for (const [x, y] of places) {
       const outline = document.createElement("div");
       outline.className = "ring";
+      if (regions().length > 1) outline.dataset.number = i + 1;
       outline.style.left = box[0] * scale - margin + x + "px";
       outline.style.top = box[1] * scale - margin + y + "px";
       outline.style.width = (box[2] - box[0]) * scale + 2 * margin + "px";
       outline.style.height = (box[3] - box[1]) * scale + 2 * margin + "px";
       get("marks").append(outline);
     }
+  }
+
+  /* What the marks are, by number. */
+  function list_regions() {
+    const known = frame().regions || [], more = (frame().region_count || 0) - known.length;
+    get("regions").replaceChildren(...known.map(region => {
+      const item = document.createElement("li"), [left, top, right, bottom] = region.box;
+      const where = `${right - left} x ${bottom - top} pixels at (${left}, ${top}), ${region.pixels} of them differ`;
+      item.textContent = region.name ? `${region.name}: ${where}` : where;
+      return item;
+    }));
+    get("more-regions").textContent = more > 0 ? `and ${more} more` : "";
+    get("regions-part").hidden = known.length === 0;
   }
 
   function lay_out_image(image, scale, x, y) {
@@ -91,7 +108,7 @@
     const sheet = get("sheet"), stage = get("stage"), images = [...sheet.querySelectorAll("img")];
     if (images.length === 0) return;
     const width = Math.max(...images.map(i => i.naturalWidth)), height = Math.max(...images.map(i => i.naturalHeight));
-    const place = arrange(width, height), scale = place.scale, box = frame().box;
+    const place = arrange(width, height), scale = place.scale, found = regions();
     sheet.style.width = width * scale + place.right + "px";
     sheet.style.height = height * scale + place.down + "px";
     sheet.classList.toggle("smooth", scale < 1);
@@ -107,9 +124,9 @@
     get("split").style.left = blend + "%";
     get("side-row").textContent = place.down > 0 ? "Above: expected. Below: actual." : "Left: expected. Right: actual.";
     get("marks").replaceChildren();
-    if (!box) return;
-    mark(box, width, height, place);
-    if (centre) {
+    found.forEach((region, i) => mark(region, i, width, height, place));
+    if (centre && found.length > 0) {
+      const box = found[0].box;
       stage.scrollLeft = (box[0] + box[2]) / 2 * scale - stage.clientWidth / 2;
       stage.scrollTop = (box[1] + box[3]) / 2 * scale - stage.clientHeight / 2;
     }
@@ -190,6 +207,7 @@
     say(MODES.some(usable) ? "" : f.failed || f.verdict === "within tolerance"
       ? "The pictures of this frame exceed the report's size limit."
       : "Equal pictures are not included in this report.");
+    list_regions();
     mark_row();
     controls();
     show();
@@ -260,6 +278,7 @@
       say("No frame failed. Select \"Show all frames\" to see the others.");
       turns++;
       get("sheet").replaceChildren();
+      get("regions-part").hidden = true;
       get("stage").setAttribute("aria-busy", "false");
       controls();
     }
@@ -324,6 +343,12 @@
   };
   addEventListener("resize", () => lay_out(false));
   addEventListener("hashchange", () => follow_link(location.hash));
+  for (const cause of data.causes || []) {
+    const item = document.createElement("li");
+    item.textContent = cause;
+    get("causes").append(item);
+  }
+  get("causes-part").hidden = get("causes").children.length === 0;
   const link = location.hash; /* list() writes another one */
   list();
   follow_link(link);
