@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/compare_notes.h"
 #include "cli/compare_options.h"
 #include "cli/compare_print.h"
 #include "cli/progress_bar.h"
@@ -49,14 +50,19 @@ static bool report(Regression *regression, const CompareOptions *options, Error 
 }
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {
-    const RegressionOptions compared = {options->max_difference, options->max_share, &options->mask,
-                                        options->max_pixels};
+    const RegressionOptions compared = {.max_difference = options->max_difference,
+                                        .max_share = options->max_share,
+                                        .mask = &options->mask,
+                                        .max_pixels = options->max_pixels,
+                                        .flat = options->flat,
+                                        .strict_metadata = options->metadata == METADATA_STRICT};
     Regression regression;
     bool ok = regression_run(&regression, options->paths[0], options->paths[1], &compared,
                              progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
     compare_print(&regression);
+    compare_print_notes(&regression);
     ok = regression_passed(&regression);
     if (options->report != NULL && !report(&regression, options, error)) ok = false;
     regression_free(&regression);

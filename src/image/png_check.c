@@ -9,7 +9,7 @@
 
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error) {
     static const uint8_t signature[PNG_SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    if (size == 0) return error_input(error, path, "an empty file, not a PNG file");
+    if (size == 0) return error_input(error, path, "not a PNG file, or damaged: it is empty");
     if (!lfs_pointer_refuse(data, size, path, error)) return false;
     return (size >= PNG_SIGNATURE && memcmp(data, signature, PNG_SIGNATURE) == 0) ||
            error_input(error, path, "not a PNG file, or damaged: it does not begin as one");

@@ -103,7 +103,7 @@ png mask.png 20 10 "0 0 0 255" 3 4 "1 0 0 1" 5 4 "0 0 9 255"
 run 0 compare theirs ours --mask mask.png
 png mask.png 20 11 "0 0 0 255"
 run 2 compare theirs ours --mask mask.png
-complains "mask.png: error: the mask has 20 x 11 pixels, but theirs/shot-2.png has 20 x 10"
+complains "mask.png: error: the mask has 20 x 11 pixels, but theirs/shot-1.png has 20 x 10"
 for wrong in 1,2,3 1,2,0,4 a,b,c,d 1,2,3,4,5 mask.jpg; do
     run 2 compare theirs ours --mask $wrong
     complains "'$wrong' is neither a PNG file nor X,Y,W,H"
