@@ -23,7 +23,8 @@ static const CommandSpec spec = {
         "Accept the changes that a report of twinbox compare (--report REPORT) shows: actual files replace the "
         "expected "
         "files that failed, new files are added, missing files are removed. If a selected file has changed since the "
-        "report was written, nothing is changed. Run it in the folder in which compare ran. Exit status 1: failures "
+        "report was written, nothing is changed. Of several accepted pictures, that in the report is replaced. Run it "
+        "in the folder in which compare ran. Exit status 1: failures "
         "that the report does not show remain.\v"
         "Example: twinbox approve out/report --only 'stack_*'"};
 

@@ -25,7 +25,8 @@ static const Option option_table[] = {
     {"--no-recursive", 0, NULL, "Leave out subfolders, and print how many pictures they hold",
      OPTION_FLAG(CompareOptions, flat)},
     {"--metadata", 0, "KIND",
-     "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, orientation) "
+     "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
+     "orientation) "
      "are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR", "Folder for report.html, junit.xml and results.json", OPTION_TEXT(CompareOptions, report)},
@@ -42,7 +43,8 @@ static const CommandSpec spec = {
     .help =
         "Compare two trajectories (.npz) or two PNG sequences (folders with their subfolders, or single files). "
         "Trajectories are equal if every bit of every pose and velocity is equal; pictures are equal if every decoded "
-        "pixel is. Frames are matched by name, or by the stem and the number of their names. Trajectories that are in both folders, and the states "
+        "pixel is. Frames are matched by name, or by the stem and the number of their names. Trajectories that are in "
+        "both folders, and the states "
         "named in twinbox's own pictures, tell whether the physics or the renderer changed. Exit status 0: equal, 1: "
         "different, 2: not comparable.\v"
         "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"

@@ -90,8 +90,7 @@ static bool list_pictures(ImageSequence *sequence, bool recursive, Error *error)
     char *before = malloc(length);
     bool ok = before != NULL || error_memory(error, sequence->folder);
     if (ok) snprintf(before, length, "%s%s", sequence->folder, strcmp(sequence->folder, "/") == 0 ? "" : "/");
-    for (size_t i = 0; ok && i < files.count; i++)
-        ok = add_frame(sequence, &capacity, before, files.names[i], error);
+    for (size_t i = 0; ok && i < files.count; i++) ok = add_frame(sequence, &capacity, before, files.names[i], error);
     sequence->skipped = (int)files.skipped;
     free(before);
     folder_list_free(&files);

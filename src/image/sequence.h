@@ -10,10 +10,11 @@
 
 typedef struct SequenceFrame {
     char *path;
-    const char *name; /* relative to the compared folder ("sub/x.png"), the end of `path`: UTF-8 without control characters */
-    int folder;       /* length of the name's folder with its slash, 0 if it has none */
-    int stem;         /* length of the name up to the number in bytes, with the folder */
-    int64_t number;   /* -1: none */
+    const char
+        *name;  /* relative to the compared folder ("sub/x.png"), the end of `path`: UTF-8 without control characters */
+    int folder; /* length of the name's folder with its slash, 0 if it has none */
+    int stem;   /* length of the name up to the number in bytes, with the folder */
+    int64_t number;             /* -1: none */
     struct SequenceFrame *next; /* another accepted picture for the same name, set by image_sequence_pair(); or NULL */
 } SequenceFrame;
 

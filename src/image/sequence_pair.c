@@ -81,7 +81,8 @@ static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
     int count_a = count_left(a, b, left_a), count_b = count_left(b, a, left_b);
     bool one = count_a == 1 && count_b == 1;
     if (count_a > 0 && count_b > 0 && !one) {
-        const SequenceFrame *const *both = count_a > 1 ? left_a : left_b, *partner = count_a > 1 ? left_b[0] : left_a[0];
+        const SequenceFrame *const *both = count_a > 1 ? left_a : left_b,
+                                   *partner = count_a > 1 ? left_b[0] : left_a[0];
         return error_input(error, both[1]->path, "has the same number as %s: which of them belongs to %s?",
                            both[0]->name, partner->path);
     }

@@ -27,8 +27,8 @@ typedef struct Found {
 
 static bool inspect(const Place *place, Found *found, Error *error) {
     struct stat status;
-    *found = (Found){.there = place->folder >= 0 &&
-                              fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) == 0};
+    *found =
+        (Found){.there = place->folder >= 0 && fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) == 0};
     if (!found->there)
         return place->folder < 0 || errno == ENOENT ||
                error_system(error, place->path, "cannot be read: %s", strerror(errno));

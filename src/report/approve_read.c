@@ -21,8 +21,7 @@ static bool is_name_below(const char *name) {
     char before = '/';
     for (const char *c = name; *c != '\0'; before = *c++)
         if (before == '/' && (*c == '/' || *c == '.')) return false;
-    return name_is_text(name) && ending != NULL &&
-           (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
+    return name_is_text(name) && ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
 }
 
 /* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */

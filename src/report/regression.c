@@ -181,7 +181,8 @@ static void judge_sequence(RegressionFrame *const *frames, int count) {
     bool physics = false, same_framing = false;
     for (int i = 0; i < count; i++) {
         physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
-        same_framing = same_framing || (frames[i]->states == STATES_EQUAL && frames[i]->pixels == PIXELS_EQUAL);
+        bool same = frames[i]->at[EXPECTED] == frames[i]->base && frames[i]->pixels == PIXELS_EQUAL;
+        same_framing = same_framing || (same && frames[i]->states == STATES_EQUAL);
     }
     for (int i = 0; physics && !same_framing && i < count; i++)
         if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;

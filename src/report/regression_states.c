@@ -166,7 +166,9 @@ static bool runs_differ(const Regression *regression, const SequenceFrame *pictu
     bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
-        if (run->differs == NULL || !in_its_folder(run, picture) || (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0)) continue;
+        if (run->differs == NULL || !in_its_folder(run, picture) ||
+            (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0))
+            continue;
         int64_t at = frame < run->frames ? frame : run->frames - 1;
         here = here || run->differs[at < 0 ? 0 : at];
         *somewhere = true;

@@ -8,9 +8,7 @@
 
 bool regression_passed(const Regression *regression) { return regression->failed == 0 && regression->run_failed == 0; }
 
-const char *frame_name(const RegressionFrame *frame) {
-    return frame->base->name;
-}
+const char *frame_name(const RegressionFrame *frame) { return frame->base->name; }
 
 const char *frame_verdict(const RegressionFrame *frame) {
     switch (frame->pixels) {

@@ -1,42 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a list of files holds, what it refuses, and that no failed system call shortens it. */
-#define _GNU_SOURCE /* RTLD_NEXT */
+#include "folder_faults.h"
 #include "testing.h"
 
 #include "common/file.h"
 #include "common/folder.h"
-
-#include <dirent.h>
-#include <dlfcn.h>
-#include <errno.h>
-#include <sys/stat.h>
-
-/* The calls of this program, which fail at the N-th (0: never). */
-static int failing_opendir, failing_readdir, failing_stat;
-
-static bool fails(int *countdown) {
-    if (*countdown == 0 || --*countdown > 0) return false;
-    errno = EIO;
-    return true;
-}
-
-DIR *opendir(const char *path) {
-    DIR *(*real)(const char *);
-    *(void **)&real = dlsym(RTLD_NEXT, "opendir");
-    return fails(&failing_opendir) ? NULL : real(path);
-}
-
-struct dirent *readdir(DIR *directory) {
-    struct dirent *(*real)(DIR *);
-    *(void **)&real = dlsym(RTLD_NEXT, "readdir");
-    return fails(&failing_readdir) ? NULL : real(directory);
-}
-
-int fstatat(int at, const char *restrict path, struct stat *restrict status, int flags) {
-    int (*real)(int, const char *restrict, struct stat *restrict, int);
-    *(void **)&real = dlsym(RTLD_NEXT, "fstatat");
-    return fails(&failing_stat) ? -1 : real(at, path, status, flags);
-}
 
 static char root[256];
 

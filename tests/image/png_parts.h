@@ -15,7 +15,8 @@ static inline void put_bytes(PngParts *parts, const void *data, size_t size) {
 }
 
 static inline void put_number(PngParts *parts, uint32_t value) {
-    put_bytes(parts, (uint8_t[]){(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8), (uint8_t)value}, 4);
+    put_bytes(parts, (uint8_t[]){(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8), (uint8_t)value},
+              4);
 }
 
 static inline void put_chunk(PngParts *parts, const char *type, const void *data, size_t size) {
@@ -28,7 +29,8 @@ static inline void put_chunk(PngParts *parts, const char *type, const void *data
 
 static inline void put_header(PngParts *parts, uint32_t width, uint32_t height, int depth, int color) {
     uint8_t data[13] = {0};
-    for (int i = 0; i < 4; i++) data[i] = (uint8_t)(width >> (24 - 8 * i)), data[4 + i] = (uint8_t)(height >> (24 - 8 * i));
+    for (int i = 0; i < 4; i++)
+        data[i] = (uint8_t)(width >> (24 - 8 * i)), data[4 + i] = (uint8_t)(height >> (24 - 8 * i));
     data[8] = (uint8_t)depth, data[9] = (uint8_t)color;
     *parts = (PngParts){.size = 0};
     put_bytes(parts, "\x89PNG\r\n\x1a\n", 8);

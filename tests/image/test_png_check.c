@@ -77,10 +77,12 @@ static void cut_and_changed_files_are_refused(void **state) {
 
 static void what_is_no_picture_is_named(void **state) {
     (void)state;
-    static const char pointer[] = "version https://git-lfs.github.com/spec/v1\n"
-                                  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+    static const char pointer[] =
+        "version https://git-lfs.github.com/spec/v1\n"
+        "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
     assert_refused((const uint8_t *)"", 0, "x.png: error: not a PNG file, or damaged: it is empty");
-    assert_refused((const uint8_t *)pointer, sizeof pointer - 1, "x.png: error: a Git LFS pointer, not the file itself; run: git lfs pull");
+    assert_refused((const uint8_t *)pointer, sizeof pointer - 1,
+                   "x.png: error: a Git LFS pointer, not the file itself; run: git lfs pull");
     assert_refused((const uint8_t *)"hello", 5, "not a PNG file");
     assert_refused((const uint8_t *)"\x89PNG", 4, "not a PNG file");
     assert_refused((const uint8_t *)"\x89PNG\r\n\x1a\n", 8, "unexpected end of file");

@@ -77,8 +77,7 @@ static void where_there_is_one_stem_numbers_decide(void **state) {
 
 static void a_name_without_number_meets_no_other(void **state) {
     (void)state;
-    assert_pairs(folder_of("cover_a", "cover.png"), folder_of("cover_b", "title.png"),
-                 "cover.png=- -=title.png");
+    assert_pairs(folder_of("cover_a", "cover.png"), folder_of("cover_b", "title.png"), "cover.png=- -=title.png");
 }
 
 static void each_folder_is_paired_by_itself(void **state) {
@@ -95,7 +94,8 @@ static void equal_names_meet_first(void **state) {
     const char *two = folder_of("exact_a", "plot-1.png plot-01.png");
     assert_pairs(two, folder_of("exact_b", "plot-01.png plot-1.png"), "plot-01.png=plot-01.png plot-1.png=plot-1.png");
     assert_pairs(two, folder_of("exact_c", "plot-1.png"), "plot-01.png=- plot-1.png=plot-1.png");
-    assert_pairs(two, folder_of("exact_d", "plot-1.png plot-001.png"), "plot-01.png=plot-001.png plot-1.png=plot-1.png");
+    assert_pairs(two, folder_of("exact_d", "plot-1.png plot-001.png"),
+                 "plot-01.png=plot-001.png plot-1.png=plot-1.png");
     assert_pairs(two, folder_of("exact_e", "plot-2.png"), "plot-01.png=- plot-1.png=- -=plot-2.png");
     assert_pairs(folder_of("exact_f", "X.PNG"), folder_of("exact_g", "X.png x.png"), "X.PNG=X.png -=x.png");
 }
@@ -105,7 +105,8 @@ static void names_with_a_second_number_are_accepted_too(void **state) {
     assert_pairs(folder_of("more_a", "home.png home.1.png home.10.png home.2.png home.01.png home.0.png home.x.png"),
                  folder_of("more_b", "home.png"),
                  "home.png|home.1.png|home.2.png|home.10.png=home.png home.0.png=- home.01.png=- home.x.png=-");
-    assert_pairs(folder_of("frames_a", "s/f_01.png s/f_01.1.png s/f_02.png"), folder_of("frames_b", "s/f_01.png s/f_02.png"),
+    assert_pairs(folder_of("frames_a", "s/f_01.png s/f_01.1.png s/f_02.png"),
+                 folder_of("frames_b", "s/f_01.png s/f_02.png"),
                  "s/f_01.png|s/f_01.1.png=s/f_01.png s/f_02.png=s/f_02.png");
 }
 
@@ -164,12 +165,15 @@ static void frames_that_could_be_two_pairs_are_refused(void **state) {
     (void)state;
     Error error = {0};
     int count;
-    ImageSequence *a = opened(folder_of("twice", "frame_1.png frame_01.png")), *b = opened(folder_of("once", "f_1.png"));
+    ImageSequence *a = opened(folder_of("twice", "frame_1.png frame_01.png")),
+                  *b = opened(folder_of("once", "f_1.png"));
     assert_null(image_sequence_pair(a, b, &count, &error));
-    assert_error(error, ERROR_INPUT, "twice/frame_1.png: error: has the same number as frame_01.png: which of them belongs");
+    assert_error(error, ERROR_INPUT,
+                 "twice/frame_1.png: error: has the same number as frame_01.png: which of them belongs");
     error = (Error){0};
     assert_null(image_sequence_pair(b, a, &count, &error));
-    assert_error(error, ERROR_INPUT, "twice/frame_1.png: error: has the same number as frame_01.png: which of them belongs");
+    assert_error(error, ERROR_INPUT,
+                 "twice/frame_1.png: error: has the same number as frame_01.png: which of them belongs");
     image_sequence_close(a);
     image_sequence_close(b);
 }
