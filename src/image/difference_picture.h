@@ -3,14 +3,15 @@
 #pragma once
 #include "image/flip.h"
 #include "image/image.h"
-#include "image/indexed_image.h"
+#include "image/indexed_png.h"
 
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255.
-   Masked pixels (see image/image_compare.h) are hatched. Both pictures must have the same size. NULL with error set
-   if out of memory. */
-IndexedImage *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, Error *error);
-
-/* A picture for values 0 to 1: black over violet and orange to pale yellow. It is black before the sink has had rows.
+   Masked pixels (see image/image_compare.h) are hatched. Both pictures must have the same size. A PNG file, malloc'ed;
    NULL with error set if out of memory. */
-IndexedImage *heat_picture(int width, int height, Error *error);
-FlipSink heat_picture_sink(IndexedImage *picture);
+uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, size_t *size,
+                            Error *error);
+
+/* A picture of values 0 to 1, black over violet and orange to pale yellow, whose rows come through the sink. NULL with
+   error set if out of memory. */
+IndexedPng *heat_picture(int width, int height, Error *error);
+FlipSink heat_picture_sink(IndexedPng *picture);

@@ -21,24 +21,17 @@ static bool load(const RegressionFrame *frame, RegressionSide side, ReportPictur
            error_input(error, path, "has changed since the comparison");
 }
 
-/* Takes the image. */
-static bool encode(IndexedImage *image, ReportPicture *picture, Error *error) {
-    if (image != NULL) picture->data = indexed_image_encode(image, &picture->size, error);
-    indexed_image_destroy(image);
-    return picture->data != NULL;
-}
-
 /* Measures FLIP; draws its picture only if picture != NULL. */
 static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
                     Error *error) {
-    IndexedImage *heat = NULL;
+    IndexedPng *heat = NULL;
     FlipSummary flip;
     if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
     const FlipSink sink = heat_picture_sink(heat);
     bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, heat != NULL ? &sink : NULL, &flip, error);
     if (ok) frame->flip = flip.mean;
-    if (ok && heat != NULL) return encode(heat, picture, error);
-    indexed_image_destroy(heat);
+    if (ok && heat != NULL) ok = (picture->data = indexed_png_end(heat, &picture->size, error)) != NULL;
+    indexed_png_destroy(heat);
     return ok;
 }
 
@@ -50,7 +43,9 @@ static bool draw(const Regression *regression, RegressionFrame *frame, const Ima
     if (mask != NULL && mask->count > 0 &&
         (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
         return false;
-    bool ok = !room || encode(difference_picture(expected, actual, masked, error), &pictures[DIFFERENCE], error);
+    ReportPicture *difference = &pictures[DIFFERENCE];
+    bool ok =
+        !room || (difference->data = difference_picture(expected, actual, masked, &difference->size, error)) != NULL;
     image_copy_masked(expected, actual, masked);
     ok = ok && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);
