@@ -28,7 +28,7 @@ static void add_gradient(Palette *palette, const Stop *stops, int count) {
 }
 
 /* Greys in the upper fifth of the scale, the hatch, and the gradient. */
-enum { PALEST = 200, PALE = 56, HATCHED = PALE, HATCH_GREY = 120, GRADIENT, STEPS = 256 - GRADIENT, HATCH = 8 };
+enum { PALEST = 200, PALE = 56, HATCHED = PALE, GRADIENT, STEPS = 256 - GRADIENT, HATCH_GREY = 120, HATCH = 8 };
 
 static void make_difference_palette(Palette *palette) {
     palette->count = 0;
