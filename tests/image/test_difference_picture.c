@@ -14,6 +14,13 @@ static Image *read_back(uint8_t *file, size_t size) {
     return image;
 }
 
+static Image *draw(const Image *expected, const Image *actual, const uint8_t *masked) {
+    Error error = {0};
+    size_t size;
+    uint8_t *file = difference_picture(expected, actual, masked, &size, &error);
+    return read_back(file, size);
+}
+
 static Image *black(int width, int height) {
     Error error = {0};
     Image *image = image_create(width, height, &error);
@@ -32,11 +39,9 @@ static int luma(const uint8_t *p) { return p[0] * 3 + p[1] * 6 + p[2]; }
 /* Pixel x differs by x. The ends are the header's colours; between them each step is darker, or as dark. */
 static void differences_are_coloured_by_size(void **state) {
     (void)state;
-    Error error = {0};
-    size_t size;
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) actual->pixels[4 * x + x % 4] = (uint8_t)x;
-    Image *drawn = read_back(difference_picture(expected, actual, NULL, &size, &error), size);
+    Image *drawn = draw(expected, actual, NULL);
     assert_pixel(drawn, 0, 200, 200, 200); /* equal: pale */
     assert_pixel(drawn, 1, 255, 176, 0);
     assert_pixel(drawn, 255, 72, 0, 110);
@@ -52,11 +57,9 @@ static void differences_are_coloured_by_size(void **state) {
 
 static void equal_pixels_are_pale(void **state) {
     (void)state;
-    Error error = {0};
-    size_t size;
     Image *expected = black(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) memset(expected->pixels + 4 * x, x, 4);
-    Image *drawn = read_back(difference_picture(expected, expected, NULL, &size, &error), size);
+    Image *drawn = draw(expected, expected, NULL);
     for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 200 + x * 55 / 255, 200 + x * 55 / 255, 200 + x * 55 / 255);
     image_destroy(expected);
     image_destroy(drawn);
@@ -65,13 +68,11 @@ static void equal_pixels_are_pale(void **state) {
 /* In diagonal lines, every eighth pixel; a masked difference is not coloured. */
 static void masked_pixels_are_hatched(void **state) {
     (void)state;
-    Error error = {0};
-    size_t size;
     uint8_t masked[LEVELS];
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     memset(actual->pixels, 255, 4 * LEVELS);
     memset(masked, 1, sizeof masked);
-    Image *drawn = read_back(difference_picture(expected, actual, masked, &size, &error), size);
+    Image *drawn = draw(expected, actual, masked);
     for (int x = 0; x < LEVELS; x++) {
         int grey = x % 8 == 0 ? 120 : 200;
         assert_pixel(drawn, x, grey, grey, grey);
@@ -84,11 +85,9 @@ static void masked_pixels_are_hatched(void **state) {
 /* Two 16-bit pictures that differ in the last bit count as different by 1. */
 static void sixteen_bits_count_in_full(void **state) {
     (void)state;
-    Error error = {0};
-    size_t size;
     uint16_t deep[2][8] = {{0}, {0, 0, 0, 0, 1}};
     Image expected = {2, 1, (uint8_t[8]){0}, deep[0]}, actual = {2, 1, (uint8_t[8]){0}, deep[1]};
-    Image *drawn = read_back(difference_picture(&expected, &actual, NULL, &size, &error), size);
+    Image *drawn = draw(&expected, &actual, NULL);
     assert_pixel(drawn, 0, 200, 200, 200);
     assert_pixel(drawn, 1, 255, 176, 0);
     image_destroy(drawn);
@@ -124,18 +123,18 @@ static void noise_comes_back(void **state) {
     Palette palette = {.count = LEVELS};
     size_t size;
     uint32_t seed = 1;
-    static uint8_t wanted[HEIGHT][WIDTH];
+    static uint8_t wanted[HEIGHT * WIDTH];
     for (int i = 0; i < LEVELS; i++) memset(palette.rgb[i], 255 - i, 3);
     IndexedPng *png = indexed_png_create(WIDTH, HEIGHT, &palette, &error);
     assert_ok(png != NULL, error);
     for (int y = 0; y < HEIGHT; y++) {
-        for (int x = 0; x < WIDTH; x++) wanted[y][x] = (uint8_t)((seed = seed * 1664525 + 1013904223) >> 24);
-        memcpy(indexed_png_row(png), wanted[y], WIDTH);
+        for (int x = 0; x < WIDTH; x++) wanted[y * WIDTH + x] = (uint8_t)((seed = seed * 1664525 + 1013904223) >> 24);
+        memcpy(indexed_png_row(png), wanted + y * WIDTH, WIDTH);
         assert_ok(indexed_png_add(png, &error), error);
     }
     uint8_t *file = indexed_png_end(png, &size, &error);
     Image *drawn = read_back(file, size);
-    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(drawn->pixels[4 * i], 255 - wanted[0][i]);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(drawn->pixels[4 * i], 255 - wanted[i]);
     indexed_png_destroy(png);
     image_destroy(drawn);
 }
