@@ -10,6 +10,7 @@
 
 static OptionRead read_fuzzy, read_mask;
 
+static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
 static const char *const metadata_kinds[] = {"report", "strict", NULL};
 
 static const Option option_table[] = {
@@ -26,12 +27,19 @@ static const Option option_table[] = {
      OPTION_FLAG(CompareOptions, flat)},
     {"--metadata", 0, "KIND",
      "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
-     "orientation) "
-     "are reported, or fail (default: report)",
+     "orientation) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
-    {"--report", 0, "DIR", "Folder for report.html, junit.xml and results.json", OPTION_TEXT(CompareOptions, report)},
+    {"--report", 0, "DIR", "Folder for report.html, junit.xml, results.tap and results.json",
+     OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB", "Most that the pictures in the report may take (default: 64)",
      OPTION_INT(CompareOptions, megabytes, 1, 1000)},
+    {"--annotations", 0, "KIND",
+     "none, or github: print failures as annotations of GitHub Actions (at most ten) and append a summary to the file "
+     "named by GITHUB_STEP_SUMMARY (default: none)",
+     OPTION_ENUM(CompareOptions, annotations, annotation_kinds)},
+    {"--watch", 0, NULL,
+     "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
+     OPTION_FLAG(CompareOptions, watch)},
     {0}};
 
 static const CommandSpec spec = {

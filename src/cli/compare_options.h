@@ -3,6 +3,7 @@
 #pragma once
 #include "image/mask.h"
 
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
 typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
 
 typedef struct CompareOptions {
@@ -13,7 +14,9 @@ typedef struct CompareOptions {
     double max_share;   /* of the pixels */
     int max_pixels;
     bool flat;
-    unsigned metadata; /* CompareMetadata */
+    unsigned metadata;    /* CompareMetadata */
+    unsigned annotations; /* CompareAnnotations */
+    bool watch;
     Mask mask;
 } CompareOptions;
 

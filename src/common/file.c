@@ -17,8 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* An input error, unless the system lacks memory or file descriptors, or the disk fails. */
-static bool open_failed(const char *path, Error *error) {
+bool file_open_error(const char *path, Error *error) {
     int cause = errno;
     bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
     return machine ? error_system(error, path, "cannot open: %s", strerror(cause))
@@ -61,7 +60,7 @@ enum { OPEN_TO_READ = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC };
 
 static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
     if (file < 0) {
-        open_failed(path, error);
+        file_open_error(path, error);
         return NULL;
     }
     char *data = NULL;
@@ -174,6 +173,11 @@ static bool put(const char *path, const void *data, size_t size, bool wait) {
     if (!is_link) return replace(AT_FDCWD, path, data, size, wait);
     char target[PATH_MAX];
     return realpath(path, target) != NULL && replace(AT_FDCWD, target, data, size, wait);
+}
+
+bool file_append(const char *path, const void *data, size_t size, Error *error) {
+    return write_into(open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666), data, size) ||
+           error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {

@@ -56,6 +56,7 @@ typedef struct RegressionFrame {
     double flip;      /* image/flip.h, measured by the report; else NaN */
     bool run_differs; /* a trajectory of its scene differs in any frame */
     bool shown;       /* in the report */
+    double seconds;   /* that its comparison took, wall time */
     char *read_error; /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
@@ -67,6 +68,7 @@ typedef struct RegressionRun {
     char scene[TRAJECTORY_NAME_SIZE];
     int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
+    double seconds;
 } RegressionRun;
 
 typedef struct Regression {
@@ -83,7 +85,9 @@ typedef struct Regression {
     int metadata, first_metadata;             /* frames whose metadata differs, and the first of them (-1: none) */
     int metadata_failed;                      /* frames that fail for nothing else */
     int runs_left_out;                        /* .npz files that only the expected folder has */
+    int runs_foreign;                         /* .npz files that are a trajectory in neither folder */
     int other_accepted; /* frames that pass by another accepted picture than the one of their name */
+    double seconds;     /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/regression_states.h"
 
+#include "common/clock.h"
 #include "common/file.h"
 #include "common/folder.h"
 #include "common/hash.h"
@@ -126,10 +127,13 @@ bool regression_find_runs(Regression *regression, Error *error) {
     for (int i = 0; i < regression->run_count; i++) {
         bool foreign = false;
         RegressionRun run = regression->runs[i];
+        double begun = clock_seconds();
         ok = ok && judge_run(regression, &run, &foreign, error);
-        if (foreign)
+        run.seconds = clock_seconds() - begun;
+        if (foreign) {
+            regression->runs_foreign++;
             free(run.name);
-        else
+        } else
             regression->runs[kept++] = run;
     }
     regression->run_count = kept;
