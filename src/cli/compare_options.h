@@ -3,6 +3,9 @@
 #pragma once
 #include "image/mask.h"
 
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
+
 typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
@@ -10,6 +13,10 @@ typedef struct CompareOptions {
     int max_difference; /* of a channel */
     double max_share;   /* of the pixels */
     int max_pixels;
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
+    unsigned annotations; /* CompareAnnotations */
+    bool watch;
     Mask mask;
 } CompareOptions;
 
