@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/parallel.h"
 
+#include <omp.h>
 #include <stdatomic.h>
 
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error) {
     atomic_int done = 0;
     atomic_bool stopped = false;
-#pragma omp parallel for schedule(dynamic)
+    /* Threads without work would take processor time waiting. */
+    int threads = omp_get_max_threads() < count ? omp_get_max_threads() : count;
+#pragma omp parallel for schedule(dynamic) num_threads(threads > 0 ? threads : 1)
     for (int i = 0; i < count; i++) {
         if (atomic_load(&stopped)) continue;
         Error failure = {0};
