@@ -150,7 +150,7 @@ static bool decode(Decoder *decoder) {
     return true;
 }
 
-static Image *decode_by_libpng(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Decoder decoder;
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
@@ -164,7 +164,7 @@ static Image *decode_by_libpng(const uint8_t *data, size_t size, const char *pat
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Image *image;
     if (png_fast_decode(data, size, max_pixels, &image)) return image;
-    return decode_by_libpng(data, size, path, max_pixels, error);
+    return png_libpng_decode(data, size, path, max_pixels, error);
 }
 
 bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
