@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Allocation and hash of pictures. */
-#define _DEFAULT_SOURCE /* madvise() */
 #include "image/image.h"
 
 #include "common/hash.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 /* libpng refuses longer chunks where they are not pixels: MAX_TEXT_SIZE in png_read.c. */
-enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, ADLER_SIZE = 4 };
+enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2, ADLER_SIZE = 4 };
 
 static bool read_header(const PngChunk *chunk, PngLayout *layout, int64_t max_pixels) {
     static const int channels[] = {
@@ -162,10 +162,13 @@ static bool feed(PngRows *rows) {
     return true;
 }
 
-static bool take_byte(PngRows *rows, uint32_t *value) {
-    if (!feed(rows)) return false;
-    *value = *value << 8 | *rows->stream.next_in++;
-    rows->stream.avail_in--;
+static bool take_number(PngRows *rows, int bytes, uint32_t *value) {
+    *value = 0;
+    for (int i = 0; i < bytes; i++) {
+        if (!feed(rows)) return false;
+        *value = *value << 8 | *rows->stream.next_in++;
+        rows->stream.avail_in--;
+    }
     return true;
 }
 
@@ -185,8 +188,8 @@ static bool fits_at_once(const PngRows *rows) {
 }
 
 bool png_rows_start(PngRows *rows, uint8_t *all) {
-    uint32_t header = 0;
-    if (!take_byte(rows, &header) || !take_byte(rows, &header) || !check_header(rows, header)) return false;
+    uint32_t header;
+    if (!take_number(rows, HEADER_SIZE, &header) || !check_header(rows, header)) return false;
     if (fits_at_once(rows)) return inflate_whole(rows, all);
     /* Without zlib's checksum, which takes as long as its decompression. */
     rows->started = inflateInit2(&rows->stream, -MAX_WINDOW_BITS) == Z_OK;
@@ -220,12 +223,10 @@ const uint8_t *png_rows_next(PngRows *rows) {
 
 bool png_rows_end(PngRows *rows) {
     uint8_t extra;
-    uint32_t sum = 0;
+    uint32_t sum;
     if (rows->whole != NULL) return true;
     rows->stream.next_out = &extra;
     rows->stream.avail_out = 1;
     if (inflate_all(rows) || !rows->ended) return false; /* more than the rows, or no end */
-    for (int i = 0; i < ADLER_SIZE; i++)
-        if (!take_byte(rows, &sum)) return false;
-    return sum == rows->sum && rows->stream.avail_in == 0 && !feed(rows);
+    return take_number(rows, ADLER_SIZE, &sum) && sum == rows->sum && rows->stream.avail_in == 0 && !feed(rows);
 }

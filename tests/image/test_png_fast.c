@@ -184,6 +184,28 @@ static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
     assert_true(accepted > 400 && accepted < 3600);
 }
 
+/* The second half of the picture repeats the first, 2 KiB behind it; the header claims a window of 256 bytes. */
+static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
+    (void)state;
+    enum { WIDTH = 32, HEIGHT = 32, BYTES = 1 + 4 * WIDTH };
+    uint8_t rows[HEIGHT][BYTES], packed[2 * sizeof rows], header[13] = {[3] = WIDTH, [7] = HEIGHT, [8] = 8, [9] = 6};
+    for (int y = 0; y < HEIGHT; y++)
+        for (int i = 0; i < BYTES; i++)
+            rows[y][i] = (uint8_t)(i == 0 ? 0 : y < HEIGHT / 2 ? draw(256) : rows[y - HEIGHT / 2][i]);
+    for (int i = 0; i < 40; i++) {
+        size_t size = compress_rows(rows[0], sizeof rows, 15, packed);
+        int window = i % 2 == 0 ? 15 : 8;
+        packed[0] = (uint8_t)((window - 8) << 4 | 8);
+        packed[1] = (uint8_t)(31 - (packed[0] << 8) % 31);
+        memcpy(good.bytes, "\x89PNG\r\n\x1A\n", 8);
+        good.size = 8;
+        put_chunk(&good, "IHDR", header, sizeof header);
+        put_chunk(&good, "IDAT", packed, size);
+        put_chunk(&good, "IEND", NULL, 0);
+        assert_int_equal(check_file(&good), window == 15);
+    }
+}
+
 /* Positions of the chunks, and the end of the last one. */
 static int find_chunks(const File *file, size_t at[CHUNKS]) {
     int count = 0;
@@ -306,6 +328,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_it_is_for_is_accepted),
         cmocka_unit_test(what_is_unusual_is_decoded_as_by_libpng),
+        cmocka_unit_test(a_window_that_is_too_small_is_left_to_libpng),
         cmocka_unit_test(damaged_files_are_decoded_only_if_libpng_does),
         cmocka_unit_test(noise_is_refused),
         cmocka_unit_test(pairs_are_as_two_pictures),
