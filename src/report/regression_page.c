@@ -78,7 +78,7 @@ static void write_summary(FILE *file, const Report *report) {
     write_counts(file, regression);
     fputs("<p class=\"begin\">", file);
     html_put(file, regression_begin(regression).text);
-    fputs("</p>\n", file);
+    fputs("</p>\n<ul id=\"causes\" aria-label=\"Causes\"></ul>\n", file);
     if (report->pictures->left_out > 0)
         fprintf(
             file,

@@ -97,7 +97,7 @@ cat >probe.html <<'PROBE'
     note("marks of both pictures", marks(), [...document.querySelectorAll(".ring")].map(mark => mark.dataset.number));
     await press("5");
     note("regions", get("regions-part").hidden, ...[...document.querySelectorAll("#regions li")].map(item => item.textContent), get("more-regions").textContent);
-    note("causes", get("causes-part").hidden, get("causes").textContent);
+    note("causes", get("causes").textContent);
     note("marks", marks() > 0, get("ring-button").getAttribute("aria-pressed"));
     await press("m");
     note("no marks", marks(), get("ring-button").getAttribute("aria-pressed"));
@@ -180,7 +180,7 @@ if command -v chromium >/dev/null; then
     says "marks: true | true"
     says "marks of both pictures: 4 | 1,1,2,2"
     says "regions: false | body 1 moved: 10 x 14 pixels at (10, 10), 99 of them differ | 10 x 10 pixels at (40, 40), 7 of them differ | and 1 more"
-    says "causes: false | frames 1 to 4: body 1 moved by <b>"
+    says "causes: frames 1 to 4: body 1 moved by <b>"
     says "no marks: 0 | false"
     says "zoom: 1 | 80px"
     says "end: frame_000005.png | extra | 5 of 5 | mode-actual | actual:80"

@@ -68,6 +68,7 @@ cat >probe.html <<'PROBE'
     await wait();
     note("window", innerWidth >= 390, document.documentElement.scrollWidth <= innerWidth);
     const slider = get("scrubber").getBoundingClientRect();
+    note("not scrolled", scrollY);
     note("fold", slider.top >= 0 && slider.bottom <= 900 && slider.bottom <= innerHeight);
     const labels = [...document.querySelectorAll(".plot h3, .plot span")];
     const clipped = labels.filter(e => {
@@ -131,6 +132,7 @@ NARROW
 
 check_page() {
     says "window: true | true"
+    says "not scrolled: 0"
     says "labels: 10 |  | true"
     says "plots: 2 | true | true"
     says "tab: skip | 1 | 5 | 1 | true"

@@ -171,8 +171,11 @@
       row.tabIndex = i === (at < rows.length ? at : 0) ? 0 : -1;
     });
     if (at < 0 || at >= rows.length) return;
-    if (focused) rows[at].focus();
-    rows[at].scrollIntoView({block: "nearest"});
+    if (focused) rows[at].focus({preventScroll: true});
+    /* Not scrollIntoView(), which scrolls the page, too. */
+    const list = get("rows"), top = rows[at].offsetTop - list.offsetTop, bottom = top + rows[at].offsetHeight;
+    if (top < list.scrollTop) list.scrollTop = top;
+    if (bottom > list.scrollTop + list.clientHeight) list.scrollTop = bottom - list.clientHeight;
   }
 
   function choose(mode_name) {
@@ -254,7 +257,7 @@
     part("row-name", f.name);
     part(look(f), f.verdict);
     const share = Number((100 * f.differing / f.counted).toPrecision(3));
-    if (f.differing > 0) part("row-figures", `FLIP ${f.flip} \u00b7 at most ${f.largest} \u00b7 ${share} %`);
+    if (f.differing > 0) part("row-figures", `FLIP ${f.flip === null ? "-" : Number(f.flip.toPrecision(3))} \u00b7 at most ${f.largest} \u00b7 ${share}%`);
     return item;
   }
 
@@ -348,7 +351,6 @@
     item.textContent = cause;
     get("causes").append(item);
   }
-  get("causes-part").hidden = get("causes").children.length === 0;
   const link = location.hash; /* list() writes another one */
   list();
   follow_link(link);
