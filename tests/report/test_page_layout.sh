@@ -68,7 +68,12 @@ cat >probe.html <<'PROBE'
     await wait();
     note("window", innerWidth >= 390, document.documentElement.scrollWidth <= innerWidth);
     const slider = get("scrubber").getBoundingClientRect();
+    /* A row far below is shown by scrolling the list, never the page. */
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "3000px";
+    document.body.dispatchEvent(new KeyboardEvent("keydown", {key: "End", bubbles: true}));
+    await wait();
     note("not scrolled", scrollY);
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "";
     note("fold", slider.top >= 0 && slider.bottom <= 900 && slider.bottom <= innerHeight);
     const labels = [...document.querySelectorAll(".plot h3, .plot span")];
     const clipped = labels.filter(e => {
