@@ -4,6 +4,7 @@
 #include "image/mask.h"
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
 
 typedef struct CompareOptions {
     const char *paths[2], *report;
@@ -14,6 +15,8 @@ typedef struct CompareOptions {
     int max_pixels;
     unsigned annotations; /* CompareAnnotations */
     bool watch;
+    bool flat;
+    unsigned metadata; /* CompareMetadata */
     Mask mask;
 } CompareOptions;
 

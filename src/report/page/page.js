@@ -18,7 +18,7 @@
     return KINDS[name] ? has(KINDS[name]) : has("e") && has("a");
   };
 
-  function look(f) { return f.failed ? "bad" : f.verdict === "equal" ? "good" : "odd"; }
+  function look(f) { return f.failed ? "bad" : f.verdict === "equal" && !f.metadata ? "good" : "odd"; }
 
   function picture(kind) {
     const image = new Image();
@@ -258,6 +258,7 @@
     part(look(f), f.verdict);
     const share = Number((100 * f.differing / f.counted).toPrecision(3));
     if (f.differing > 0) part("row-figures", `FLIP ${f.flip === null ? "-" : Number(f.flip.toPrecision(3))} \u00b7 at most ${f.largest} \u00b7 ${share}%`);
+    if (f.metadata) part("row-figures", "metadata differs");
     return item;
   }
 
