@@ -170,5 +170,6 @@ void report_write_page(FILE *file, const void *context) {
     write_pictures(file, report->pictures);
     fputs("<script type=\"application/json\" id=\"data\">", file);
     report_write_json(file, report);
-    fprintf(file, "</script>\n<script>\n%s</script>\n</main>\n</body>\n</html>\n", report_page_js);
+    fprintf(file, "</script>\n<script>\n\"use strict\";\n{\n%s\n%s\n%s}\n</script>\n</main>\n</body>\n</html>\n",
+            report_stage_js, report_list_js, report_page_js);
 }
