@@ -56,35 +56,44 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     normalise(&features->point, point);
 }
 
-static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
+/* Vectors of any width that compilers map to the instruction set. A block's sums stay in registers over all weights. */
+enum { VECTORS = 4 };
+typedef float Vector __attribute__((vector_size(FLIP_BLOCK / VECTORS * sizeof(float))));
 
-/* One weight at a time, so that the compiler vectorises over columns. */
-static void add_weighted(const float *from, int count, float weight, float *to) {
-    for (int i = 0; i < count; i++) to[i] += weight * from[i];
-}
-
-/* `padded` has room for a row and a kernel. */
-static void filter_row(const float *from, int width, const FlipKernel *kernel, float *padded, float *to) {
-    int radius = kernel->radius;
-    for (int i = 0; i < width + 2 * radius; i++) padded[i] = from[inside(i - radius, width)];
-    memset(to, 0, (size_t)width * sizeof *to);
-    for (int k = 0; k <= 2 * radius; k++) add_weighted(padded + k, width, kernel->weights[k], to);
-}
-
-static void filter_columns(const FlipPlane *from, int y, const FlipKernel *kernel, float *to) {
-    memset(to, 0, (size_t)from->width * sizeof *to);
-    for (int k = -kernel->radius; k <= kernel->radius; k++) {
-        const float *row = from->values + (size_t)inside(y + k, from->height) * (size_t)from->width;
-        add_weighted(row, from->width, kernel->weights[k + kernel->radius], to);
+static inline void filter_block(const float *from, const FlipKernel *kernel, size_t step, float *to) {
+    Vector sums[VECTORS] = {{0}}, values[VECTORS];
+    for (int k = 0; k <= 2 * kernel->radius; k++, from += step) {
+        memcpy(values, from, sizeof values);
+        for (int i = 0; i < VECTORS; i++) sums[i] += kernel->weights[k] * values[i];
     }
+    memcpy(to, sums, sizeof sums);
 }
 
-void flip_filter(const FlipPlane *from, const FlipKernel *x, const FlipKernel *y, FlipPlane *scratch, float *padded,
-                 FlipPlane *to) {
-    for (int row = 0; row < from->height; row++) {
-        size_t first = (size_t)row * (size_t)from->width;
-        filter_row(from->values + first, from->width, x, padded, scratch->values + first);
+static inline void filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
+                          int height, float *to) {
+    for (int y = 0; y < height; y++, from += stride, to += stride)
+        for (int x = 0; x < width; x += FLIP_BLOCK) filter_block(from + x, kernel, step, to + x);
+}
+
+static void filter_baseline(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
+                            int height, float *to) {
+    filter(from, kernel, step, stride, width, height, to);
+}
+
+#ifdef TWINBOX_AVX
+__attribute__((target("avx2"), flatten)) static void
+filter_avx2(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height, float *to) {
+    filter(from, kernel, step, stride, width, height, to);
+}
+#endif
+
+void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
+                 float *to) {
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("avx2")) {
+        filter_avx2(from, kernel, step, stride, width, height, to);
+        return;
     }
-    for (int row = 0; row < from->height; row++)
-        filter_columns(scratch, row, y, to->values + (size_t)row * (size_t)from->width);
+#endif
+    filter_baseline(from, kernel, step, stride, width, height, to);
 }
