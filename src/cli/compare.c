@@ -49,8 +49,10 @@ static bool report(Regression *regression, const CompareOptions *options, Error 
 }
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {
-    const RegressionOptions compared = {options->max_difference, options->max_share, &options->mask,
-                                        options->max_pixels};
+    const RegressionOptions compared = {.tolerance = options->tolerance,
+                                        .rules = options->rules,
+                                        .mask = &options->mask,
+                                        .max_pixels = options->max_pixels};
     Regression regression;
     bool ok = regression_run(&regression, options->paths[0], options->paths[1], &compared,
                              progress_bar_begin("comparing"), error);
@@ -68,8 +70,9 @@ static bool compare(const CompareOptions *options, Error *error) {
     if (first != second)
         return error_input(error, options->paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is",
                            options->paths[first ? 0 : 1]);
-    if (first && (options->report != NULL || options->fuzzy || options->mask.count > 0))
-        return error_input(error, options->paths[0], "--report, --fuzzy and --mask apply to pictures only");
+    bool limits = options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0;
+    if (first && (options->report != NULL || limits))
+        return error_input(error, options->paths[0], "--report, --rules, masks and tolerances apply to pictures only");
     return first ? compare_trajectories(options->paths, error) : compare_pictures(options, error);
 }
 

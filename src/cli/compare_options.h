@@ -2,14 +2,14 @@
 /* The options of twinbox compare. */
 #pragma once
 #include "image/mask.h"
+#include "report/tolerance.h"
 
 typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
-    bool fuzzy;         /* given, then: */
-    int max_difference; /* of a channel */
-    double max_share;   /* of the pixels */
     int max_pixels;
+    Tolerance tolerance;
+    const char *rules; /* a file; NULL: not given */
     Mask mask;
 } CompareOptions;
 

@@ -2,6 +2,7 @@
 #include "image/difference_picture.h"
 
 #include "image/image_compare.h"
+#include "image/mask.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,8 +31,11 @@ static void add_gradient(IndexedImage *picture, const Stop *stops, int count) {
 
 static void add_grey(IndexedImage *picture, int grey) { memset(picture->palette[picture->colors++], grey, 3); }
 
-/* The palette of differences: greys in the upper fifth of the scale, the hatch, and the gradient. */
-enum { PALEST = 200, PALE = 56, HATCHED = PALE, HATCH_GREY = 120, GRADIENT, STEPS = 256 - GRADIENT, HATCH = 8 };
+/* The palette of differences: greys in the upper fifth of the scale, the hatch, ignored edges, the stripes beyond the
+   pictures, and the gradient. */
+enum { PALEST = 200, PALE = 56, HATCHED = PALE, EDGE, BEYOND, GRADIENT, STEPS = 256 - GRADIENT };
+enum { HATCH_GREY = 120, HATCH = 8 };
+static const uint8_t edge_color[3] = {70, 150, 235}, beyond_color[3] = {150, 120, 175};
 
 static uint8_t pale(const uint8_t *from) { return (uint8_t)((from[0] * 3 + from[1] * 6 + from[2]) / 10 * 55 / 255); }
 
@@ -50,7 +54,10 @@ static void draw_row(const Image *expected, const Image *actual, int y, const ui
         size_t i = first + (size_t)x;
         if (x == 0 || memcmp(p, p - 4, 4) != 0) grey = pale(p);
         row[x] = grey;
-        if (masked != NULL && masked[i] != 0) {
+        Ignored ignored = masked != NULL ? (Ignored)masked[i] : IGNORED_NOT;
+        if (ignored == IGNORED_EDGE) {
+            row[x] = EDGE;
+        } else if (ignored == IGNORED_MASK) {
             if ((x + y) % HATCH == 0) row[x] = HATCHED;
         } else if (deep || memcmp(p, q, 4) != 0) {
             int difference = image_pixel_difference(expected, actual, i);
@@ -59,13 +66,25 @@ static void draw_row(const Image *expected, const Image *actual, int y, const ui
     }
 }
 
-IndexedImage *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, Error *error) {
-    IndexedImage *picture = indexed_image_create(expected->width, expected->height, error);
+static void draw_beyond(int first, int width, int y, uint8_t *row) {
+    for (int x = first; x < width; x++) row[x] = (x + y) / (HATCH / 2) % 2 == 0 ? BEYOND : PALE - 1;
+}
+
+IndexedImage *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, int width,
+                                 int height, Error *error) {
+    IndexedImage *picture = indexed_image_create(width, height, error);
     if (picture == NULL) return NULL;
     for (int i = 0; i < PALE; i++) add_grey(picture, PALEST + i);
     add_grey(picture, HATCH_GREY);
+    memcpy(picture->palette[picture->colors++], edge_color, sizeof edge_color);
+    memcpy(picture->palette[picture->colors++], beyond_color, sizeof beyond_color);
     add_gradient(picture, differences, STEPS);
-    for (int y = 0; y < picture->height; y++) draw_row(expected, actual, y, masked, indexed_image_row(picture, y));
+    for (int y = 0; y < height; y++) {
+        uint8_t *row = indexed_image_row(picture, y);
+        bool inside = y < expected->height;
+        if (inside) draw_row(expected, actual, y, masked, row);
+        draw_beyond(inside ? expected->width : 0, width, y, row);
+    }
     return picture;
 }
 

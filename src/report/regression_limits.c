@@ -93,8 +93,11 @@ void regression_compare(const Regression *regression, RegressionFrame *frame, co
 
 /* Ignored pixels count as equal. */
 static bool measure(RegressionFrame *frame, const Image *expected, Image *actual, const uint8_t *masked, Error *error) {
+    FlipSummary flip;
     image_copy_masked(expected, actual, masked);
-    return flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &frame->flip, error);
+    if (!flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &flip, error)) return false;
+    frame->flip = flip.mean, frame->flip_p99 = flip.p99;
+    return true;
 }
 
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
@@ -108,26 +111,37 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
     else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
         return false;
     else
-        frame->pixels = tolerance_holds(&tolerance, difference, &frame->flip) ? PIXELS_WITHIN : PIXELS_DIFFER;
+        frame->pixels = tolerance_holds(&tolerance, difference, &(FlipSummary){frame->flip, frame->flip_p99})
+                            ? PIXELS_WITHIN
+                            : PIXELS_DIFFER;
     return true;
 }
 
-bool regression_measure_flip(const Regression *regression, RegressionFrame *frame, Error *error) {
-    Image *images[SIDES] = {NULL, NULL};
+static Image *read_picture(const Regression *regression, const char *path, Error *error) {
+    size_t size;
+    uint8_t *data = image_load_png(path, &size, error);
+    Image *image = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
+    free(data);
+    return image;
+}
+
+static bool measure_files(const Regression *regression, RegressionFrame *frame, Error *error) {
     uint8_t *masked = NULL;
-    bool ok = isnan(frame->flip.mean);
-    if (!ok) return true;
-    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
-        size_t size;
-        const char *path = frame->at[side]->path;
-        uint8_t *data = image_load_png(path, &size, error);
-        images[side] = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
-        ok = images[side] != NULL;
-        free(data);
-    }
-    ok = ok && regression_ignore(regression, frame, images[EXPECTED], images[ACTUAL], &masked, error) &&
-         measure(frame, images[EXPECTED], images[ACTUAL], masked, error);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
+    Image *expected = read_picture(regression, frame->at[EXPECTED]->path, error);
+    Image *actual = expected == NULL ? NULL : read_picture(regression, frame->at[ACTUAL]->path, error);
+    bool ok = actual != NULL && regression_ignore(regression, frame, expected, actual, &masked, error) &&
+              measure(frame, expected, actual, masked, error);
+    image_destroy(expected);
+    image_destroy(actual);
     free(masked);
     return ok;
+}
+
+bool regression_measure_first(Regression *regression, Error *error) {
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED)
+            return !isnan(frame->flip) || measure_files(regression, frame, error);
+    }
+    return true;
 }

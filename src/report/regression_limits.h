@@ -24,5 +24,6 @@ void regression_compare(const Regression *regression, RegressionFrame *frame, co
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                        const uint8_t *masked, Error *error);
 
-/* Measures FLIP of a frame whose pixels differ, from its files, if that has not been done. */
-bool regression_measure_flip(const Regression *regression, RegressionFrame *frame, Error *error);
+/* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
+   that compare names. */
+bool regression_measure_first(Regression *regression, Error *error);

@@ -18,6 +18,7 @@ typedef struct Rule {
 } Rule;
 
 struct Rules {
+    char *path;
     YamlTree tree;
     int count;
     Rule *rules; /* [count] */
@@ -201,19 +202,21 @@ static bool read_list(const YamlTree *tree, int node, const Field *field, void *
     return true;
 }
 
-Rules *rules_read(const char *path, Error *error) {
+static bool read_file(Rules *rules, const char *path, Error *error) {
     static const Field fields[] = {{"rules", read_list, 0, NULL, true}, {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
+    rules->path = strdup(path);
+    if (rules->path == NULL) return error_memory(error, path);
+    return yaml_read(&rules->tree, rules->path, error) &&
+           fields_read(&rules->tree, 0, "a file of rules", fields, rules, nodes, error);
+}
+
+Rules *rules_read(const char *path, Error *error) {
     Rules *rules = calloc(1, sizeof *rules);
-    if (rules == NULL) {
+    if (rules == NULL)
         error_memory(error, path);
-        return NULL;
-    }
-    if (!yaml_read(&rules->tree, path, error)) {
-        free(rules);
-        return NULL;
-    }
-    if (fields_read(&rules->tree, 0, "a file of rules", fields, rules, nodes, error)) return rules;
+    else if (read_file(rules, path, error))
+        return rules;
     rules_destroy(rules);
     return NULL;
 }
@@ -223,8 +226,11 @@ void rules_destroy(Rules *rules) {
     for (int i = 0; i < rules->count; i++) mask_free(&rules->rules[i].mask);
     free(rules->rules);
     yaml_free(&rules->tree);
+    free(rules->path);
     free(rules);
 }
+
+const char *rules_path(const Rules *rules) { return rules->path; }
 
 static bool matches(const Rule *rule, const char *name) { return fnmatch(rule->files, name, 0) == 0; }
 

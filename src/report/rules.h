@@ -26,6 +26,7 @@ typedef struct Rules Rules;
    cannot be read. */
 Rules *rules_read(const char *path, Error *error);
 void rules_destroy(Rules *rules); /* NULL: does nothing */
+const char *rules_path(const Rules *rules);
 
 /* Finds the rules for each of the names. ERROR_INPUT, with the place of the rule, if one matches none of them. */
 bool rules_check_names(const Rules *rules, const char *const *names, int count, Error *error);
