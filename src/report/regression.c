@@ -27,8 +27,8 @@ static bool decode_and_judge(const Regression *regression, RegressionFrame *fram
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         RegressionFile *file = &frame->files[side];
-        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, regression->options.max_pixels,
-                                        error);
+        images[side] =
+            image_decode_png(data[side], file->size, frame->at[side]->path, regression->options.max_pixels, error);
         ok = images[side] != NULL;
         if (ok) file->width = images[side]->width, file->height = images[side]->height;
     }
@@ -189,7 +189,8 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
-              refuse_empty(regression, error) && regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+              refuse_empty(regression, error) && regression_read_rules(regression, error) &&
+              parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok) count(regression);
     ok = ok && regression_measure_first(regression, error);

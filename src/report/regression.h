@@ -14,7 +14,7 @@ typedef struct RegressionOptions {
     Tolerance tolerance; /* replaces what the rules give */
     const char *rules;   /* a file (report/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
     const Mask *mask;    /* for all frames, beside the masks of the rules; or NULL */
-    int64_t max_pixels; /* of a picture; larger ones are refused before decompression */
+    int64_t max_pixels;  /* of a picture; larger ones are refused before decompression */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -48,9 +48,9 @@ typedef struct RegressionFrame {
     int panel; /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;
     double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
-    bool run_differs; /* a trajectory of its scene differs in any frame */
-    bool shown;       /* in the report */
-    char *read_error; /* why a picture could not be read; makes regression_run() fail */
+    bool run_differs;      /* a trajectory of its scene differs in any frame */
+    bool shown;            /* in the report */
+    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
 /* A trajectory that is in both folders. */

@@ -52,8 +52,8 @@ static bool draw(const Regression *regression, RegressionFrame *frame, Image *ex
     uint8_t *masked;
     int width = larger(expected->width, actual->width), height = larger(expected->height, actual->height);
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
-    bool ok = !room || encode(difference_picture(expected, actual, masked, width, height, error),
-                              &pictures[DIFFERENCE], error);
+    bool ok = !room ||
+              encode(difference_picture(expected, actual, masked, width, height, error), &pictures[DIFFERENCE], error);
     image_copy_masked(expected, actual, masked);
     ok = ok && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);

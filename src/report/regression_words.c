@@ -49,7 +49,7 @@ static void add_difference(RegressionText *words, const ImageDifference *differe
             100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
             difference->first_y);
     if (difference->moved > 0)
-        add(words, "", " but for %" PRId64 " %s of edges", difference->moved,
+        add(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
             difference->moved == 1 ? "pixel" : "pixels");
 }
 

@@ -32,8 +32,9 @@ static bool read_files(const YamlTree *tree, int node, const Field *field, void 
     Rule *rule = member;
     rule->files = text_of(tree, node);
     rule->node = node;
-    return rule->files[0] != '\0' || yaml_error(tree, node, error, "%s must be a glob of names, such as \"stack_*\" (got %s)",
-                                                field->key, yaml_show(tree, node).text);
+    return rule->files[0] != '\0' ||
+           yaml_error(tree, node, error, "%s must be a glob of names, such as \"stack_*\" (got %s)", field->key,
+                      yaml_show(tree, node).text);
 }
 
 static bool read_level(const YamlTree *tree, int node, const char *what, int *level, Error *error) {
@@ -86,9 +87,8 @@ static bool read_flip_p99(const YamlTree *tree, int node, const Field *field, vo
 }
 
 static bool read_flip(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    static const Field fields[] = {{"mean", read_flip_mean, 0, NULL, false},
-                                   {"p99", read_flip_p99, 0, NULL, false},
-                                   {NULL, NULL, 0, NULL, false}};
+    static const Field fields[] = {
+        {"mean", read_flip_mean, 0, NULL, false}, {"p99", read_flip_p99, 0, NULL, false}, {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
     if (tree->nodes[node].kind == YAML_MAPPING)
         return fields_read(tree, node, "a limit of FLIP", fields, member, nodes, error);
@@ -112,8 +112,9 @@ static bool read_rectangle(const YamlTree *tree, int node, const Field *field, v
         item = tree->nodes[item].end;
     }
     if (!ok)
-        return yaml_error(tree, node, error, "%s must be a list [X, Y, W, H] of whole numbers with W and H from 1 (got %s)",
-                          field->key, list->kind == YAML_SEQUENCE ? "another list" : yaml_show(tree, node).text);
+        return yaml_error(tree, node, error,
+                          "%s must be a list [X, Y, W, H] of whole numbers with W and H from 1 (got %s)", field->key,
+                          list->kind == YAML_SEQUENCE ? "another list" : yaml_show(tree, node).text);
     return mask_add_rectangle(member, numbers[0], numbers[1], numbers[2], numbers[3], error);
 }
 

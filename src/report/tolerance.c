@@ -23,8 +23,8 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
     double counted = (double)difference->counted;
     if (difference->pixels == 0) return true;
     if (!given(tolerance, LIMIT_FUZZY | LIMIT_TOLERANCE | LIMIT_BEYOND | LIMITS_FLIP)) return false;
-    if (given(tolerance, LIMIT_FUZZY) && (difference->largest > tolerance->fuzzy ||
-                                          (double)difference->pixels > tolerance->share * counted))
+    if (given(tolerance, LIMIT_FUZZY) &&
+        (difference->largest > tolerance->fuzzy || (double)difference->pixels > tolerance->share * counted))
         return false;
     if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && (double)difference->beyond > tolerance->beyond * counted)
         return false;
