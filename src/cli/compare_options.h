@@ -4,12 +4,16 @@
 #include "image/mask.h"
 #include "report/tolerance.h"
 
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+
 typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
     int max_pixels;
     Tolerance tolerance;
-    const char *rules; /* a file; NULL: not given */
+    const char *rules;    /* a file; NULL: not given */
+    unsigned annotations; /* CompareAnnotations */
+    bool watch;
     Mask mask;
 } CompareOptions;
 

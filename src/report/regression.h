@@ -50,6 +50,7 @@ typedef struct RegressionFrame {
     double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
     bool run_differs;      /* a trajectory of its scene differs in any frame */
     bool shown;            /* in the report */
+    double seconds;        /* that its comparison took, wall time */
     char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
@@ -61,6 +62,7 @@ typedef struct RegressionRun {
     char scene[TRAJECTORY_NAME_SIZE];
     int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
+    double seconds;
 } RegressionRun;
 
 typedef struct Regression {
@@ -75,6 +77,7 @@ typedef struct Regression {
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
+    double seconds;                           /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file
