@@ -5,6 +5,7 @@
 #include "report/tolerance.h"
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
 
 typedef struct CompareOptions {
     const char *paths[2], *report;
@@ -12,6 +13,8 @@ typedef struct CompareOptions {
     int max_pixels;
     Tolerance tolerance;
     const char *rules;    /* a file; NULL: not given */
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
     bool watch;
     Mask mask;

@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "image/antialias.h"
+#include "image/mask_cover.h"
 
 #include <limits.h>
 #include <math.h>
@@ -43,6 +44,13 @@ static bool has_masks(const Regression *regression, const RegressionFrame *frame
     const Mask *mask = regression->options.mask;
     return (mask != NULL && mask->count > 0) ||
            (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
+}
+
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
+    const Mask *mask = regression->options.mask;
+    double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
+    if (regression->rules != NULL) hidden += rules_most_hidden(regression->rules, frame_name(frame), width, height);
+    return hidden >= (double)width * height;
 }
 
 static bool draw_masks(const Regression *regression, const RegressionFrame *frame, const Image *expected,

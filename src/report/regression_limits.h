@@ -10,6 +10,9 @@ bool regression_read_rules(Regression *regression, Error *error);
 /* Rules first, then what the options give. */
 Tolerance regression_tolerance(const Regression *regression, const RegressionFrame *frame);
 
+/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
+
 /* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored (image/mask.h):
    masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be ignored. */
 bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,

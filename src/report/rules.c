@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "common/parse.h"
+#include "image/mask_cover.h"
 #include "yaml/fields.h"
 
 #include <fnmatch.h>
@@ -258,6 +259,13 @@ bool rules_have_masks(const Rules *rules, const char *name) {
     for (int i = 0; i < rules->count; i++)
         if (rules->rules[i].mask.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
+}
+
+double rules_most_hidden(const Rules *rules, const char *name, int width, int height) {
+    double hidden = 0;
+    for (int i = 0; i < rules->count; i++)
+        if (matches(&rules->rules[i], name)) hidden += mask_most_hidden(&rules->rules[i].mask, width, height);
+    return hidden;
 }
 
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,

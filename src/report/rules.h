@@ -34,7 +34,8 @@ bool rules_check_names(const Rules *rules, const char *const *names, int count, 
 /* Replaces in *tolerance what the rules for this name give. */
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance);
 
-/* Whether the rules for this name have masks, and mask_draw() for each of them. */
+/* Whether the rules for this name have masks; mask_most_hidden() of all of them, and mask_draw(). */
 bool rules_have_masks(const Rules *rules, const char *name);
+double rules_most_hidden(const Rules *rules, const char *name, int width, int height);
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error);

@@ -35,8 +35,8 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
 static void add(ToleranceText *words, const char *format, ...) PRINTF_LIKE(2, 3);
 static void add(ToleranceText *words, const char *format, ...) {
     size_t used = strlen(words->text);
-    va_list arguments;
     if (used > 0) used += (size_t)snprintf(words->text + used, sizeof words->text - used, ", ");
+    va_list arguments;
     va_start(arguments, format);
     vsnprintf(words->text + used, sizeof words->text - used, format, arguments);
     va_end(arguments);

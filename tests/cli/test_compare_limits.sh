@@ -3,26 +3,21 @@
 # What compare lets pass: limits on pixels and on FLIP, edges, rules for names; and pictures of different size.
 . "$(dirname "$0")/checks.sh"
 
-cat >png.py <<'PYTHON'
-# png.py FILE WIDTH HEIGHT GREY [X Y W H GREY]...: grey rectangles.
-import struct, sys, zlib
-path, numbers = sys.argv[1], list(map(int, sys.argv[2:]))
-width, height, ground = numbers[:3]
-rows = [bytearray([ground] * width) for _ in range(height)]
-for x, y, w, h, grey in zip(*[iter(numbers[3:])] * 5):
-    for row in rows[y : y + h]:
-        row[x : x + w] = bytes([grey] * w)
-chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-with open(path, "wb") as file:
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)))
-    file.write(chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
-PYTHON
-png() { /usr/bin/python3 png.py "$@"; }
+# png FILE WIDTH HEIGHT GREY [X Y W GREY]...: grey lines of W pixels.
+png() {
+    local head=("$1" "$2" "$3" "$4 $4 $4 255") pixels=() x
+    shift 4
+    while [ $# -gt 0 ]; do
+        for ((x = $1; x < $1 + $3; x++)); do pixels+=("$x" "$2" "$4 $4 $4 255"); done
+        shift 4
+    done
+    /usr/bin/python3 "$sources/tests/cli/png.py" "${head[@]}" "${pixels[@]}"
+}
 mkdir a b
 
 # 1,000 pixels; 10 differ by 2, and 5 by 30.
 png a/x.png 50 20 100
-png b/x.png 50 20 100 3 3 10 1 102 3 5 5 1 130
+png b/x.png 50 20 100 3 3 10 102 3 5 5 130
 run 1 compare a b
 says "x.png: 15 pixels differ (1.5%) by at most 30, first at (3, 3)"
 for passing in "--tolerance 30" "--tolerance 29 --beyond 0.005" "--tolerance 2 --beyond 0.005" "--beyond 0.015"; do
@@ -58,22 +53,22 @@ run 1 compare a b --flip 1 --tolerance 29
 run 0 compare a b --flip 0 --mask 0,0,50,6
 
 # A crisp line whose picture has it half a pixel lower; the line erased; the line a pixel lower.
-png a/x.png 50 20 250 5 9 40 1 10
-png b/x.png 50 20 250 5 9 40 2 130
+png a/x.png 50 20 250 5 9 40 10
+png b/x.png 50 20 250 5 9 40 130 5 10 40 130
 run 1 compare a b
 run 0 compare a b --antialias
 says "not equal, but within tolerance"
-png b/x.png 50 20 250 5 9 40 2 130 25 3 1 1 200
+png b/x.png 50 20 250 5 9 40 130 5 10 40 130 25 3 1 200
 run 1 compare a b --antialias
 says "x.png: 1 pixel differs (0.1%) by at most 50, first at (25, 3); 80 pixels of edges ignored"
 png b/x.png 50 20 250
 run 1 compare a b --antialias
-png b/x.png 50 20 250 5 10 40 1 10
+png b/x.png 50 20 250 5 10 40 10
 run 1 compare a b --antialias
 
 # Rules: for some names, later ones first; the command line replaces them.
 png a/x.png 50 20 100
-png b/x.png 50 20 100 3 3 10 1 102
+png b/x.png 50 20 100 3 3 10 102
 cp a/x.png a/y.png
 cp b/x.png b/y.png
 cat >rules.yaml <<'YAML'
@@ -96,7 +91,7 @@ run 1 compare a b
 says "1 of 2 frames differ"
 run 0 compare a/x.png b/x.png
 run 1 compare a/y.png b/y.png
-png a/mask.png 50 20 0 3 3 10 1 255
+png a/mask.png 50 20 0 3 3 10 255
 mv a/mask.png mask.png
 cat >a/compare.yaml <<'YAML'
 rules:
@@ -105,8 +100,8 @@ rules:
   - files: y.png
     masks: [{colour: "#646464"}, {rectangle: [0, 0, 1, 1]}]
 YAML
-png a/y.png 50 20 100 40 10 1 1 90
-png b/y.png 50 20 100 3 3 10 1 102 40 10 1 1 90
+png a/y.png 50 20 100 40 10 1 90
+png b/y.png 50 20 100 3 3 10 102 40 10 1 90
 run 0 compare a b
 run 1 compare a b --rules rules.yaml
 cat >a/compare.yaml <<'YAML'
@@ -122,6 +117,12 @@ complains '    4 |   - files: "z*.png"'
 sed -i 's/antialias/antialais/' a/compare.yaml
 run 2 compare a b
 complains "a/compare.yaml:5:5: error: 'antialais' is not a key of a rule; did you mean 'antialias'?"
+# Masks of rules and of the command line together hide everything, though the files are equal.
+cp a/x.png b/x.png
+printf 'rules: [{files: x.png, masks: [{rectangle: [0, 0, 50, 12]}]}]\n' >a/compare.yaml
+run 1 compare a b --mask 0,13,50,7
+run 2 compare a b --mask 0,12,50,8
+complains "a/x.png: error: the masks hide all its pixels"
 run 2 compare a b --rules none.yaml
 complains "none.yaml"
 rm a/compare.yaml a/y.png b/y.png
@@ -131,7 +132,7 @@ png a/x.png 50 20 100
 png b/x.png 40 30 100
 run 1 compare a b
 says "x.png: sizes differ: 50 x 20 and 40 x 30 pixels; overlap: equal pixels"
-png b/x.png 40 30 100 3 3 10 1 102 3 25 10 1 0
+png b/x.png 40 30 100 3 3 10 102 3 25 10 0
 run 1 compare a b --report report
 says "overlap: 10 pixels differ (1.25%) by at most 2, first at (3, 3)"
 run 1 compare a b --tolerance 255
