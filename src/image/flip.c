@@ -79,13 +79,13 @@ static void fill_band(const Flip *flip, int top, int bottom) {
 }
 
 /* Row by row, so that the sum does not depend on tiles. */
-static bool take_row(Flip *flip, const float *values, int y, const FlipSink *sink, Error *error) {
+static bool take_row(Flip *flip, const float *values, const FlipSink *sink, Error *error) {
     for (int x = 0; x < flip->width; x++) {
         if (values[x] == 0) continue;
         flip->sum += (double)values[x];
         largest_add(&flip->largest, values[x]);
     }
-    return sink == NULL || sink->row(sink->context, y, values, error);
+    return sink == NULL || sink->row(sink->context, values, flip->width, error);
 }
 
 bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
@@ -96,7 +96,7 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
         int bottom = at_most(top + flip.band, flip.height);
         fill_band(&flip, top, bottom);
         for (int y = top; ok && y < bottom; y++)
-            ok = take_row(&flip, flip.values + (size_t)(y - top) * (size_t)flip.width, y, sink, error);
+            ok = take_row(&flip, flip.values + (size_t)(y - top) * (size_t)flip.width, sink, error);
     }
     if (ok) {
         result->mean = flip.sum / ((double)flip.width * (double)flip.height);

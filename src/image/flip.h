@@ -15,9 +15,9 @@ typedef struct FlipSummary {
     double p99;  /* the least value that at least 99% of the pixels do not exceed */
 } FlipSummary;
 
-/* Receives the values[width] of row y, for all rows from the top. False with error set stops. */
+/* Receives the values[width] of every row, from the top. False with error set stops. */
 typedef struct FlipSink {
-    bool (*row)(void *context, int y, const float *values, Error *error);
+    bool (*row)(void *context, const float *values, int width, Error *error);
     void *context;
 } FlipSink;
 

@@ -2,7 +2,6 @@
 #include "image/flip_filter.h"
 
 #include <math.h>
-#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -56,44 +55,13 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     normalise(&features->point, point);
 }
 
-/* Vectors of any width that compilers map to the instruction set. A block's sums stay in registers over all weights. */
-enum { VECTORS = 4 };
-typedef float Vector __attribute__((vector_size(FLIP_BLOCK / VECTORS * sizeof(float))));
-
-static inline void filter_block(const float *from, const FlipKernel *kernel, size_t step, float *to) {
-    Vector sums[VECTORS] = {{0}}, values[VECTORS];
-    for (int k = 0; k <= 2 * kernel->radius; k++, from += step) {
-        memcpy(values, from, sizeof values);
-        for (int i = 0; i < VECTORS; i++) sums[i] += kernel->weights[k] * values[i];
-    }
-    memcpy(to, sums, sizeof sums);
-}
-
-static inline void filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
-                          int height, float *to) {
-    for (int y = 0; y < height; y++, from += stride, to += stride)
-        for (int x = 0; x < width; x += FLIP_BLOCK) filter_block(from + x, kernel, step, to + x);
-}
-
-static void filter_baseline(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
-                            int height, float *to) {
-    filter(from, kernel, step, stride, width, height, to);
-}
-
-#ifdef TWINBOX_AVX
-__attribute__((target("avx2"), flatten)) static void
-filter_avx2(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height, float *to) {
-    filter(from, kernel, step, stride, width, height, to);
-}
-#endif
-
 void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
                  float *to) {
 #ifdef TWINBOX_AVX
     if (__builtin_cpu_supports("avx2")) {
-        filter_avx2(from, kernel, step, stride, width, height, to);
+        flip_filter_avx2(from, kernel, step, stride, width, height, to);
         return;
     }
 #endif
-    filter_baseline(from, kernel, step, stride, width, height, to);
+    flip_filter_baseline(from, kernel, step, stride, width, height, to);
 }

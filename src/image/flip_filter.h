@@ -27,10 +27,16 @@ typedef struct FlipFeatures {
 void flip_make_features(FlipFeatures *features, double pixels_per_degree);
 
 /* Values are filtered in blocks: `width` is a multiple of this. */
-enum { FLIP_BLOCK = 32 };
+enum { FLIP_BLOCK = 64 };
 
 /* to[height, width] = the sums over k of weights[k] * from[k * step], in ascending order of k, which fixes the bits.
    `from` is where weight 0 of the first value applies; its rows, and those of `to`, are `stride` apart. step 1 filters
    along rows, `stride` along columns. */
 void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
                  float *to);
+
+/* The same for one instruction set; flip_filter() takes the widest that the processor has. */
+void flip_filter_baseline(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
+                          int height, float *to);
+void flip_filter_avx2(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
+                      float *to);

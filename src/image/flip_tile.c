@@ -8,6 +8,13 @@
 /* What is compared, of each picture. */
 enum { BLURRED = FLIP_CHANNELS, EDGE_X = BLURRED, EDGE_Y, POINT_X, POINT_Y, PLANES };
 
+/* Colours repeat, along edges as well: a table of those converted, by a hash of their bits, saves nine in ten roots. */
+enum { CONVERTED_BITS = 12, CONVERTED = 1 << CONVERTED_BITS };
+
+typedef struct Converted {
+    FlipColor from, to;
+} Converted;
+
 /* All planes have rows of `stride` values. Channels begin `reach` pixels left of the area and above it. */
 struct FlipTile {
     const FlipModel *model;
@@ -19,6 +26,7 @@ struct FlipTile {
     uint8_t *row;        /* RGBA */
     unsigned char clear; /* not 0 if a loaded pixel is not opaque */
     float *memory;
+    Converted converted[CONVERTED];
 };
 
 void flip_make_model(FlipModel *model, double pixels_per_degree) {
@@ -41,7 +49,8 @@ FlipTile *flip_tile_create(const FlipModel *model, Error *error) {
         error_memory(error, "FLIP");
         return NULL;
     }
-    *tile = (FlipTile){.model = model, .stride = stride, .memory = next};
+    tile->model = model, tile->stride = stride, tile->memory = next;
+    for (int i = 0; i < CONVERTED; i++) tile->converted[i].from.x = NAN; /* equals no colour */
     for (int c = 0; c < FLIP_CHANNELS; c++, next += large) tile->channels[c] = next;
     tile->along = next, next += large;
     tile->second = next, next += small;
@@ -133,30 +142,47 @@ static bool looks_equal(const FlipTile *tile, size_t i) {
     return a[0][i] == b[0][i] && a[1][i] == b[1][i] && a[2][i] == b[2][i];
 }
 
-/* The last colour converted: neighbours are often equal. */
-typedef struct Converted {
-    FlipColor from, to;
-} Converted;
+static size_t hash_color(FlipColor color) {
+    uint32_t bits[3];
+    memcpy(bits, &color, sizeof bits);
+    /* Odd multipliers spread differences of low bits to the high ones, which are used. */
+    return (bits[0] * 2654435761u ^ bits[1] * 2246822519u ^ bits[2] * 3266489917u) >> (32 - CONVERTED_BITS);
+}
 
-static FlipColor convert(Converted *last, float *const planes[PLANES], size_t i) {
+static FlipColor convert(FlipTile *tile, float *const planes[PLANES], size_t i) {
     FlipColor from = {planes[0][i], planes[1][i], planes[2][i]};
-    if (from.x != last->from.x || from.y != last->from.y || from.z != last->from.z)
-        *last = (Converted){from, flip_hunt_lab(from)};
-    return last->to;
+    Converted *entry = &tile->converted[hash_color(from)];
+    if (from.x != entry->from.x || from.y != entry->from.y || from.z != entry->from.z)
+        *entry = (Converted){from, flip_hunt_lab(from)};
+    return entry->to;
+}
+
+/* The last pair of colours: neighbours are often equal. */
+typedef struct Judged {
+    FlipColor a, b;
+    float color, feature, value;
+} Judged;
+
+static bool same(FlipColor a, FlipColor b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+static float pixel_flip(FlipTile *tile, size_t i, Judged *last) {
+    FlipColor a = convert(tile, tile->planes[0], i), b = convert(tile, tile->planes[1], i);
+    bool known = same(a, last->a) && same(b, last->b);
+    if (!known) *last = (Judged){a, b, flip_color_error(a, b, tile->model->largest), -1, 0};
+    float feature = feature_change(tile, i);
+    if (feature != last->feature) last->feature = feature, last->value = flip_amplify(last->color, feature);
+    return last->value;
 }
 
 /* Values become those of the tile where these are larger. */
-static void keep_largest(const FlipTile *tile, FlipArea area, float *values, size_t stride) {
-    Converted last[2] = {{{NAN, NAN, NAN}, {0, 0, 0}}, {{NAN, NAN, NAN}, {0, 0, 0}}};
+static void keep_largest(FlipTile *tile, FlipArea area, float *values, size_t stride) {
+    Judged last = {{NAN, NAN, NAN}, {NAN, NAN, NAN}, 0, 0, 0};
     for (int y = 0; y < area.bottom - area.top; y++)
         for (int x = 0; x < area.right - area.left; x++) {
             size_t i = (size_t)y * tile->stride + (size_t)x;
             if (looks_equal(tile, i)) continue;
-            FlipColor a = convert(&last[0], tile->planes[0], i), b = convert(&last[1], tile->planes[1], i);
-            float color = flip_color_error(a, b, tile->model->largest);
-            if (color <= 0) continue;
             float *value = &values[(size_t)y * stride + (size_t)(area.left + x)];
-            *value = fmaxf(*value, flip_amplify(color, feature_change(tile, i)));
+            *value = fmaxf(*value, pixel_flip(tile, i, &last));
         }
 }
 

@@ -22,24 +22,17 @@ static bool load(const RegressionFrame *frame, RegressionSide side, ReportPictur
            error_input(error, path, "has changed since the comparison");
 }
 
-/* Takes the image. */
-static bool encode(IndexedImage *image, ReportPicture *picture, Error *error) {
-    if (image != NULL) picture->data = indexed_image_encode(image, &picture->size, error);
-    indexed_image_destroy(image);
-    return picture->data != NULL;
-}
-
 /* Measures FLIP; draws its picture only if picture != NULL. */
 static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
                     Error *error) {
-    IndexedImage *heat = NULL;
+    IndexedPng *heat = NULL;
     FlipSummary flip;
     if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
     const FlipSink sink = heat_picture_sink(heat);
     bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, heat != NULL ? &sink : NULL, &flip, error);
     if (ok) frame->flip = flip.mean, frame->flip_p99 = flip.p99;
-    if (ok && heat != NULL) return encode(heat, picture, error);
-    indexed_image_destroy(heat);
+    if (ok && heat != NULL) ok = (picture->data = indexed_png_end(heat, &picture->size, error)) != NULL;
+    indexed_png_destroy(heat);
     return ok;
 }
 
@@ -52,10 +45,11 @@ static bool draw(const Regression *regression, RegressionFrame *frame, Image *ex
     uint8_t *masked;
     int width = larger(expected->width, actual->width), height = larger(expected->height, actual->height);
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
-    bool ok = !room ||
-              encode(difference_picture(expected, actual, masked, width, height, error), &pictures[DIFFERENCE], error);
+    ReportPicture *difference = &pictures[DIFFERENCE];
+    if (room) difference->data = difference_picture(expected, actual, masked, width, height, &difference->size, error);
     image_copy_masked(expected, actual, masked);
-    ok = ok && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
+    bool ok =
+        (!room || difference->data != NULL) && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);
     return ok;
 }
