@@ -12,7 +12,7 @@ typedef struct CompareOptions {
     int count, megabytes;
     int max_pixels;
     Tolerance tolerance;
-    const char *rules;    /* a file; NULL: not given */
+    const char *rules; /* a file; NULL: not given */
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
