@@ -22,7 +22,8 @@ function go(to) {
   get("name").textContent = f.name;
   get("frame-verdict").textContent = f.verdict;
   get("frame-verdict").className = look(f);
-  get("figures").textContent = f.words + (f.flip === null ? "" : "; FLIP " + f.flip);
+  const flip = f.flip === null ? "" : `; FLIP ${f.flip}, 99th percentile ${f.flip_p99}`;
+  get("figures").textContent = f.words + flip;
   get("scrubber").max = listed.length;
   get("scrubber").value = at + 1;
   get("scrubber").setAttribute("aria-valuetext", f.name + ", " + f.verdict);
