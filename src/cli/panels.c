@@ -4,6 +4,7 @@
 #include "cli/progress_bar.h"
 #include "common/file.h"
 #include "simulate/simulate.h"
+#include "trajectory/trajectory_name.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -58,27 +59,13 @@ void panels_free(Panels *panels) {
     panels->count = 0;
 }
 
-enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
-
-/* SCENE-METHOD */
-static void file_stem(const Trajectory *run, char stem[STEM_SIZE]) {
-    snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
-    file_name_clean(stem);
-}
-
 bool panels_store(const Panels *panels, const char *directory, Error *error) {
     for (int i = 0; i < panels->count; i++) {
-        char stem[STEM_SIZE], other[STEM_SIZE], path[4096];
-        file_stem(panels->runs[i], stem);
-        int same = 1;
-        for (int k = 0; k < i; k++) {
-            file_stem(panels->runs[k], other);
-            same += strcmp(stem, other) == 0;
-        }
-        char number[16] = "";
-        if (same > 1) snprintf(number, sizeof number, "-%d", same);
-        if (!file_path(path, sizeof path, error, "%s/%s%s.npz", directory, stem, number)) return false;
-        if (!trajectory_write(panels->runs[i], path, error)) return false;
+        char name[TRAJECTORY_FILE_NAME_SIZE], path[4096];
+        trajectory_file_name((const Trajectory *const *)panels->runs, i, name);
+        if (!file_path(path, sizeof path, error, "%s/%s", directory, name) ||
+            !trajectory_write(panels->runs[i], path, error))
+            return false;
     }
     return true;
 }

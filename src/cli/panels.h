@@ -19,5 +19,5 @@ void panels_free(Panels *panels);
 /* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
 
-/* Writes each run as directory/SCENE-METHOD.npz; a second run of that name gets -2, and so on. */
+/* Writes each run into the directory, under its trajectory_file_name(). */
 bool panels_store(const Panels *panels, const char *directory, Error *error);

@@ -52,6 +52,7 @@ static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, 
         bottom = top - (text ? title : layout->left);
     }
     if (rows.legend > 0 && text) {
+        layout->legend_rows = rows.legend;
         layout->legend_pitch = pixels(0.035 * unit);
         layout->legend_baseline = bottom - pixels(0.012 * unit) - (rows.legend - 1) * layout->legend_pitch;
         bottom -= pixels(0.046 * unit) + (rows.legend - 1) * layout->legend_pitch;

@@ -16,7 +16,7 @@ typedef struct Layout {
     Rect panels[RENDER_PANELS_MAX]; /* all of equal size */
     int width, height;              /* of the picture */
     int legend_baseline;            /* of the first row; 0: no legend */
-    int legend_pitch;               /* distance between rows */
+    int legend_rows, legend_pitch;  /* number of rows, and the distance between them */
     int key_baseline;               /* of the key above the timeline */
     Rect timeline;                  /* the curves; empty: none */
 } Layout;

@@ -36,21 +36,13 @@ void panel_draw_static(const Picture *picture, int panel, Moment moment, Drawing
     grid_draw_axes(picture, panel, drawing);
 }
 
-/* Outlines of other runs over the panel's bodies. */
-static void draw_outlines(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
-    const RenderLook *look = &picture->look;
-    if (look->compare == LOOK_OVERLAY)
-        for (int run = 1; run < picture->count; run++) body_draw_outlines(picture, panel, run, moment, drawing);
-    else if (picture_run(picture, panel) > 0 && (look->compare == LOOK_DIFFERENCE || (look->show & LOOK_GHOSTS) != 0))
-        body_draw_outlines(picture, panel, 0, moment, drawing);
-}
-
 void panel_draw_moving(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     int run = picture_run(picture, panel), bomb = picture->runs[run]->bomb;
     marks_draw_below(picture, panel, moment, drawing);
     body_draw_all(picture, panel, run, moment, false, drawing);
     if (bomb >= 0) body_draw(picture, panel, run, moment, bomb, drawing);
-    draw_outlines(picture, panel, moment, drawing);
+    for (int other = 0; other < picture->count; other++)
+        if (picture_draws_outlines(picture, panel, other)) body_draw_outlines(picture, panel, other, moment, drawing);
     marks_draw_above(picture, panel, moment, drawing);
 }
 

@@ -122,6 +122,13 @@ int picture_run(const Picture *picture, int panel) {
     return picture->look.compare == LOOK_DIFFERENCE ? panel + 1 : panel;
 }
 
+bool picture_draws_outlines(const Picture *picture, int panel, int run) {
+    const RenderLook *look = &picture->look;
+    if (look->compare == LOOK_OVERLAY) return run > 0;
+    return run == 0 && picture_run(picture, panel) > 0 &&
+           (look->compare == LOOK_DIFFERENCE || (look->show & LOOK_GHOSTS) != 0);
+}
+
 bool picture_colors_distance(const Picture *picture, int run) {
     bool enabled = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
     return enabled && run > 0;
@@ -163,17 +170,18 @@ static void draw_panels(const Picture *picture, Moment moment, Drawing *drawing)
     timeline_draw_moving(picture, moment, drawing);
 }
 
+Camera picture_camera(const Picture *picture, Moment moment) {
+    const Rect panel = picture->layout.panels[0];
+    if (picture->path == NULL) return picture->camera;
+    return camera_at(picture->path, picture->frames, moment, panel.right - panel.left, panel.bottom - panel.top);
+}
+
 void picture_draw(const Picture *picture, Moment moment, Drawing *drawing) {
     if (moment.kind == MOMENT_TITLE || moment.kind == MOMENT_END) {
         card_draw(picture, moment, drawing);
         return;
     }
-    if (picture->path == NULL) {
-        draw_panels(picture, moment, drawing);
-        return;
-    }
     Picture now = *picture;
-    Rect panel = picture->layout.panels[0];
-    now.camera = camera_at(picture->path, picture->frames, moment, panel.right - panel.left, panel.bottom - panel.top);
+    now.camera = picture_camera(picture, moment);
     draw_panels(&now, moment, drawing);
 }

@@ -45,6 +45,9 @@ void picture_free(Picture *picture);
    exist. */
 bool look_check(const RenderLook *look, const Trajectory *const *runs, int count, Error *error);
 
+/* The camera of a moment, for a panel whose upper left corner is (0, 0). */
+Camera picture_camera(const Picture *picture, Moment moment);
+
 /* Draws a moment into a cleared drawing. */
 void picture_draw(const Picture *picture, Moment moment, Drawing *drawing);
 
@@ -53,6 +56,9 @@ int picture_run_frame(const Picture *picture, int run, int frame);
 
 /* The run that a panel shows; for an overlay the first. */
 int picture_run(const Picture *picture, int panel);
+
+/* Whether a panel shows the run's bodies as outlines. */
+bool picture_draws_outlines(const Picture *picture, int panel, int run);
 
 /* Whether the run's bodies are coloured by their distance from the first run's. */
 bool picture_colors_distance(const Picture *picture, int run);

@@ -6,6 +6,7 @@
 #include "common/hash.h"
 #include "common/json_write.h"
 #include "render/frame_texts.h"
+#include "render/manifest_view.h"
 #include "render/sink.h"
 
 #include <stdlib.h>
@@ -95,7 +96,15 @@ static void write_head(JsonWriter *json, const Manifest *manifest) {
     write_runs(json, manifest);
     write_look(json, &options->look);
     write_order(json, manifest);
+    manifest_write_view(json, manifest->picture);
     json_begin_array(json, "pictures", JSON_LINES);
+}
+
+static void write_moving_camera(JsonWriter *json, const Picture *picture, Moment moment) {
+    const Camera camera = picture_camera(picture, moment);
+    json_begin_object(json, "camera", JSON_ONE_LINE);
+    manifest_write_camera(json, &camera);
+    json_end(json);
 }
 
 static void write_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
@@ -110,6 +119,8 @@ static void write_picture(JsonWriter *json, const Manifest *manifest, int index,
     json_put_int(json, "frame", moment.frame);
     frame_part_text(text, sizeof text, moment);
     if (moment.kind == MOMENT_BETWEEN) json_put_text(json, "part", text);
+    if (picture->path != NULL && (moment.kind == MOMENT_STORED || moment.kind == MOMENT_BETWEEN))
+        write_moving_camera(json, picture, moment);
     json_begin_array(json, "states", JSON_ONE_LINE);
     for (int i = 0; i < picture->count; i++)
         json_put_hash(json, NULL, trajectory_frame_hash(picture->runs[i], picture_run_frame(picture, i, moment.frame)));

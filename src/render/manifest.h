@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* manifest.json lists a sequence: what was drawn (version, runs, look, order) and, one line per file, the frame it
-   shows, the runs' state hashes there (trajectory_frame_hash), the hash of its pixels (image_hash) and of its bytes.
+/* manifest.json lists a sequence: what was drawn (version, runs, look, order), where in the pictures it is
+   (manifest_view.h) and, one line per file, the frame it shows, the runs' state hashes there (trajectory_frame_hash), the
+   hash of its pixels (image_hash) and of its bytes.
    No dates and no paths: the same runs and options give the same bytes. During drawing it is a journal,
    manifest.json.part, with a line per finished picture, so that a later call can resume after a kill. Neither file
    is trusted: a line is used only if all but its two hashes equals the expected line. */

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LINE_MAX_SIZE = 512 };
+enum { LINE_MAX_SIZE = 640 };
 
 /* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
 enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };

@@ -6,6 +6,7 @@
 #include "common/hash.h"
 #include "folders.h"
 #include "mesa.h"
+#include "picture/theme.h"
 #include "render/render.h"
 #include "runs.h"
 
@@ -129,6 +130,93 @@ static void a_manifest_tells_of_every_picture(void **state) {
     const json_t *pictures = json_object_get(manifest, "pictures");
     assert_int_equal(json_array_size(pictures), PICTURES);
     for (int i = 0; i < PICTURES; i++) check_picture(json_array_get(pictures, (size_t)i), i);
+    json_decref(manifest);
+}
+
+/* The colour of a pixel, 0xRRGGBB. */
+static uint32_t colour_at(const Image *image, double x, double y) {
+    assert_true(x >= 0 && x < image->width && y >= 0 && y < image->height);
+    const uint8_t *pixel = image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+    return (uint32_t)pixel[0] << 16 | (uint32_t)pixel[1] << 8 | pixel[2];
+}
+
+static double number_of(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    assert_true(json_is_number(value));
+    return json_number_value(value);
+}
+
+/* The pixel of a point in a panel, by the manifest alone, has this colour. */
+static void assert_colour(const json_t *panel, const json_t *camera, const Image *image, Vec2 at, uint32_t colour) {
+    const json_t *rect = json_object_get(panel, "rectangle");
+    const double x = json_number_value(json_array_get(rect, 0)) + number_of(camera, "left") +
+                     number_of(camera, "scale") * (double)at.x;
+    const double y = json_number_value(json_array_get(rect, 1)) + number_of(camera, "top") -
+                     number_of(camera, "scale") * (double)at.y;
+    assert_int_equal(colour_at(image, x, y), colour);
+}
+
+/* A box has the colour of its panel's run; the bomb has a light dot in its centre. */
+static void check_bodies(const json_t *view_panels, const json_t *picture, const Image *image) {
+    const Theme *theme = theme_get(LOOK_LIGHT);
+    const json_t *moving = json_object_get(picture, "camera");
+    const int frame = (int)number_of(picture, "frame");
+    for (int run = 0; run < 2; run++) {
+        const json_t *panel = json_array_get(view_panels, (size_t)run);
+        const int shown = frame < runs[run]->frames ? frame : runs[run]->frames - 1;
+        if (moving == NULL)
+            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX), theme->bodies[run].fill);
+        else if (shown >= 2)
+            assert_colour(panel, moving, image, *run_position(runs[run], shown, BOMB_BODY), theme->bomb.band);
+    }
+}
+
+static void check_view(const char *directory, bool moving) {
+    json_t *manifest = json_load_file(manifest_of(directory), JSON_REJECT_DUPLICATES, NULL);
+    const json_t *all = json_object_get(json_object_get(manifest, "view"), "panels");
+    const json_t *pictures = json_object_get(manifest, "pictures");
+    assert_int_equal(json_array_size(all), 2);
+    for (size_t i = 0; i < json_array_size(pictures); i++) {
+        const json_t *picture = json_array_get(pictures, i);
+        assert_int_equal(json_object_get(picture, "camera") != NULL, moving);
+        if (strcmp(json_string_value(json_object_get(picture, "shows")), "frame") != 0) continue;
+        Error error = {0};
+        Image *image = image_read_png(frame_path(directory, (int)i), &error);
+        assert_ok(image != NULL, error);
+        check_bodies(all, picture, image);
+        image_destroy(image);
+    }
+    json_decref(manifest);
+}
+
+static void the_view_leads_to_the_bodies(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("moving"));
+    options.look.camera = LOOK_BOMB;
+    options.width = 4 * WIDTH, options.height = 4 * HEIGHT;
+    check_view(whole, false);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    check_view(options.directory, true);
+    options.resume = true; /* the lines with a camera are recalled, too */
+    RenderResult result;
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_int_equal(result.kept, PICTURES);
+    free(result.hashes);
+}
+
+static void the_view_names_the_files_of_the_runs(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("named"));
+    options.look.show = LOOK_GHOSTS;
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    json_t *manifest = json_load_file(manifest_of(options.directory), JSON_REJECT_DUPLICATES, NULL);
+    const json_t *panel = json_array_get(json_object_get(json_object_get(manifest, "view"), "panels"), 1);
+    const json_t *names = json_object_get(panel, "runs");
+    assert_int_equal(json_array_size(names), 2);
+    assert_string_equal(json_string_value(json_array_get(names, 0)), "two_boxes-pair-net_network=nets_small.npz.npz");
+    assert_string_equal(json_string_value(json_array_get(names, 1)), "two_boxes-engine.npz");
     json_decref(manifest);
 }
 
@@ -357,6 +445,8 @@ static void files_that_are_not_manifests_stay(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_manifest_tells_of_every_picture),
+        cmocka_unit_test(the_view_leads_to_the_bodies),
+        cmocka_unit_test(the_view_names_the_files_of_the_runs),
         cmocka_unit_test(a_manifest_names_no_place),
         cmocka_unit_test(nothing_is_drawn_twice),
         cmocka_unit_test(what_is_missing_or_damaged_is_drawn_again),

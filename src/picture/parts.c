@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "picture/parts.h"
+
+const char *const part_names[] = {"header", "caption", "axis", "legend", "timeline"};
+
+enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches beyond the curves */
+
+/* The heights of a line of text above and below its baseline. */
+static int above(const Font *font) { return font->pixels; }
+static int below(const Font *font) { return font->pixels * 3 / 8; }
+
+static int max(int a, int b) { return a > b ? a : b; }
+
+static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
+    parts[count] = (Part){kind, panel, rect};
+    return count + 1;
+}
+
+/* Labels at an end of an axis reach beyond it by half their size. The left axis is beside the first column only. */
+static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
+    const Rect *rect = &layout->panels[panel];
+    const int baseline = rect->top - layout->title_rise, line = layout->hairline, half = below(&layout->axis);
+    count = add(parts, count, PART_CAPTION, panel,
+                (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
+    count = add(parts, count, PART_AXIS, panel,
+                (Rect){rect->left - layout->axis.pixels, rect->bottom, rect->right + line,
+                       rect->bottom + layout->axis_drop + below(&layout->axis)});
+    if (panel % layout->columns != 0) return count;
+    return add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
+}
+
+static Rect timeline_rect(const Layout *layout) {
+    const Rect *plot = &layout->timeline;
+    const int foot = max(layout->axis.glyphs != NULL ? layout->axis_drop + below(&layout->axis) : 0, MARK_REACH);
+    const int top = layout->method.glyphs != NULL ? layout->key_baseline - above(&layout->method) : plot->top;
+    return (Rect){0, top < plot->top - MARK_REACH ? top : plot->top - MARK_REACH, layout->width, plot->bottom + foot};
+}
+
+int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
+    const Layout *layout = &picture->layout;
+    const bool text = layout->axis.glyphs != NULL;
+    int count = 0;
+    if (text)
+        count = add(parts, count, PART_HEADER, -1,
+                    (Rect){0, 0, layout->width, layout->header_baseline + below(&layout->scene)});
+    for (int panel = 0; text && panel < picture->panel_count; panel++)
+        count = add_panel(parts, count, layout, panel);
+    if (layout->legend_baseline > 0)
+        count = add(parts, count, PART_LEGEND, -1,
+                    (Rect){layout->panels[0].left, layout->legend_baseline - above(&layout->axis), layout->width,
+                           layout->legend_baseline + (layout->legend_rows - 1) * layout->legend_pitch +
+                               below(&layout->axis)});
+    if (picture->curves != NULL) count = add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));
+    return count;
+}
