@@ -73,10 +73,25 @@ static void name_parts(Naming *naming) {
         name_rectangle(naming, view->parts[i].rect, subjects[view->parts[i].kind], view->parts[i].panel);
 }
 
+bool naming_knows_bodies(const Naming *naming, int panel) {
+    const NamingScene *scene = naming->scene;
+    return !scene->view->follows && scene->runs[panel][0] != NULL && scene->runs[panel][1] != NULL;
+}
+
+/* Leaves the unknown pixels of a rectangle without a name. */
+static void leave_rectangle(Naming *naming, ViewRect rect) {
+    for (int y = rect.top; y < rect.bottom; y++)
+        for (int x = rect.left; x < rect.right; x++) {
+            uint8_t *owner = &naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
+            if (*owner == OWNER_UNKNOWN) *owner = OWNER_NONE;
+        }
+}
+
 static void name_rest(Naming *naming) {
     const View *view = naming->scene->view;
     for (int i = 0; i < view->panel_count; i++) {
         ViewRect rect = view->panels[i].rect;
+        if (!naming_knows_bodies(naming, i)) leave_rectangle(naming, rect); /* a body may be what changed */
         name_rectangle(naming,
                        (ViewRect){rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER},
                        view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
@@ -127,8 +142,8 @@ bool naming_find(const NamingScene *scene, const Image *expected, const Image *a
         mark_differences(&naming, masked);
         name_parts(&naming);
     }
-    for (int panel = 0; ok && panel < view->panel_count && !view->follows; panel++)
-        ok = naming_bodies(&naming, panel, error);
+    for (int panel = 0; ok && panel < view->panel_count; panel++)
+        ok = !naming_knows_bodies(&naming, panel) || naming_bodies(&naming, panel, error);
     if (ok) name_rest(&naming);
     for (int i = 0; ok && i < changes->regions.kept; i++) name_region(&naming, i);
     free(naming.owners);

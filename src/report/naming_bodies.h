@@ -5,7 +5,7 @@
 #include "report/naming.h"
 
 /* Owners of differing pixels: CHANGE i is OWNER_FIRST + i. */
-enum { OWNER_EQUAL, OWNER_UNKNOWN, OWNER_FIRST };
+enum { OWNER_NONE, OWNER_UNKNOWN, OWNER_FIRST };
 
 typedef struct Naming {
     const NamingScene *scene;
@@ -23,5 +23,8 @@ int naming_add(Naming *naming, const Change *change);
 int64_t naming_take_rectangle(Naming *naming, ViewRect rect, int change);
 int64_t naming_take_box(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change);
 
-/* Names the bodies of a panel: those whose states differ, then those whose pixels do. */
+/* Whether the bodies of a panel are known. */
+bool naming_knows_bodies(const Naming *naming, int panel);
+
+/* Names the bodies of a panel: those whose states differ, then those whose pixels do. They must be known. */
 bool naming_bodies(Naming *naming, int panel, Error *error);

@@ -3,6 +3,8 @@
 
 #include "common/hash.h"
 #include "common/parallel.h"
+#include "report/regression_causes.h"
+#include "report/regression_changes.h"
 #include "report/regression_states.h"
 
 #include <assert.h>
@@ -15,8 +17,10 @@ static bool within(const RegressionOptions *options, const ImageDifference *diff
            (double)difference->pixels <= options->max_share * (double)difference->counted;
 }
 
-static bool judge_pixels(const RegressionOptions *options, RegressionFrame *frame, const Image *expected,
-                         const Image *actual, Error *error) {
+static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                         const Image *const images[SIDES], Error *error) {
+    const RegressionOptions *options = &regression->options;
+    const Image *expected = images[EXPECTED], *actual = images[ACTUAL];
     uint8_t *masked = NULL;
     bool has_mask = options->mask != NULL && options->mask->count > 0;
     if (has_mask && (masked = mask_make(options->mask, expected->width, expected->height, frame->at[EXPECTED]->path,
@@ -28,21 +32,22 @@ static bool judge_pixels(const RegressionOptions *options, RegressionFrame *fram
                     : difference->equal           ? PIXELS_EQUAL
                     : within(options, difference) ? PIXELS_WITHIN
                                                   : PIXELS_DIFFER;
+    bool ok = !difference->same_size || difference->equal ||
+              regression_find_changes(regression, frame, data, images, masked, error);
     free(masked);
-    return true;
+    return ok;
 }
 
-static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     Image *images[SIDES] = {NULL, NULL};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         RegressionFile *file = &frame->files[side];
-        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, options->max_pixels, error);
+        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, regression->options.max_pixels, error);
         ok = images[side] != NULL;
         if (ok) file->width = images[side]->width, file->height = images[side]->height;
     }
-    ok = ok && judge_pixels(options, frame, images[EXPECTED], images[ACTUAL], error);
+    ok = ok && judge_pixels(regression, frame, data, (const Image *const[SIDES]){images[EXPECTED], images[ACTUAL]}, error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }
@@ -60,14 +65,14 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
     return true;
 }
 
-static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
+static bool judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     const RegressionOptions *options = &regression->options;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
     regression_judge_states(regression, frame, data);
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     bool same_bytes = a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0;
-    if (!same_bytes) return decode_and_judge(options, frame, data, error);
+    if (!same_bytes) return decode_and_judge(regression, frame, data, error);
     frame->pixels = PIXELS_EQUAL;
     frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
     return true;
@@ -75,7 +80,7 @@ static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t 
 
 /* If a frame cannot be read, the others are still compared: the reported error must not depend on the threads. */
 static bool compare_frame(void *context, int i, Error *error) {
-    const Regression *regression = context;
+    Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
     Error read_error = {0};
     uint8_t *data[SIDES] = {NULL, NULL};
@@ -122,7 +127,11 @@ static void count_frame(Regression *regression, int i) {
     regression->by_verdict[frame->pixels]++;
     if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
     if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
-    regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
+    if (pictures && frame->other_view && frame->states != STATES_DIFFER) {
+        regression->view++;
+        return;
+    }
+    regression->elsewhere += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
     if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
     regression->unknown += pictures && frame->states == STATES_UNKNOWN;
 }
@@ -201,10 +210,9 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
               refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
-    if (ok)
-        count(regression);
-    else
-        regression_free(regression);
+    if (ok) count(regression);
+    ok = ok && regression_find_causes(regression, error);
+    if (!ok) regression_free(regression);
     return ok;
 }
 
@@ -213,9 +221,14 @@ void regression_free(Regression *regression) {
         free(regression->runs[i].name);
         free(regression->runs[i].differs);
     }
-    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].read_error);
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++) {
+        free(regression->frames[i].read_error);
+        free(regression->frames[i].changes);
+    }
     free(regression->frames);
     free(regression->runs);
+    free(regression->causes);
+    shown_free(&regression->shown);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};
 }

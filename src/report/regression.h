@@ -7,6 +7,8 @@
 #include "image/image_compare.h"
 #include "image/mask.h"
 #include "image/sequence.h"
+#include "report/change.h"
+#include "report/shown.h"
 #include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
@@ -32,6 +34,19 @@ typedef enum PixelVerdict {
    difference of pixels is then not attributed to the renderer. */
 typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
 
+/* Frames that differ for the same reason. */
+typedef struct RegressionCause {
+    char what[224];    /* "body 7 moved" */
+    double most;       /* pixels, of movements; 0: none */
+    int count;         /* frames */
+    char frames[112];  /* "frames 5 to 29", "frame 3", "frames 0, 2 to 4, ..." */
+    bool of_view;      /* the camera differs */
+    int last, written; /* while frames are added: the last one, and the length of `frames` without it */
+    int ranges;
+} RegressionCause;
+
+enum { CAUSES_MAX = 32 };
+
 /* A file as it was when compared. */
 typedef struct RegressionFile {
     uint64_t hash; /* XXH3 of its bytes */
@@ -48,6 +63,8 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     double flip;      /* image/flip.h, measured by the report; else NaN */
     bool run_differs; /* a trajectory of its scene differs in any frame */
+    bool other_view;  /* the cameras of its pictures differ, so their regions have no names */
+    FrameChanges *changes; /* of different pixels; else NULL */
     bool shown;       /* in the report */
     char *read_error; /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
@@ -71,8 +88,12 @@ typedef struct Regression {
     int failed;                               /* frames */
     int by_verdict[6];                        /* frames, by PixelVerdict */
     int renderer, physics, unknown;           /* frames by cause of the difference */
+    int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
+    Shown shown;
+    int cause_count, causes_left_out; /* more than CAUSES_MAX */
+    RegressionCause *causes;          /* different cameras first, then by first frame */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file
@@ -86,7 +107,8 @@ bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
 const char *frame_name(const RegressionFrame *frame); /* of the expected file; of an extra frame, the actual one */
 
-/* "equal", "within tolerance", "renderer changed", "physics changed", "pictures differ", "missing", "extra" */
+/* "equal", "within tolerance", "renderer changed", "physics changed" (states of this frame differ), "view changed" (the
+   camera does), "run changed" (states of other frames do), "pictures differ", "missing", "extra" */
 const char *frame_verdict(const RegressionFrame *frame);
 
 /* One line of text: how a frame or a run differs. */
@@ -95,6 +117,7 @@ typedef struct RegressionText {
 } RegressionText;
 RegressionText frame_words(const RegressionFrame *frame);
 RegressionText run_words(const RegressionRun *run);
+RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
 /* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
 RegressionText regression_verdict(const Regression *regression);

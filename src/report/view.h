@@ -34,3 +34,13 @@ typedef struct View {
     bool marks;   /* contacts, arrows, trails or ghosts may be drawn over the bodies */
     bool follows; /* the camera moves from frame to frame, and the panels' cameras are those of no certain frame */
 } View;
+
+/* Reads the view from a manifest. False with error set if the file is missing, damaged, or has no view. Not thread-safe
+   (report/json_read.h). */
+bool view_read(View *view, const char *path, Error *error);
+
+/* How two views differ: "the camera differs: 36 and 27.5 pixels/m". Empty: they are equal. Parts do not count. */
+typedef struct ViewText {
+    char text[192];
+} ViewText;
+ViewText view_difference(const View *expected, const View *actual);

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/regression_changes.h"
+
+#include "report/naming.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The frame number of a picture of a stored frame; -1 for others: cards, interpolated poses, other programs. */
+static int64_t stored_frame(const uint8_t *data, size_t size) {
+    char text[32];
+    static const char *const others[] = {"Part", "Card"};
+    for (int i = 0; i < 2; i++) {
+        image_find_text(data, size, others[i], text, sizeof text);
+        if (text[0] != '\0') return -1;
+    }
+    image_find_text(data, size, "Frame", text, sizeof text);
+    return text[0] >= '0' && text[0] <= '9' ? strtoll(text, NULL, 10) : -1;
+}
+
+/* Whether the run has this frame, and the state that the picture names for the panel: then the picture shows it. An
+   overlay has more states than panels, and a difference one more; so any of them will do. */
+static bool is_shown(const Trajectory *run, int64_t frame, const char *states) {
+    char hash[20];
+    if (run == NULL || frame < 0 || run->frames < 1) return false;
+    int at = frame < run->frames ? (int)frame : run->frames - 1;
+    snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, at));
+    return strstr(states, hash) != NULL;
+}
+
+static bool name_changes(const ShownFolder *const folders[SIDES], const RegressionFrame *frame,
+                         uint8_t *const data[SIDES], const Image *const images[SIDES], const uint8_t *masked,
+                         FrameChanges *changes, Error *error) {
+    const View *view = &folders[EXPECTED]->view;
+    NamingScene scene = {.view = view};
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        char states[512];
+        size_t size = frame->files[side].size;
+        int64_t number = stored_frame(data[side], size);
+        image_find_text(data[side], size, "State", states, sizeof states);
+        if (side == EXPECTED) scene.frame = (int)number;
+        for (int i = 0; i < view->panel_count; i++)
+            if (number == scene.frame && is_shown(folders[side]->runs[i], number, states))
+                scene.runs[i][side] = folders[side]->runs[i];
+    }
+    return naming_find(&scene, images[EXPECTED], images[ACTUAL], masked, changes, error);
+}
+
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
+    const ShownFolder *folders[SIDES];
+    FrameChanges *changes = frame->changes = calloc(1, sizeof *frame->changes);
+    if (changes == NULL) return error_memory(error, frame_name(frame));
+    memset(changes->region_change, -1, sizeof changes->region_change);
+    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &changes->regions, error))
+        return false;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path)) == NULL)
+            return error_memory(error, frame_name(frame));
+    const View *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
+    if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
+    if (b->width != a->width || b->height != a->height) return true;
+    frame->other_view = view_difference(a, b).text[0] != '\0';
+    if (frame->other_view) return true;
+    return name_changes(folders, frame, data, images, masked, changes, error);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the pictures of a folder show, for the naming of differences: the view from manifest.json, and the runs that it
+   names. Read when a picture of the folder first differs, and kept. */
+#pragma once
+#include "report/view.h"
+
+#include <stdbool.h>
+
+typedef struct ShownFolder {
+    char *path; /* with its slash; empty for the current folder */
+    View view;  /* width 0: unknown */
+    Trajectory *runs[VIEW_PANELS_MAX]; /* of the panels; NULL: unknown. Panels of the same file share one. */
+    struct ShownFolder *next;
+} ShownFolder;
+
+typedef struct Shown {
+    ShownFolder *first;
+} Shown;
+
+/* The folder of a picture. Thread-safe. NULL if out of memory; a folder that has no readable manifest or run has no view
+   or run. */
+const ShownFolder *shown_find(Shown *shown, const char *picture);
+void shown_free(Shown *shown);
