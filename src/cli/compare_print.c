@@ -70,7 +70,8 @@ static void print_difference(const Regression *regression) {
     int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     print_first(regression);
     print_causes(regression);
-    if (different > 0) printf("%d of %d frame%s differ%s\n", different, compared, plural(compared), different == 1 ? "s" : "");
+    if (different > 0)
+        printf("%d of %d frame%s differ%s\n", different, compared, plural(compared), different == 1 ? "s" : "");
     RegressionText begin = regression_begin(regression);
     if (begin.text[0] != '\0') printf("%s\n", begin.text);
     printf("verdict: %s\n", regression_verdict(regression).text);

@@ -6,10 +6,17 @@
 
 typedef double Colours[BOX_PARTS][3]; /* BOX_OUTSIDE is unused: each pixel has its own */
 
-static const double ACCEPTED = 0.5;   /* of the squared difference, at least, an explanation must remove */
-static const double FINEST = 1.0 / 256; /* pixels; the last step of a search */
-static const double BAND_SHARE = 0.13; /* first guess of a band's thickness / shorter side */
-enum { SEARCH_ROUNDS = 60 };
+static const double ACCEPTED = 0.35;     /* of the squared difference, at least, an explanation must remove */
+static const double FINEST = 1.0 / 256;  /* pixels; the last step of a search */
+static const double BAND_SHARE = 0.13;   /* first guess of a band's thickness / shorter side */
+static const double CLEAR = 0.05;        /* what a clear explanation may leave of the squared difference */
+static const double COLOUR_BETTER = 0.1; /* what colours may leave of a clear explanation's rest */
+static const double STEP_GAIN = 0.995;   /* what a step of a search may leave: smaller gains are noise */
+static const double MUCH_BETTER = 0.9;   /* what a longer movement may leave of a shorter one's rest */
+static const double NOISE = 0.1;         /* squared difference of a pixel below which two looks are equal */
+static const double CORNER_SHARE = 0.11,
+                    USUAL_CORNER = 3; /* the same for the radius of a corner; its limit in pixels */
+enum { SEARCH_ROUNDS = 60, SEARCHES = 3, STARTS_MAX = MOVEMENT_STARTS_MAX + 12 };
 
 /* Solves the symmetric 3 x 3 system for three right-hand sides, by elimination. The diagonal is positive. */
 static void solve(double m[3][3], double rhs[3][3]) {
@@ -33,6 +40,7 @@ static void fit_colours(const BoxModel *box, const FitPixels *pixels, bool diffe
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
         double shares[BOX_PARTS];
+        if (box_hides(box, p->x, p->y)) continue;
         box_shares(box, p->x, p->y, shares);
         if (shares[BOX_OUTSIDE] >= 1) continue;
         for (int row = 0; row < 3; row++) {
@@ -52,6 +60,7 @@ static double left_over(const BoxModel *from, const BoxModel *to, const Colours 
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
         double a[BOX_PARTS], b[BOX_PARTS];
+        if (box_hides(from, p->x, p->y) || box_hides(to, p->x, p->y)) continue;
         box_shares(from, p->x, p->y, a);
         box_shares(to, p->x, p->y, b);
         for (int c = 0; c < 3; c++) {
@@ -70,6 +79,7 @@ static double look_error(const BoxModel *box, const FitPixels *pixels, Colours c
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
         double shares[BOX_PARTS];
+        if (box_hides(box, p->x, p->y)) continue;
         box_shares(box, p->x, p->y, shares);
         if (shares[BOX_OUTSIDE] >= 1) continue;
         for (int c = 0; c < 3; c++) {
@@ -88,6 +98,7 @@ static double colour_left_over(const BoxModel *box, const FitPixels *pixels) {
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
         double shares[BOX_PARTS];
+        if (box_hides(box, p->x, p->y)) continue;
         box_shares(box, p->x, p->y, shares);
         for (int c = 0; c < 3; c++) {
             double left = p->difference[c];
@@ -106,6 +117,7 @@ typedef struct Search {
     bool look; /* judged by look_error() of the first picture, otherwise by left_over() */
     int count;
     double scale[3]; /* of a step in each parameter */
+    double gain;     /* a step must remove more than this squared difference: of equal explanations, the first counts */
     void (*apply)(BoxModel *box, const double *parameters);
 } Search;
 
@@ -124,7 +136,7 @@ static double search_best(Search *search, double *parameters, double step, BoxMo
             double old = parameters[i / 2];
             parameters[i / 2] += (i % 2 == 0 ? step : -step) * search->scale[i / 2];
             double error = search_error(search, parameters, box);
-            if (error < best)
+            if (error < STEP_GAIN * best - search->gain)
                 best = error, better = true;
             else
                 parameters[i / 2] = old;
@@ -138,74 +150,117 @@ static double search_best(Search *search, double *parameters, double step, BoxMo
 static void apply_look(BoxModel *box, const double *parameters) {
     box->line = fmax(box->line + parameters[0], 0);
     box->band = box->band > 0 ? fmax(box->band + parameters[1], box->line) : 0;
+    box->radius = fmin(fmax(box->radius + parameters[2], 0), fmin(box->half_width, box->half_height));
 }
 
+/* Along the local axes: a thin box is easy to place across, and hard along. */
 static void apply_movement(BoxModel *box, const double *parameters) {
     double cosine = cos(parameters[2]), sine = sin(parameters[2]), old = box->cosine;
-    box->x += parameters[0];
-    box->y += parameters[1];
+    box->x += parameters[0] * box->cosine - parameters[1] * box->sine;
+    box->y -= parameters[0] * box->sine + parameters[1] * box->cosine;
     box->cosine = old * cosine - box->sine * sine;
     box->sine = box->sine * cosine + old * sine;
 }
 
 /* Fits line width, band and colours to the first picture. */
 static BoxModel fit_look(const BoxModel *box, const FitPixels *pixels, Colours colours) {
-    static const double lines[] = {0, 1, 1.5, 2.2, 3, 4.5, 7};
+    static const double lines[] = {1, 1.5, 2.2, 3, 4.5, 7, 0};
     double side = 2 * fmin(box->half_width, box->half_height), least = INFINITY;
     BoxModel best = *box;
     for (int i = 0; i < 14; i++) {
         BoxModel tried = *box;
         tried.line = lines[i / 2];
         tried.band = i % 2 == 0 ? 0 : tried.line + BAND_SHARE * side;
+        tried.radius = fmin(CORNER_SHARE * side, USUAL_CORNER);
         double error = look_error(&tried, pixels, colours);
-        if (error < least) least = error, best = tried;
+        if (error < least - NOISE * pixels->count) least = error, best = tried;
     }
-    Search search = {.from = &best, .pixels = pixels, .look = true, .count = 2, .scale = {1, 1}, .apply = apply_look};
+    Search search = {
+        .from = &best, .pixels = pixels, .look = true, .count = 3, .scale = {1, 1, 1}, .apply = apply_look};
+    search.gain = NOISE * pixels->count;
     BoxModel fitted;
-    search_best(&search, (double[2]){0, 0}, 0.5, &fitted);
+    search_best(&search, (double[3]){0, 0, 0}, 0.5, &fitted);
     memcpy(colours, search.colours, sizeof search.colours);
     look_error(&fitted, pixels, colours);
     return fitted;
 }
 
-/* Returns what the best movement leaves; `search` has the box and its colours. */
-static double fit_movement(Search *search, const double (*starts)[2], int start_count, double parameters[3]) {
+/* Returns what the best movement leaves; `search` has the box and its colours. Searches from the best starts. */
+static double fit_movement(Search *search, const double (*starts)[3], int start_count, double parameters[3]) {
     BoxModel box;
+    bool used[STARTS_MAX] = {false};
     parameters[0] = parameters[1] = parameters[2] = 0;
-    double least = search_error(search, parameters, &box);
-    for (int i = 0; i < start_count; i++) {
-        double tried[3] = {starts[i][0], starts[i][1], 0}, error = search_error(search, tried, &box);
-        if (error < least) least = error, memcpy(parameters, tried, sizeof tried);
+    double least = search_best(search, parameters, 1, &box);
+    for (int tries = 0; tries < SEARCHES && least > 0; tries++) {
+        double nearest = INFINITY, tried[3] = {0, 0, 0};
+        int best = -1;
+        for (int i = 0; i < start_count; i++) {
+            double error = used[i] ? INFINITY : search_error(search, starts[i], &box);
+            if (error < nearest) nearest = error, best = i;
+        }
+        if (best < 0) break;
+        used[best] = true;
+        memcpy(tried, starts[best], sizeof tried);
+        double error = search_best(search, tried, 2, &box);
+        if (error < MUCH_BETTER * least) least = error, memcpy(parameters, tried, sizeof tried);
     }
-    return search_best(search, parameters, 1, &box);
+    return least;
 }
 
-static double total_of(const FitPixels *pixels) {
+/* The given starts along the local axes, and some steps along each. Returns their number. */
+static int all_starts(const BoxModel *box, const double (*given)[2], int count, double starts[STARTS_MAX][3]) {
+    static const double steps[] = {2.5, 6, 15};
+    for (int i = 0; i < count; i++) {
+        starts[i][0] = given[i][0] * box->cosine - given[i][1] * box->sine;
+        starts[i][1] = -given[i][0] * box->sine - given[i][1] * box->cosine;
+        starts[i][2] = 0;
+    }
+    for (int i = 0; i < STARTS_MAX - MOVEMENT_STARTS_MAX; i++) {
+        double step = i % 2 == 0 ? steps[i / 4] : -steps[i / 4];
+        bool along = i / 2 % 2 == 0;
+        starts[count][0] = along ? step : 0, starts[count][1] = along ? 0 : step, starts[count++][2] = 0;
+    }
+    return count;
+}
+
+static double total_of(const BoxModel *box, const FitPixels *pixels) {
     double sum = 0;
     for (int i = 0; i < pixels->count; i++)
-        for (int c = 0; c < 3; c++) sum += pixels->list[i].difference[c] * pixels->list[i].difference[c];
+        for (int c = 0; c < 3 && !box_hides(box, pixels->list[i].x, pixels->list[i].y); c++)
+            sum += pixels->list[i].difference[c] * pixels->list[i].difference[c];
     return sum;
 }
 
+/* Movement and line width have fewer parameters than colours: where one of them is clear, colours must explain far more. */
+static int choose(const double left[3], double total) {
+    int best = left[1] < left[0] ? 1 : 0;
+    double better = left[best] < CLEAR * total ? COLOUR_BETTER : 1;
+    if (left[2] < better * left[best]) best = 2;
+    return left[best] < (1 - ACCEPTED) * total ? best : 3;
+}
+
 BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*starts)[2], int start_count) {
-    BodyFit fit = {.kind = CHANGE_OTHER, .total = total_of(pixels)};
+    static const ChangeKind kinds[4] = {CHANGE_MOVED, CHANGE_LINE_WIDTH, CHANGE_COLOUR, CHANGE_OTHER};
+    BodyFit fit = {.kind = CHANGE_OTHER, .total = total_of(box, pixels)};
     if (pixels->count == 0 || fit.total <= 0) return fit;
-    double movement[3], line[2] = {0, 0};
+    double movement[3], line[3] = {0, 0, 0}, all[STARTS_MAX][3];
     Search search = {.pixels = pixels};
     BoxModel from = fit_look(box, pixels, search.colours), to;
+    int count = all_starts(box, starts, start_count, all);
     search.from = &from;
     search.count = 3, search.apply = apply_movement;
     search.scale[0] = search.scale[1] = 1;
     search.scale[2] = 1 / fmax(sqrt(box->half_width * box->half_width + box->half_height * box->half_height), 1);
-    double left[3] = {fit_movement(&search, starts, start_count, movement)};
+    double left[3] = {fit_movement(&search, all, count, movement)};
     search.count = 2, search.apply = apply_look;
     left[1] = search_best(&search, line, 0.5, &to);
     left[2] = colour_left_over(&from, pixels);
-    static const ChangeKind kinds[3] = {CHANGE_MOVED, CHANGE_LINE_WIDTH, CHANGE_COLOUR};
-    int best = left[1] < left[0] ? 1 : 0;
-    if (left[2] < left[best]) best = 2;
-    fit.explained = fit.total - left[best];
-    if (left[best] < (1 - ACCEPTED) * fit.total) fit.kind = kinds[best];
-    if (fit.kind == CHANGE_MOVED) fit.right = movement[0], fit.up = -movement[1], fit.turn = movement[2];
+    int best = choose(left, fit.total);
+    fit.kind = kinds[best];
+    if (best < 3) fit.explained = fit.total - left[best];
+    if (fit.kind != CHANGE_MOVED) return fit;
+    to = from;
+    apply_movement(&to, movement);
+    fit.right = to.x - from.x, fit.up = from.y - to.y, fit.turn = movement[2];
     return fit;
 }

@@ -9,13 +9,13 @@
 
 #include <stdint.h>
 
-enum { FIT_PIXELS_MAX = 8000 };
+enum { FIT_PIXELS_MAX = 8000, MOVEMENT_STARTS_MAX = 8 };
 
 /* A pixel near the box; colours are 0..255. */
 typedef struct FitPixel {
-    double x, y;           /* centre */
+    double x, y;                     /* centre */
     double before[3], difference[3]; /* colour in the first picture; second minus first */
-    double behind[3];      /* what a box that moves away uncovers, as far as known */
+    double behind[3];                /* what a box that moves away uncovers, as far as known */
 } FitPixel;
 
 typedef struct FitPixels {
@@ -29,5 +29,6 @@ typedef struct BodyFit {
     double total, explained; /* squared differences */
 } BodyFit;
 
-/* `starts`: movements (pixels right, down) from which the search begins besides (0, 0). */
+/* `starts`: movements (pixels right, down) from which the search begins besides (0, 0); at most
+   MOVEMENT_STARTS_MAX. */
 BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*starts)[2], int start_count);

@@ -9,9 +9,18 @@ static void to_local(const BoxModel *box, double x, double y, double *along, dou
     *up = -box->sine * (x - box->x) - box->cosine * (y - box->y);
 }
 
+bool box_hides(const BoxModel *box, double x, double y) {
+    static const double RING = 0.32, BAR = 0.06; /* / side; a little more than picture/body.c draws */
+    double along, up, side = 2 * fmin(box->half_width, box->half_height);
+    if (!box->target) return false;
+    to_local(box, x, y, &along, &up);
+    double ring = RING * side + 1, bar = BAR * side + 1;
+    return along * along + up * up < ring * ring || (fabs(along) < bar && up > 0);
+}
+
 static double edge_distance(const BoxModel *box, double along, double up) {
-    double x = fabs(along) - box->half_width, y = fabs(up) - box->half_height;
-    return x > 0 && y > 0 ? sqrt(x * x + y * y) : fmax(x, y);
+    double x = fabs(along) - box->half_width + box->radius, y = fabs(up) - box->half_height + box->radius;
+    return (x > 0 && y > 0 ? sqrt(x * x + y * y) : fmax(x, y)) - box->radius;
 }
 
 double box_distance(const BoxModel *box, double x, double y) {

@@ -22,10 +22,10 @@ static void add(ChangeText *text, const char *format, ...) {
 }
 
 static void add_subject(ChangeText *text, const Change *change) {
-    static const char *const names[] = {[SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",
-                                        [SUBJECT_AXIS] = "axis",             [SUBJECT_LEGEND] = "legend",
-                                        [SUBJECT_TIMELINE] = "timeline",     [SUBJECT_MARKS] = "marks",
-                                        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page"};
+    static const char *const names[] = {
+        [SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",   [SUBJECT_AXIS] = "axis",
+        [SUBJECT_LEGEND] = "legend",         [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
+        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page"};
     switch (change->subject) {
     case SUBJECT_BODY: add(text, "body %d", change->body); break;
     case SUBJECT_BOMB: add(text, "bomb (body %d)", change->body); break;
@@ -58,8 +58,7 @@ static void add_amount(ChangeText *text, const Change *change) {
     if (has_right) add_pixels(text, change->right, "right", "left");
     if (has_right && has_up) add(text, " and");
     if (has_up) add_pixels(text, change->up, "up", "down");
-    if (turns)
-        add(text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned", DEGREES * fabs(change->turn));
+    if (turns) add(text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned", DEGREES * fabs(change->turn));
     if (!has_right && !has_up && !turns) add(text, " moved less than 0.01 px");
 }
 

@@ -33,19 +33,19 @@ typedef enum ChangeKind {
 typedef struct Change {
     ChangeSubject subject;
     ChangeKind kind;
-    int panel;            /* from 1; 0: of the whole picture, or the only panel */
-    int body;             /* index, or number of bodies */
-    double right, up;     /* moved: pixels, in the picture */
-    double turn;          /* moved: rad, counter-clockwise */
-    bool by_states;       /* the states of this frame differ so; otherwise measured in the pixels */
-    int64_t pixels;       /* differing */
+    int panel;        /* from 1; 0: of the whole picture, or the only panel */
+    int body;         /* index, or number of bodies */
+    double right, up; /* moved: pixels, in the picture */
+    double turn;      /* moved: rad, counter-clockwise */
+    bool by_states;   /* the states of this frame differ so; otherwise measured in the pixels */
+    int64_t pixels;   /* differing */
 } Change;
 
 /* The changes of one frame, most pixels first in each panel, and its regions. */
 typedef struct FrameChanges {
     ImageRegions regions;
     int count;
-    Change list[CHANGES_MAX];              /* [count] */
+    Change list[CHANGES_MAX];                /* [count] */
     int8_t region_change[IMAGE_REGIONS_MAX]; /* [regions.kept] the change with most pixels there; -1: unknown */
     int8_t region_others[IMAGE_REGIONS_MAX]; /* [regions.kept] number of further changes there */
 } FrameChanges;

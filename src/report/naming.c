@@ -46,15 +46,14 @@ static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double m
 
 int64_t naming_take_rectangle(Naming *naming, ViewRect rect, int change) { return take(naming, rect, NULL, 0, change); }
 
-static int nearest(double value, int low, int high) {
-    return value <= low ? low : value >= high ? high : (int)value;
-}
+static int nearest(double value, int low, int high) { return value <= low ? low : value >= high ? high : (int)value; }
 
 int64_t naming_take_box(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
     double bounds[4];
     box_bounds(box, margin + 1, bounds);
-    ViewRect inside = {nearest(floor(bounds[0]), rect.left, rect.right), nearest(floor(bounds[1]), rect.top, rect.bottom),
-                       nearest(ceil(bounds[2]), rect.left, rect.right), nearest(ceil(bounds[3]), rect.top, rect.bottom)};
+    ViewRect inside = {
+        nearest(floor(bounds[0]), rect.left, rect.right), nearest(floor(bounds[1]), rect.top, rect.bottom),
+        nearest(ceil(bounds[2]), rect.left, rect.right), nearest(ceil(bounds[3]), rect.top, rect.bottom)};
     return take(naming, inside, box, margin, change);
 }
 

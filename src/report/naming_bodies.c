@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double SEEN = 0.01;   /* pixels; the states of a body that moved less explain no pixel */
-static const double AROUND = 1.5;  /* pixels beyond its edge that a body may change */
+static const double SEEN = 0.01;     /* pixels; the states of a body that moved less explain no pixel */
+static const double AROUND = 1.5;    /* pixels beyond its edge that a body may change */
 static const double MODEL_REACH = 3; /* the same, for pixels that a fit takes in any case */
 enum { FITS = 4, CANDIDATES = 4, SINGLE = 6, PAINTED_MAX = 64 /* times the panel, by all bodies */ };
 
@@ -43,7 +43,8 @@ static bool place(const Panel *panel, const Trajectory *run, int body, BoxModel 
                       .cosine = cos(angle),
                       .sine = sin(angle),
                       .half_width = scale * (double)run->size[body].x / 2,
-                      .half_height = scale * (double)run->size[body].y / 2};
+                      .half_height = scale * (double)run->size[body].y / 2,
+                      .target = body == run->bomb};
     return true;
 }
 
@@ -108,7 +109,10 @@ static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) 
     const Trajectory *run = panel->runs[0];
     int fixed = 0, at = layer(run, body->index);
     for (int i = 0; i < run->bodies && fixed < 2; i++) fixed += run->fixed[i] != 0;
-    ChangeSubject subject = at == 2 ? SUBJECT_BOMB : at == 1 ? SUBJECT_BODY : fixed == 1 ? SUBJECT_GROUND : SUBJECT_FIXED;
+    ChangeSubject subject = at == 2      ? SUBJECT_BOMB
+                            : at == 1    ? SUBJECT_BODY
+                            : fixed == 1 ? SUBJECT_GROUND
+                                         : SUBJECT_FIXED;
     return (Change){.subject = subject, .kind = kind, .panel = panel->number + 1, .body = body->index};
 }
 
@@ -189,11 +193,11 @@ static void find_background(const Panel *panel, ViewRect rect, double colour[3])
         }
 }
 
-/* True if another body is within two pixels: what the body's smoothed edge is drawn over is then not known. */
+/* True if another body is within a pixel: what the body's smoothed edge is drawn over is then not known. */
 static bool is_crowded(const Panel *panel, int x, int y, int self) {
     const ViewRect rect = panel->view->rect;
-    for (int v = y - 2; v <= y + 2; v++)
-        for (int u = x - 2; u <= x + 2; u++) {
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++) {
             if (u < rect.left || v < rect.top || u >= rect.right || v >= rect.bottom) continue;
             int top = panel->naming->tops[pixel_at(panel, u, v)];
             if (top >= 0 && top != self) return true;
@@ -236,16 +240,13 @@ static void add_pixel(Panel *panel, int self, int x, int y, const double backgro
         behind_edge(panel, box, x, y, pixel->behind);
 }
 
-/* Far inside, boxes are of one colour; a bomb has its target there, which no model knows. */
-static double depth_of(const BoxModel *box, bool bomb) {
-    double side = 2 * fmin(box->half_width, box->half_height);
-    return bomb ? fmax(0.15 * side, 2) : fmax(0.25 * side, 8);
-}
+/* Far inside, boxes are of one colour. */
+static double depth_of(const BoxModel *box) { return fmax(0.5 * fmin(box->half_width, box->half_height), 8); }
 
 /* Takes every n-th row if there are too many pixels. */
 static void collect(Panel *panel, int self, ViewRect rect) {
     const BoxModel *box = &panel->bodies[self].box[0];
-    double depth = depth_of(box, panel->bodies[self].index == panel->runs[0]->bomb), background[3];
+    double depth = depth_of(box), background[3];
     find_background(panel, rect, background);
     for (int stride = 1;; stride *= 2) {
         bool full = false;
@@ -279,15 +280,24 @@ static ViewRect join(ViewRect a, ViewRect b) {
                       a.right > b.right ? a.right : b.right, a.bottom > b.bottom ? a.bottom : b.bottom};
 }
 
+/* How far a side moved that now is where the changes end; 0 for a side that the panel does not show. */
+static double start_of(double side, double changed, int low, int high) {
+    return side > low && side < high ? changed - side : 0;
+}
+
 /* A body that moved far changes the picture at its old and its new place: the bounds of all changes show how far. */
 static BodyFit fit(Panel *panel, int self, ViewRect changed) {
     const BoxModel *box = &panel->bodies[self].box[0];
-    double bounds[4], starts[8][2];
+    const ViewRect *rect = &panel->view->rect;
+    double bounds[4], starts[MOVEMENT_STARTS_MAX][2];
     int count = 0;
     box_bounds(box, 0, bounds);
-    const double x[3] = {0, changed.left - bounds[0], changed.right - bounds[2]};
-    const double y[3] = {0, changed.top - bounds[1], changed.bottom - bounds[3]};
-    for (int i = 1; i < 9; i++) starts[count][0] = x[i % 3], starts[count++][1] = y[i / 3];
+    const double x[3] = {0, start_of(bounds[0], changed.left, rect->left, rect->right),
+                         start_of(bounds[2], changed.right, rect->left, rect->right)};
+    const double y[3] = {0, start_of(bounds[1], changed.top, rect->top, rect->bottom),
+                         start_of(bounds[3], changed.bottom, rect->top, rect->bottom)};
+    for (int i = 1; i < 9; i++)
+        if (x[i % 3] != 0 || y[i / 3] != 0) starts[count][0] = x[i % 3], starts[count++][1] = y[i / 3];
     collect(panel, self, join(changed, bounds_in(panel, box, MODEL_REACH)));
     return body_fit(box, panel->pixels, (const double(*)[2])starts, count);
 }
@@ -368,7 +378,8 @@ bool naming_bodies(Naming *naming, int number, Error *error) {
     for (int wanted = 0; ok && wanted < 3; wanted++) add_layer(&panel, wanted);
     if (ok && paint_tops(&panel)) {
         ok = name_moved(&panel, error);
-        for (int i = 0; ok && i < FITS && name_best(&panel); i++) {}
+        for (int i = 0; ok && i < FITS && name_best(&panel); i++) {
+        }
         if (ok) name_others(&panel);
     }
     free(panel.bodies);

@@ -43,11 +43,13 @@ static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uin
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         RegressionFile *file = &frame->files[side];
-        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, regression->options.max_pixels, error);
+        images[side] =
+            image_decode_png(data[side], file->size, frame->at[side]->path, regression->options.max_pixels, error);
         ok = images[side] != NULL;
         if (ok) file->width = images[side]->width, file->height = images[side]->height;
     }
-    ok = ok && judge_pixels(regression, frame, data, (const Image *const[SIDES]){images[EXPECTED], images[ACTUAL]}, error);
+    ok = ok &&
+         judge_pixels(regression, frame, data, (const Image *const[SIDES]){images[EXPECTED], images[ACTUAL]}, error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }

@@ -61,12 +61,12 @@ typedef struct RegressionFrame {
     StateVerdict states;
     int panel; /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;
-    double flip;      /* image/flip.h, measured by the report; else NaN */
-    bool run_differs; /* a trajectory of its scene differs in any frame */
-    bool other_view;  /* the cameras of its pictures differ, so their regions have no names */
+    double flip;           /* image/flip.h, measured by the report; else NaN */
+    bool run_differs;      /* a trajectory of its scene differs in any frame */
+    bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */
-    bool shown;       /* in the report */
-    char *read_error; /* why a picture could not be read; makes regression_run() fail */
+    bool shown;            /* in the report */
+    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
 /* A trajectory that is in both folders. */

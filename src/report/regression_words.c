@@ -84,7 +84,8 @@ RegressionText frame_words(const RegressionFrame *frame) {
 RegressionText cause_words(const RegressionCause *cause) {
     RegressionText words = {""};
     add(&words, "", "%s: %s", cause->frames, cause->what);
-    if (cause->most > 0) add(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
+    if (cause->most > 0)
+        add(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
     return words;
 }
 
@@ -94,8 +95,8 @@ RegressionText run_words(const RegressionRun *run) {
     if (d->equal) add(&words, "", "equal states");
     if (d->what[0] != '\0') add(&words, "", "%s", d->what);
     if (d->frame >= 0)
-        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance, d->angle,
-            d->speed);
+        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
+            d->angle, d->speed);
     if (d->max_frame >= 0)
         add(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
     return words;

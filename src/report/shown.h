@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 typedef struct ShownFolder {
-    char *path; /* with its slash; empty for the current folder */
-    View view;  /* width 0: unknown */
+    char *path;                        /* with its slash; empty for the current folder */
+    View view;                         /* width 0: unknown */
     Trajectory *runs[VIEW_PANELS_MAX]; /* of the panels; NULL: unknown. Panels of the same file share one. */
     struct ShownFolder *next;
 } ShownFolder;

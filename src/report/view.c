@@ -24,7 +24,8 @@ static bool read_rectangle(const JsonReader *json, const json_t *item, ViewRect 
         if (!json_is_integer(number) || numbers[i] < -MAX_SIDE || numbers[i] > MAX_SIDE || (i >= 2 && numbers[i] < 0))
             return bad(json, error, "numbers of pixels in 'rectangle'");
     }
-    *rect = (ViewRect){(int)numbers[0], (int)numbers[1], (int)(numbers[0] + numbers[2]), (int)(numbers[1] + numbers[3])};
+    *rect =
+        (ViewRect){(int)numbers[0], (int)numbers[1], (int)(numbers[0] + numbers[2]), (int)(numbers[1] + numbers[3])};
     return true;
 }
 
@@ -62,7 +63,8 @@ static bool read_part(const JsonReader *json, const json_t *item, ViewPart *part
 /* A panel lies within the picture. */
 static bool read_view(const JsonReader *json, const json_t *value, View *view, Error *error) {
     const json_t *panels = json_object_get(value, "panels"), *parts = json_object_get(value, "parts");
-    if (json_array_size(panels) < 1 || json_array_size(panels) > VIEW_PANELS_MAX || json_array_size(parts) > VIEW_PARTS_MAX)
+    if (json_array_size(panels) < 1 || json_array_size(panels) > VIEW_PANELS_MAX ||
+        json_array_size(parts) > VIEW_PARTS_MAX)
         return bad(json, error, "'panels' and 'parts' of a view");
     for (size_t i = 0; i < json_array_size(panels); i++) {
         ViewPanel *panel = &view->panels[view->panel_count];
@@ -78,7 +80,8 @@ static bool read_view(const JsonReader *json, const json_t *value, View *view, E
 }
 
 static bool read_size(const JsonReader *json, const json_t *value, View *view, Error *error) {
-    json_int_t width = json_integer_value(json_array_get(value, 0)), height = json_integer_value(json_array_get(value, 1));
+    json_int_t width = json_integer_value(json_array_get(value, 0)),
+               height = json_integer_value(json_array_get(value, 1));
     if (width < 1 || height < 1 || width > MAX_SIDE || height > MAX_SIDE) return bad(json, error, "'size' in pixels");
     view->width = (int)width, view->height = (int)height;
     return true;
@@ -146,8 +149,8 @@ ViewText view_difference(const View *expected, const View *actual) {
         }
         if (a->scale == b->scale && a->left == b->left && a->top == b->top) continue;
         snprintf(words.text, sizeof words.text,
-                 "the camera differs: %g and %g pixels/m, x = y = 0 m at pixel (%g, %g) and (%g, %g)", a->scale, b->scale,
-                 a->rect.left + a->left, a->rect.top + a->top, b->rect.left + b->left, b->rect.top + b->top);
+                 "the camera differs: %g and %g pixels/m, x = y = 0 m at pixel (%g, %g) and (%g, %g)", a->scale,
+                 b->scale, a->rect.left + a->left, a->rect.top + a->top, b->rect.left + b->left, b->rect.top + b->top);
         return words;
     }
     return words;
