@@ -3,7 +3,7 @@
 
 const char *const part_names[] = {"header", "caption", "axis", "legend", "timeline"};
 
-enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches beyond the curves */
+enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches beyond the curves, at most */
 
 /* The heights of a line of text above and below its baseline. */
 static int above(const Font *font) { return font->pixels; }
@@ -29,11 +29,20 @@ static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
     return add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
 }
 
+/* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows are higher
+   than characters. */
+static Rect legend_rect(const Layout *layout) {
+    const int middle = layout->legend_baseline - below(&layout->axis), half = layout->legend_pitch / 2 + 1;
+    return (Rect){0, middle - half, layout->width, middle + (layout->legend_rows - 1) * layout->legend_pitch + half};
+}
+
+/* The lane above the curves keeps the mark below their top where there is text, and the row of the key is above. */
 static Rect timeline_rect(const Layout *layout) {
     const Rect *plot = &layout->timeline;
-    const int foot = max(layout->axis.glyphs != NULL ? layout->axis_drop + below(&layout->axis) : 0, MARK_REACH);
-    const int top = layout->method.glyphs != NULL ? layout->key_baseline - above(&layout->method) : plot->top;
-    return (Rect){0, top < plot->top - MARK_REACH ? top : plot->top - MARK_REACH, layout->width, plot->bottom + foot};
+    const bool text = layout->axis.glyphs != NULL;
+    const int foot = text ? max(layout->axis_drop + below(&layout->axis), MARK_REACH) : MARK_REACH;
+    const int top = text ? layout->key_baseline - above(&layout->method) : plot->top - layout->left;
+    return (Rect){0, top, layout->width, plot->bottom + foot};
 }
 
 int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
@@ -43,13 +52,8 @@ int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
     if (text)
         count = add(parts, count, PART_HEADER, -1,
                     (Rect){0, 0, layout->width, layout->header_baseline + below(&layout->scene)});
-    for (int panel = 0; text && panel < picture->panel_count; panel++)
-        count = add_panel(parts, count, layout, panel);
-    if (layout->legend_baseline > 0)
-        count = add(parts, count, PART_LEGEND, -1,
-                    (Rect){layout->panels[0].left, layout->legend_baseline - above(&layout->axis), layout->width,
-                           layout->legend_baseline + (layout->legend_rows - 1) * layout->legend_pitch +
-                               below(&layout->axis)});
+    for (int panel = 0; text && panel < picture->panel_count; panel++) count = add_panel(parts, count, layout, panel);
+    if (layout->legend_baseline > 0) count = add(parts, count, PART_LEGEND, -1, legend_rect(layout));
     if (picture->curves != NULL) count = add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));
     return count;
 }

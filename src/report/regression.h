@@ -66,6 +66,7 @@ typedef struct RegressionFrame {
     bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */
     bool shown;            /* in the report */
+    double seconds;        /* that its comparison took, wall time */
     char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
@@ -77,6 +78,7 @@ typedef struct RegressionRun {
     char scene[TRAJECTORY_NAME_SIZE];
     int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
+    double seconds;
 } RegressionRun;
 
 typedef struct Regression {
@@ -94,6 +96,7 @@ typedef struct Regression {
     Shown shown;
     int cause_count, causes_left_out; /* more than CAUSES_MAX */
     RegressionCause *causes;          /* different cameras first, then by first frame */
+    double seconds;                   /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file
