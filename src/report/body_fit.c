@@ -9,6 +9,7 @@ typedef double Colours[BOX_PARTS][3]; /* BOX_OUTSIDE is unused: each pixel has i
 static const double ACCEPTED = 0.35;     /* of the squared difference, at least, an explanation must remove */
 static const double FINEST = 1.0 / 256;  /* pixels; the last step of a search */
 static const double BAND_SHARE = 0.13;   /* first guess of a band's thickness / shorter side */
+static const double SEEN_TURN = 0.3;     /* pixels at the corners; a smaller turn is not certain */
 static const double CLEAR = 0.05;        /* what a clear explanation may leave of the squared difference */
 static const double COLOUR_BETTER = 0.1; /* what colours may leave of a clear explanation's rest */
 static const double STEP_GAIN = 0.995;   /* what a step of a search may leave: smaller gains are noise */
@@ -252,6 +253,7 @@ BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*st
     search.scale[0] = search.scale[1] = 1;
     search.scale[2] = 1 / fmax(sqrt(box->half_width * box->half_width + box->half_height * box->half_height), 1);
     double left[3] = {fit_movement(&search, all, count, movement)};
+    const double turn_scale = search.scale[2];
     search.count = 2, search.apply = apply_look;
     left[1] = search_best(&search, line, 0.5, &to);
     left[2] = colour_left_over(&from, pixels);
@@ -261,6 +263,7 @@ BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*st
     if (fit.kind != CHANGE_MOVED) return fit;
     to = from;
     apply_movement(&to, movement);
-    fit.right = to.x - from.x, fit.up = from.y - to.y, fit.turn = movement[2];
+    fit.right = to.x - from.x, fit.up = from.y - to.y;
+    if (fabs(movement[2]) > SEEN_TURN * turn_scale) fit.turn = movement[2];
     return fit;
 }

@@ -11,7 +11,9 @@ enum { NAMING_PIXELS_MAX = 20000000 }; /* larger pictures get no names of bodies
 typedef struct NamingScene {
     const View *view;                           /* of both pictures */
     const Trajectory *runs[VIEW_PANELS_MAX][2]; /* per panel: expected, actual; NULL: unknown; may be the same */
-    int frame;                                  /* of the runs */
+    const Trajectory
+        *outlines[VIEW_PANELS_MAX][VIEW_PANELS_MAX]; /* per panel: expected runs drawn as outlines, or NULL */
+    int frame;                                       /* of the runs */
 } NamingScene;
 
 /* Fills the changes, and the names of the regions, which must be set. masked as in image_compare_masked(). Both pictures

@@ -86,6 +86,27 @@ static size_t pixel_at(const Panel *panel, int x, int y) {
     return (size_t)y * (size_t)panel->naming->scene->view->width + (size_t)x;
 }
 
+/* The width of an outline, at most (picture/body.c). */
+static double outline_reach(const Panel *panel) {
+    const ViewRect *rect = &panel->view->rect;
+    return 3 + 0.008 * fmin(rect->right - rect->left, rect->bottom - rect->top);
+}
+
+/* Outlines of other runs are above all bodies. */
+static void paint_outlines(const Panel *panel, const Trajectory *run) {
+    const double reach = outline_reach(panel);
+    for (int body = 0; body < run->bodies; body++) {
+        BoxModel box;
+        if (run->fixed[body] || !place(panel, run, body, &box)) continue;
+        ViewRect rect = bounds_in(panel, &box, 1);
+        for (int y = rect.top; y < rect.bottom; y++)
+            for (int x = rect.left; x < rect.right; x++) {
+                double distance = box_distance(&box, x + 0.5, y + 0.5);
+                if (distance < 0.5 && distance > -reach) panel->naming->tops[pixel_at(panel, x, y)] = panel->count;
+            }
+    }
+}
+
 /* Paints the expected bodies into `tops`, half a pixel larger: with their smoothed edges. False if bodies so large and
    many are no picture of a scene. */
 static bool paint_tops(const Panel *panel) {
@@ -102,6 +123,9 @@ static bool paint_tops(const Panel *panel) {
             for (int x = rect.left; x < rect.right; x++)
                 if (box_distance(box, x + 0.5, y + 0.5) < 0.5) panel->naming->tops[pixel_at(panel, x, y)] = i;
     }
+    for (int i = 0; painted <= most && i < panel->view->outline_count; i++)
+        if (panel->naming->scene->outlines[panel->number][i] != NULL)
+            paint_outlines(panel, panel->naming->scene->outlines[panel->number][i]);
     return painted <= most;
 }
 
@@ -308,8 +332,9 @@ static void count_unknown(Panel *panel) {
     for (int y = rect.top; y < rect.bottom; y++)
         for (int x = rect.left; x < rect.right; x++) {
             size_t at = pixel_at(panel, x, y);
-            if (panel->naming->owners[at] == OWNER_UNKNOWN && panel->naming->tops[at] >= 0)
-                panel->bodies[panel->naming->tops[at]].pixels++;
+            int top = panel->naming->tops[at];
+            if (panel->naming->owners[at] == OWNER_UNKNOWN && top >= 0 && top < panel->count)
+                panel->bodies[top].pixels++;
         }
 }
 

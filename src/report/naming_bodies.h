@@ -11,7 +11,8 @@ typedef struct Naming {
     const NamingScene *scene;
     const Image *pictures[2];
     uint8_t *owners; /* [height, width] */
-    int32_t *tops;   /* [height, width] the body drawn on top in the expected picture; -1: none */
+    int32_t *tops;   /* [height, width] what is drawn on top in the expected picture: a body in the order of
+                        drawing, or (their number) an outline; -1: nothing */
     FrameChanges *changes;
 } Naming;
 

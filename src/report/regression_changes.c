@@ -19,14 +19,15 @@ static int64_t stored_frame(const uint8_t *data, size_t size) {
     return text[0] >= '0' && text[0] <= '9' ? strtoll(text, NULL, 10) : -1;
 }
 
-/* Whether the run has this frame, and the state that the picture names for the panel: then the picture shows it. An
-   overlay has more states than panels, and a difference one more; so any of them will do. */
-static bool is_shown(const Trajectory *run, int64_t frame, const char *states) {
+/* The run of this name if the picture shows it: if its state in this frame is one of those that the picture's text
+   names. An overlay has more states than panels, and a difference one more; so any of them will do. Else NULL. */
+static const Trajectory *known_run(const ShownFolder *folder, const char *name, int64_t frame, const char *states) {
+    const Trajectory *run = shown_run(folder, name);
     char hash[20];
-    if (run == NULL || frame < 0 || run->frames < 1) return false;
-    int at = frame < run->frames ? (int)frame : run->frames - 1;
-    snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, at));
-    return strstr(states, hash) != NULL;
+    if (run == NULL || frame < 0 || run->frames < 1) return NULL;
+    snprintf(hash, sizeof hash, "%016" PRIx64,
+             trajectory_frame_hash(run, frame < run->frames ? (int)frame : run->frames - 1));
+    return strstr(states, hash) != NULL ? run : NULL;
 }
 
 static bool name_changes(const ShownFolder *const folders[SIDES], const RegressionFrame *frame,
@@ -40,9 +41,12 @@ static bool name_changes(const ShownFolder *const folders[SIDES], const Regressi
         int64_t number = stored_frame(data[side], size);
         image_find_text(data[side], size, "State", states, sizeof states);
         if (side == EXPECTED) scene.frame = (int)number;
-        for (int i = 0; i < view->panel_count; i++)
-            if (number == scene.frame && is_shown(folders[side]->runs[i], number, states))
-                scene.runs[i][side] = folders[side]->runs[i];
+        for (int i = 0; number == scene.frame && i < view->panel_count; i++) {
+            const ViewPanel *panel = &view->panels[i];
+            scene.runs[i][side] = known_run(folders[side], panel->run, number, states);
+            for (int k = 0; side == EXPECTED && k < panel->outline_count; k++)
+                scene.outlines[i][k] = known_run(folders[side], panel->outlines[k], number, states);
+        }
     }
     return naming_find(&scene, images[EXPECTED], images[ACTUAL], masked, changes, error);
 }

@@ -127,7 +127,7 @@ RegressionText regression_begin(const Regression *regression) {
     RegressionText begin = {""};
     if (regression->first_run >= 0) {
         const RegressionRun *run = &regression->runs[regression->first_run];
-        add(&begin, "\n", "physics changed in %s: %s", run->name, run_words(run).text);
+        add(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
     } else if (regression->first_physics >= 0) {
         const RegressionFrame *frame = &regression->frames[regression->first_physics];
         add(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);

@@ -9,15 +9,28 @@
 
 /* Errors are not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged
    run itself. */
+static void read_run(ShownFolder *folder, const char *name) {
+    char path[PATH_MAX];
+    for (int i = 0; i < folder->run_count; i++)
+        if (strcmp(folder->names[i], name) == 0) return;
+    if (folder->run_count == VIEW_PANELS_MAX) return;
+    if (file_path(path, sizeof path, &(Error){0}, "%s%s", folder->path, name))
+        folder->runs[folder->run_count] = trajectory_read(path, &(Error){0});
+    folder->names[folder->run_count++] = name;
+}
+
 static void read_runs(ShownFolder *folder) {
     for (int i = 0; i < folder->view.panel_count; i++) {
-        char path[PATH_MAX];
-        for (int k = 0; k < i; k++)
-            if (strcmp(folder->view.panels[k].run, folder->view.panels[i].run) == 0) folder->runs[i] = folder->runs[k];
-        if (folder->runs[i] == NULL &&
-            file_path(path, sizeof path, &(Error){0}, "%s%s", folder->path, folder->view.panels[i].run))
-            folder->runs[i] = trajectory_read(path, &(Error){0});
+        const ViewPanel *panel = &folder->view.panels[i];
+        read_run(folder, panel->run);
+        for (int k = 0; k < panel->outline_count; k++) read_run(folder, panel->outlines[k]);
     }
+}
+
+const Trajectory *shown_run(const ShownFolder *folder, const char *name) {
+    for (int i = 0; i < folder->run_count; i++)
+        if (strcmp(folder->names[i], name) == 0) return folder->runs[i];
+    return NULL;
 }
 
 static ShownFolder *read_folder(const char *picture, size_t length) {
@@ -53,11 +66,7 @@ void shown_free(Shown *shown) {
     while (shown->first != NULL) {
         ShownFolder *folder = shown->first;
         shown->first = folder->next;
-        for (int i = 0; i < folder->view.panel_count; i++) {
-            bool shared = false;
-            for (int k = 0; k < i; k++) shared = shared || folder->runs[k] == folder->runs[i];
-            if (!shared) trajectory_destroy(folder->runs[i]);
-        }
+        for (int i = 0; i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
         free(folder->path);
         free(folder);
     }

@@ -7,9 +7,11 @@
 #include <stdbool.h>
 
 typedef struct ShownFolder {
-    char *path;                        /* with its slash; empty for the current folder */
-    View view;                         /* width 0: unknown */
-    Trajectory *runs[VIEW_PANELS_MAX]; /* of the panels; NULL: unknown. Panels of the same file share one. */
+    char *path; /* with its slash; empty for the current folder */
+    View view;  /* width 0: unknown */
+    int run_count;
+    const char *names[VIEW_PANELS_MAX]; /* of the files of runs, in the view */
+    Trajectory *runs[VIEW_PANELS_MAX];  /* NULL: cannot be read */
     struct ShownFolder *next;
 } ShownFolder;
 
@@ -20,4 +22,7 @@ typedef struct Shown {
 /* The folder of a picture. Thread-safe. NULL if out of memory; a folder that has no readable manifest or run has no view
    or run. */
 const ShownFolder *shown_find(Shown *shown, const char *picture);
+
+/* The run of this file name that the view names, or NULL. */
+const Trajectory *shown_run(const ShownFolder *folder, const char *name);
 void shown_free(Shown *shown);

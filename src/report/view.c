@@ -36,10 +36,15 @@ static bool read_number(const json_t *item, const char *key, double *number) {
 }
 
 static bool read_panel(const JsonReader *json, const json_t *item, ViewPanel *panel, Error *error) {
-    const char *run = json_string_value(json_array_get(json_object_get(item, "runs"), 0));
-    if (run == NULL || strlen(run) >= sizeof panel->run || strchr(run, '/') != NULL || run[0] == '.')
-        return bad(json, error, "'runs' with a file name");
-    strcpy(panel->run, run);
+    const json_t *runs = json_object_get(item, "runs");
+    if (json_array_size(runs) < 1 || json_array_size(runs) > VIEW_PANELS_MAX)
+        return bad(json, error, "'runs' of a panel");
+    for (size_t i = 0; i < json_array_size(runs); i++) {
+        const char *run = json_string_value(json_array_get(runs, i));
+        if (run == NULL || strlen(run) >= VIEW_NAME_SIZE || strchr(run, '/') != NULL || run[0] == '.')
+            return bad(json, error, "'runs' with file names");
+        strcpy(i == 0 ? panel->run : panel->outlines[panel->outline_count++], run);
+    }
     if (!read_number(item, "scale", &panel->scale) || panel->scale <= 0 || !read_number(item, "left", &panel->left) ||
         !read_number(item, "top", &panel->top))
         return bad(json, error, "'scale', 'left' and 'top'");

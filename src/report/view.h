@@ -15,7 +15,9 @@ typedef struct ViewRect {
 typedef struct ViewPanel {
     ViewRect rect;
     double scale, left, top;
-    char run[VIEW_NAME_SIZE]; /* file name of the run that it shows */
+    char run[VIEW_NAME_SIZE]; /* file name of the run whose boxes it shows filled */
+    int outline_count;
+    char outlines[VIEW_PANELS_MAX][VIEW_NAME_SIZE]; /* of those whose boxes are outlines above the others */
 } ViewPanel;
 
 typedef enum ViewPartKind { VIEW_HEADER, VIEW_CAPTION, VIEW_AXIS, VIEW_LEGEND, VIEW_TIMELINE } ViewPartKind;

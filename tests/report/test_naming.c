@@ -291,6 +291,9 @@ static FrameChanges name_changes(Stage *stage, const Seed *seed, const ImageDiff
     FrameChanges changes;
     NamingScene scene = {.view = &stage->view, .frame = stage->shot->frame};
     for (int i = 0; i < stage->view.panel_count; i++) scene.runs[i][0] = scene.runs[i][1] = stage->runs[i];
+    for (int i = 0; i < stage->view.panel_count; i++)
+        for (int k = 0; k < stage->view.panels[i].outline_count; k++)
+            scene.outlines[i][k] = stage->runs[0]; /* ghosts */
     if (seed->actual != NULL) scene.runs[seed->truth.panel - 1][1] = seed->actual;
     assert_ok(image_regions_find(stage->images[0], stage->images[1], NULL, difference, &changes.regions, &error),
               error);
