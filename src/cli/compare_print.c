@@ -20,6 +20,8 @@ static void print_names(const Regression *regression, PixelVerdict verdict, cons
 
 static const char *plural(int count) { return count == 1 ? "" : "s"; }
 
+static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
+
 /* The three largest regions. */
 static void print_regions(const FrameChanges *changes) {
     enum { SHOWN = 3 };
@@ -42,10 +44,8 @@ static void print_first(const Regression *regression) {
 
 /* What the camera explains comes first: with another view, everything else is a consequence. */
 static void print_views(const Regression *regression) {
-    const char *expected = regression->sequences[EXPECTED]->folder;
     for (int i = 0; i < regression->cause_count && regression->causes[i].of_view; i++)
-        printf("%s; render both with the same view: --view-from a run in %s\n",
-               cause_words(&regression->causes[i]).text, expected);
+        printf("%s\n", cause_words(&regression->causes[i]).text);
 }
 
 static void print_causes(const Regression *regression) {
@@ -61,17 +61,24 @@ static void print_causes(const Regression *regression) {
     if (more > 0) printf("and %d more cause%s\n", more, plural(more));
 }
 
+static void print_counts(const Regression *regression) {
+    const int *by = regression->by_verdict, runs = regression->run_count, run_failed = regression->run_failed;
+    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
+    int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
+    if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
+    if (different > 0 && run_failed > 0) printf(", ");
+    if (run_failed > 0)
+        printf("%d of %d %s %s", run_failed, runs, runs == 1 ? "trajectory" : "trajectories", differ(run_failed));
+    if (different > 0 || run_failed > 0) printf("\n");
+}
+
 static void print_difference(const Regression *regression) {
-    const int *by = regression->by_verdict;
     print_views(regression);
     print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
     print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
-    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
-    int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     print_first(regression);
     print_causes(regression);
-    if (different > 0)
-        printf("%d of %d frame%s differ%s\n", different, compared, plural(compared), different == 1 ? "s" : "");
+    print_counts(regression);
     RegressionText begin = regression_begin(regression);
     if (begin.text[0] != '\0') printf("%s\n", begin.text);
     printf("verdict: %s\n", regression_verdict(regression).text);

@@ -97,7 +97,8 @@ static void add_view(const Causes *causes, int frame) {
     if (folders[EXPECTED] == NULL || folders[ACTUAL] == NULL) return;
     ViewText words = view_difference(&folders[EXPECTED]->view, &folders[ACTUAL]->view);
     char what[sizeof causes->regression->causes->what];
-    snprintf(what, sizeof what, "%s", words.text);
+    snprintf(what, sizeof what, "%s; render with --view-from %s%s", words.text, folders[EXPECTED]->path,
+             folders[EXPECTED]->view.panels[0].run);
     add_cause(causes, frame, what, 0, true);
 }
 
