@@ -134,9 +134,9 @@ bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, c
     scan.capacity = 3 * a->width;
     scan.nodes = malloc((size_t)scan.capacity * sizeof *scan.nodes);
     scan.kept = malloc((size_t)scan.capacity * sizeof *scan.kept);
-    scan.moved = malloc((size_t)scan.capacity * sizeof *scan.moved);
+    scan.moved = calloc((size_t)scan.capacity, sizeof *scan.moved);
     scan.column_node = malloc(width * sizeof *scan.column_node);
-    scan.column_row = malloc(width * sizeof *scan.column_row);
+    scan.column_row = calloc(width, sizeof *scan.column_row);
     scan.differs = malloc(width * sizeof *scan.differs);
     bool ok = (scan.nodes != NULL && scan.kept != NULL && scan.moved != NULL && scan.column_node != NULL &&
                scan.column_row != NULL && scan.differs != NULL) ||

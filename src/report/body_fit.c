@@ -55,57 +55,46 @@ static void fit_colours(const BoxModel *box, const FitPixels *pixels, bool diffe
     memcpy(colours[BOX_LINE], rhs, sizeof rhs);
 }
 
+/* The square of what colours in these shares leave of a value. */
+static double rest(const double value[3], const double shares[BOX_PARTS], const Colours colours) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++) {
+        double left = value[c];
+        for (int part = BOX_LINE; part < BOX_PARTS; part++) left -= shares[part] * colours[part][c];
+        sum += left * left;
+    }
+    return sum;
+}
+
 /* What an explanation leaves of the differences: the box `from` with its colours becomes `to`. */
 static double left_over(const BoxModel *from, const BoxModel *to, const Colours colours, const FitPixels *pixels) {
     double sum = 0;
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
-        double a[BOX_PARTS], b[BOX_PARTS];
+        double before[BOX_PARTS], shares[BOX_PARTS], value[3];
         if (box_hides(from, p->x, p->y) || box_hides(to, p->x, p->y)) continue;
-        box_shares(from, p->x, p->y, a);
-        box_shares(to, p->x, p->y, b);
-        for (int c = 0; c < 3; c++) {
-            double left = p->difference[c] - (b[BOX_OUTSIDE] - a[BOX_OUTSIDE]) * p->behind[c];
-            for (int part = BOX_LINE; part < BOX_PARTS; part++) left -= (b[part] - a[part]) * colours[part][c];
-            sum += left * left;
-        }
+        box_shares(from, p->x, p->y, before);
+        box_shares(to, p->x, p->y, shares);
+        for (int part = 0; part < BOX_PARTS; part++) shares[part] -= before[part];
+        for (int c = 0; c < 3; c++) value[c] = p->difference[c] - shares[BOX_OUTSIDE] * p->behind[c];
+        sum += rest(value, shares, colours);
     }
     return sum;
 }
 
-/* What the box with its best colours leaves of the first picture, inside its edge. */
-static double look_error(const BoxModel *box, const FitPixels *pixels, Colours colours) {
+/* What the box with its best colours leaves of the first picture inside its edge, or of the difference. */
+static double colours_left_over(const BoxModel *box, const FitPixels *pixels, bool differences, Colours colours) {
     double sum = 0;
-    fit_colours(box, pixels, false, colours);
+    fit_colours(box, pixels, differences, colours);
     for (int i = 0; i < pixels->count; i++) {
         const FitPixel *p = &pixels->list[i];
-        double shares[BOX_PARTS];
+        double shares[BOX_PARTS], value[3];
         if (box_hides(box, p->x, p->y)) continue;
         box_shares(box, p->x, p->y, shares);
-        if (shares[BOX_OUTSIDE] >= 1) continue;
-        for (int c = 0; c < 3; c++) {
-            double left = p->before[c] - shares[BOX_OUTSIDE] * p->behind[c];
-            for (int part = BOX_LINE; part < BOX_PARTS; part++) left -= shares[part] * colours[part][c];
-            sum += left * left;
-        }
-    }
-    return sum;
-}
-
-static double colour_left_over(const BoxModel *box, const FitPixels *pixels) {
-    Colours change;
-    double sum = 0;
-    fit_colours(box, pixels, true, change);
-    for (int i = 0; i < pixels->count; i++) {
-        const FitPixel *p = &pixels->list[i];
-        double shares[BOX_PARTS];
-        if (box_hides(box, p->x, p->y)) continue;
-        box_shares(box, p->x, p->y, shares);
-        for (int c = 0; c < 3; c++) {
-            double left = p->difference[c];
-            for (int part = BOX_LINE; part < BOX_PARTS; part++) left -= shares[part] * change[part][c];
-            sum += left * left;
-        }
+        if (!differences && shares[BOX_OUTSIDE] >= 1) continue;
+        for (int c = 0; c < 3; c++)
+            value[c] = differences ? p->difference[c] : p->before[c] - shares[BOX_OUTSIDE] * p->behind[c];
+        sum += rest(value, shares, (const double(*)[3])colours);
     }
     return sum;
 }
@@ -115,7 +104,7 @@ typedef struct Search {
     const BoxModel *from;
     const FitPixels *pixels;
     Colours colours;
-    bool look; /* judged by look_error() of the first picture, otherwise by left_over() */
+    bool look; /* judged by the first picture, otherwise by left_over() */
     int count;
     double scale[3]; /* of a step in each parameter */
     double gain;     /* a step must remove more than this squared difference: of equal explanations, the first counts */
@@ -125,7 +114,7 @@ typedef struct Search {
 static double search_error(Search *search, const double *parameters, BoxModel *box) {
     *box = *search->from;
     search->apply(box, parameters);
-    return search->look ? look_error(box, search->pixels, search->colours)
+    return search->look ? colours_left_over(box, search->pixels, false, search->colours)
                         : left_over(search->from, box, search->colours, search->pixels);
 }
 
@@ -173,7 +162,7 @@ static BoxModel fit_look(const BoxModel *box, const FitPixels *pixels, Colours c
         tried.line = lines[i / 2];
         tried.band = i % 2 == 0 ? 0 : tried.line + BAND_SHARE * side;
         tried.radius = fmin(CORNER_SHARE * side, USUAL_CORNER);
-        double error = look_error(&tried, pixels, colours);
+        double error = colours_left_over(&tried, pixels, false, colours);
         if (error < least - NOISE * pixels->count) least = error, best = tried;
     }
     Search search = {
@@ -182,7 +171,7 @@ static BoxModel fit_look(const BoxModel *box, const FitPixels *pixels, Colours c
     BoxModel fitted;
     search_best(&search, (double[3]){0, 0, 0}, 0.5, &fitted);
     memcpy(colours, search.colours, sizeof search.colours);
-    look_error(&fitted, pixels, colours);
+    colours_left_over(&fitted, pixels, false, colours);
     return fitted;
 }
 
@@ -246,6 +235,7 @@ BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*st
     if (pixels->count == 0 || fit.total <= 0) return fit;
     double movement[3], line[3] = {0, 0, 0}, all[STARTS_MAX][3];
     Search search = {.pixels = pixels};
+    Colours changed;
     BoxModel from = fit_look(box, pixels, search.colours), to;
     int count = all_starts(box, starts, start_count, all);
     search.from = &from;
@@ -256,7 +246,7 @@ BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*st
     const double turn_scale = search.scale[2];
     search.count = 2, search.apply = apply_look;
     left[1] = search_best(&search, line, 0.5, &to);
-    left[2] = colour_left_over(&from, pixels);
+    left[2] = colours_left_over(&from, pixels, true, changed);
     int best = choose(left, fit.total);
     fit.kind = kinds[best];
     if (best < 3) fit.explained = fit.total - left[best];

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/change.h"
 
+#include "common/text_add.h"
+
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,26 +13,19 @@ static const double ALONG = 0.25;      /* a movement's smaller part is left out 
 static const double SEEN_TURN = 0.001; /* rad */
 static const double DEGREES = 57.29577951308232;
 
-static void add(ChangeText *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add(ChangeText *text, const char *format, ...) {
-    size_t used = strlen(text->text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text->text + used, sizeof text->text - used, format, arguments);
-    va_end(arguments);
-}
-
 static void add_subject(ChangeText *text, const Change *change) {
     static const char *const names[] = {
         [SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",   [SUBJECT_AXIS] = "axis",
         [SUBJECT_LEGEND] = "legend",         [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
         [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page"};
     switch (change->subject) {
-    case SUBJECT_BODY: add(text, "body %d", change->body); break;
-    case SUBJECT_BOMB: add(text, "bomb (body %d)", change->body); break;
-    case SUBJECT_FIXED: add(text, "static body %d", change->body); break;
-    case SUBJECT_GROUND: add(text, "ground (body %d)", change->body); break;
-    case SUBJECT_BODIES: add(text, "%d more %s", change->body, change->body == 1 ? "body" : "bodies"); break;
+    case SUBJECT_BODY: text_add(text->text, sizeof text->text, "body %d", change->body); break;
+    case SUBJECT_BOMB: text_add(text->text, sizeof text->text, "bomb (body %d)", change->body); break;
+    case SUBJECT_FIXED: text_add(text->text, sizeof text->text, "static body %d", change->body); break;
+    case SUBJECT_GROUND: text_add(text->text, sizeof text->text, "ground (body %d)", change->body); break;
+    case SUBJECT_BODIES:
+        text_add(text->text, sizeof text->text, "%d more %s", change->body, change->body == 1 ? "body" : "bodies");
+        break;
     case SUBJECT_HEADER:
     case SUBJECT_CAPTION:
     case SUBJECT_AXIS:
@@ -39,14 +33,18 @@ static void add_subject(ChangeText *text, const Change *change) {
     case SUBJECT_TIMELINE:
     case SUBJECT_MARKS:
     case SUBJECT_BACKGROUND:
-    case SUBJECT_PAGE: add(text, "%s", names[change->subject]); break;
+    case SUBJECT_PAGE: text_add(text->text, sizeof text->text, "%s", names[change->subject]); break;
     }
-    if (change->panel > 0) add(text, " of panel %d", change->panel);
+    if (change->panel > 0) text_add(text->text, sizeof text->text, " of panel %d", change->panel);
 }
 
 static void add_pixels(ChangeText *text, double pixels, const char *positive, const char *negative) {
     double size = fabs(pixels);
-    add(text, " %.*f px %s", size < 0.1 ? 2 : size < 9.95 ? 1 : 0, size, pixels > 0 ? positive : negative);
+    text_add(text->text, sizeof text->text, " %.*f px %s",
+             size < 0.1    ? 2
+             : size < 9.95 ? 1
+                           : 0,
+             size, pixels > 0 ? positive : negative);
 }
 
 /* " 0.4 px right", " 3 px right and 2 px up"; a movement along one axis has one part. */
@@ -54,12 +52,14 @@ static void add_amount(ChangeText *text, const Change *change) {
     double right = fabs(change->right), up = fabs(change->up);
     bool has_right = right >= SMALL && right >= ALONG * up, has_up = up >= SMALL && up >= ALONG * right;
     bool turns = fabs(change->turn) >= SEEN_TURN;
-    if (has_right || has_up) add(text, " moved");
+    if (has_right || has_up) text_add(text->text, sizeof text->text, " moved");
     if (has_right) add_pixels(text, change->right, "right", "left");
-    if (has_right && has_up) add(text, " and");
+    if (has_right && has_up) text_add(text->text, sizeof text->text, " and");
     if (has_up) add_pixels(text, change->up, "up", "down");
-    if (turns) add(text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned", DEGREES * fabs(change->turn));
-    if (!has_right && !has_up && !turns) add(text, " moved less than 0.01 px");
+    if (turns)
+        text_add(text->text, sizeof text->text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned",
+                 DEGREES * fabs(change->turn));
+    if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, " moved less than 0.01 px");
 }
 
 ChangeText change_words(const Change *change) {
@@ -67,22 +67,26 @@ ChangeText change_words(const Change *change) {
     add_subject(&text, change);
     switch (change->kind) {
     case CHANGE_OTHER:
-        if (change->subject <= SUBJECT_BODIES) add(&text, " changed");
+        if (change->subject <= SUBJECT_BODIES) text_add(text.text, sizeof text.text, " changed");
         break;
     case CHANGE_MOVED: add_amount(&text, change); break;
-    case CHANGE_COLOUR: add(&text, ": colour"); break;
-    case CHANGE_LINE_WIDTH: add(&text, ": line width"); break;
-    case CHANGE_APPEARED: add(&text, " only in the actual run"); break;
-    case CHANGE_DISAPPEARED: add(&text, " only in the expected run"); break;
+    case CHANGE_COLOUR: text_add(text.text, sizeof text.text, ": colour"); break;
+    case CHANGE_LINE_WIDTH: text_add(text.text, sizeof text.text, ": line width"); break;
+    case CHANGE_APPEARED: text_add(text.text, sizeof text.text, " only in the actual run"); break;
+    case CHANGE_DISAPPEARED: text_add(text.text, sizeof text.text, " only in the expected run"); break;
     }
     return text;
 }
 
 ChangeText change_cause(const Change *change) {
-    if (change->kind != CHANGE_MOVED) return change_words(change);
+    bool several = change->subject == SUBJECT_BODIES;
+    if (change->kind != CHANGE_MOVED && !several) return change_words(change);
     ChangeText text = {""};
-    add_subject(&text, change);
-    add(&text, " moved");
+    if (several)
+        text_add(text.text, sizeof text.text, "other bodies");
+    else
+        add_subject(&text, change);
+    text_add(text.text, sizeof text.text, change->kind == CHANGE_MOVED ? " moved" : " changed");
     return text;
 }
 
@@ -91,7 +95,8 @@ ChangeText region_name(const FrameChanges *changes, int region) {
     int change = changes->region_change[region], others = changes->region_others[region];
     if (change < 0) return text;
     text = change_words(&changes->list[change]);
-    if (others > 0) add(&text, ", and %d more %s", others, others == 1 ? "change" : "changes");
+    if (others > 0)
+        text_add(text.text, sizeof text.text, ", and %d more %s", others, others == 1 ? "change" : "changes");
     return text;
 }
 
@@ -99,8 +104,8 @@ ChangeText region_words(const FrameChanges *changes, int region) {
     ChangeText text = {""};
     const ImageRegion *r = &changes->regions.list[region];
     ChangeText name = region_name(changes, region);
-    add(&text, "%d x %d pixels at (%d, %d), %" PRId64 " of them %s", r->right - r->left, r->bottom - r->top, r->left,
-        r->top, r->pixels, r->pixels == 1 ? "differs" : "differ");
-    if (name.text[0] != '\0') add(&text, ": %s", name.text);
+    text_add(text.text, sizeof text.text, "%d x %d pixels at (%d, %d), %" PRId64 " of them %s", r->right - r->left,
+             r->bottom - r->top, r->left, r->top, r->pixels, r->pixels == 1 ? "differs" : "differ");
+    if (name.text[0] != '\0') text_add(text.text, sizeof text.text, ": %s", name.text);
     return text;
 }

@@ -45,9 +45,9 @@ typedef struct Change {
 typedef struct FrameChanges {
     ImageRegions regions;
     int count;
-    Change list[CHANGES_MAX];                /* [count] */
-    int8_t region_change[IMAGE_REGIONS_MAX]; /* [regions.kept] the change with most pixels there; -1: unknown */
-    int8_t region_others[IMAGE_REGIONS_MAX]; /* [regions.kept] number of further changes there */
+    Change list[CHANGES_MAX];                 /* [count] */
+    int16_t region_change[IMAGE_REGIONS_MAX]; /* [regions.kept] the change with most pixels there; -1: unknown */
+    int16_t region_others[IMAGE_REGIONS_MAX]; /* [regions.kept] number of further changes there */
 } FrameChanges;
 
 typedef struct ChangeText {

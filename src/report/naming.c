@@ -113,8 +113,8 @@ static void name_region(Naming *naming, int region) {
         others++;
         if (best < 0 || pixels[i] > pixels[best]) best = i;
     }
-    changes->region_change[region] = (int8_t)best;
-    changes->region_others[region] = (int8_t)(others > 0 ? others : 0);
+    changes->region_change[region] = (int16_t)best;
+    changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
 }
 
 static void mark_differences(Naming *naming, const uint8_t *masked) {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/regression_causes.h"
 
+#include "common/text_add.h"
+
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,37 +28,28 @@ static bool is_numbered(const Regression *regression) {
     return first != NULL;
 }
 
-static void put(RegressionCause *cause, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put(RegressionCause *cause, const char *format, ...) {
-    size_t used = strlen(cause->frames);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(cause->frames + used, sizeof cause->frames - used, format, arguments);
-    va_end(arguments);
-}
-
 static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
     if (causes->numbered)
-        put(cause, "%" PRId64, at->at[EXPECTED]->number);
+        text_add(cause->frames, sizeof cause->frames, "%" PRId64, at->at[EXPECTED]->number);
     else
-        put(cause, "%.40s", frame_name(at));
+        text_add(cause->frames, sizeof cause->frames, "%.40s", frame_name(at));
 }
 
 /* Adds a frame; frames are added in order. Neighbours form a range. */
 static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
     bool next = cause->count > 0 && frame == cause->last + 1;
     cause->last = frame;
-    if (cause->count++ == 0 && causes->numbered) put(cause, "frame ");
+    if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
     if (next && cause->ranges <= RANGES) {
         cause->frames[cause->written] = '\0';
-        put(cause, " to ");
+        text_add(cause->frames, sizeof cause->frames, " to ");
         put_name(causes, cause, frame);
         return;
     }
-    if (!next && ++cause->ranges == RANGES + 1) put(cause, " ...");
+    if (!next && ++cause->ranges == RANGES + 1) text_add(cause->frames, sizeof cause->frames, " ...");
     if (next || cause->ranges > RANGES) return;
-    if (cause->ranges > 1) put(cause, ", ");
+    if (cause->ranges > 1) text_add(cause->frames, sizeof cause->frames, ", ");
     put_name(causes, cause, frame);
     cause->written = (int)strlen(cause->frames);
 }
@@ -65,7 +57,7 @@ static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
 /* "frame 3", but "frames 3 to 5"; the number if there are too many ranges. */
 static void finish(const Causes *causes, RegressionCause *cause) {
     char whole[sizeof cause->frames];
-    if (cause->ranges > RANGES) put(cause, " (%d frames)", cause->count);
+    if (cause->ranges > RANGES) text_add(cause->frames, sizeof cause->frames, " (%d frames)", cause->count);
     if (!causes->numbered || cause->count == 1) return;
     snprintf(whole, sizeof whole, "frames%.*s", (int)sizeof whole - 7, cause->frames + strlen("frame"));
     memcpy(cause->frames, whole, sizeof whole);
