@@ -249,8 +249,9 @@ static void textures_have_no_edges(void **state) {
     uint32_t random = 1;
     for (int i = 0; i < 4 * SIDE * SIDE; i++) {
         random = random * 1664525 + 1013904223;
-        a->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(60 + (random >> 24) / 2);
-        b->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(a->pixels[i] * 21 / 20);
+        bool alpha = i % 4 == 3;
+        a->pixels[i] = (uint8_t)(alpha ? 255 : 60 + (random >> 24) / 2);
+        b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] * 21 / 20);
     }
     assert_true(difference_of(a, b).moved < SIDE * SIDE / 25);
     image_destroy(a);
@@ -265,8 +266,9 @@ static void areas_that_become_lighter_differ(void **state) {
         for (int more = 1; more <= 2; more++) {
             Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
             for (int i = 0; i < 4 * SIDE * SIDE; i++) {
-                a->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(20 + slope * (i / 4 % SIDE + i / 4 / SIDE));
-                b->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(a->pixels[i] + more);
+                bool alpha = i % 4 == 3;
+                a->pixels[i] = (uint8_t)(alpha ? 255 : 20 + slope * (i / 4 % SIDE + i / 4 / SIDE));
+                b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] + more);
             }
             assert_int_equal(difference_of(a, b).pixels, SIDE * SIDE);
             image_destroy(a);
