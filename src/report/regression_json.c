@@ -87,6 +87,7 @@ void report_write_json(FILE *file, const void *context) {
     json_put_text(&json, "expected", regression->sequences[EXPECTED]->folder);
     json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
     json_put_text(&json, "verdict", regression_verdict(regression).text);
+    json_put_text(&json, "notes", regression_notes(regression).text);
     write_limits(&json, regression);
     json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
     json_begin_array(&json, "frames", JSON_LINES);
