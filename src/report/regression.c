@@ -4,10 +4,10 @@
 #include "common/clock.h"
 #include "common/hash.h"
 #include "common/parallel.h"
-#include "image/mask_cover.h"
 #include "image/png_check.h"
 #include "report/regression_causes.h"
 #include "report/regression_changes.h"
+#include "report/regression_limits.h"
 #include "report/regression_states.h"
 
 #include <assert.h>
@@ -15,33 +15,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool within(const RegressionOptions *options, const ImageDifference *difference) {
-    return difference->largest <= options->max_difference &&
-           (double)difference->pixels <= options->max_share * (double)difference->counted;
-}
-
 static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                         const Image *const images[SIDES], Error *error) {
-    const RegressionOptions *options = &regression->options;
-    const Image *expected = images[EXPECTED], *actual = images[ACTUAL];
-    uint8_t *masked = NULL;
-    bool has_mask = options->mask != NULL && options->mask->count > 0;
-    if (has_mask && (masked = mask_make(options->mask, expected->width, expected->height, frame->at[EXPECTED]->path,
-                                        error)) == NULL)
-        return false;
-    ImageDifference *difference = &frame->difference;
-    image_compare_masked(expected, actual, masked, difference);
-    bool ok = !difference->same_size || difference->equal ||
-              regression_find_changes(regression, frame, data, images, masked, error);
+                         Image *const images[SIDES], Error *error) {
+    Image *expected = images[EXPECTED], *actual = images[ACTUAL];
+    uint8_t *masked;
+    if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
+    regression_compare(regression, frame, expected, actual, masked);
+    bool hidden = frame->difference.counted == 0 && frame->difference.same_size;
+    bool ok = hidden
+                  ? error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared")
+                  : regression_decide(regression, frame, expected, actual, masked, error);
+    if (ok && frame->difference.pixels > 0)
+        ok = regression_find_changes(regression, frame, data, (const Image *const[SIDES]){expected, actual}, masked,
+                                     error);
     free(masked);
-    if (!ok) return false;
-    if (difference->same_size && difference->counted == 0)
-        return error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared");
-    frame->pixels = !difference->same_size        ? PIXELS_RESIZED
-                    : difference->equal           ? PIXELS_EQUAL
-                    : within(options, difference) ? PIXELS_WITHIN
-                                                  : PIXELS_DIFFER;
-    return true;
+    return ok;
 }
 
 static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
@@ -53,8 +41,7 @@ static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uin
                                     regression->options.max_pixels, images, error);
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
         files[side].width = images[side]->width, files[side].height = images[side]->height;
-    ok = ok &&
-         judge_pixels(regression, frame, data, (const Image *const[SIDES]){images[EXPECTED], images[ACTUAL]}, error);
+    ok = ok && judge_pixels(regression, frame, data, images, error);
     image_destroy_pair(images);
     return ok;
 }
@@ -74,11 +61,10 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
 
 /* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
 static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
-    const Mask *mask = regression->options.mask;
     RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     if (!png_check(data[EXPECTED], a->size, frame->at[EXPECTED]->path, &a->width, &a->height, error)) return false;
     b->width = a->width, b->height = a->height;
-    if (mask != NULL && mask->count > 0 && mask_may_cover(mask, a->width, a->height))
+    if (regression_may_hide_all(regression, frame, a->width, a->height))
         return decode_and_judge(regression, frame, data, error);
     frame->pixels = PIXELS_EQUAL;
     frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
@@ -238,8 +224,10 @@ static bool pair_frames(Regression *regression, Error *error) {
     if (pairs == NULL) return false;
     regression->frames = calloc((size_t)regression->count + 1, sizeof *regression->frames);
     for (int i = 0; regression->frames != NULL && i < regression->count; i++)
-        regression->frames[i] = (RegressionFrame){
-            .base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b, .at = {pairs[i].a, pairs[i].b}, .flip = NAN};
+        regression->frames[i] = (RegressionFrame){.base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b,
+                                                  .at = {pairs[i].a, pairs[i].b},
+                                                  .flip = NAN,
+                                                  .flip_p99 = NAN};
     free(pairs);
     return regression->frames != NULL || error_memory(error, "frames");
 }
@@ -264,11 +252,12 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
-              refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+              refuse_empty(regression, error) && regression_read_rules(regression, error) &&
+              parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
-    regression->seconds = clock_seconds() - begun;
     if (ok) count(regression);
-    ok = ok && regression_find_causes(regression, error);
+    ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
+    regression->seconds = clock_seconds() - begun;
     if (!ok) regression_free(regression);
     return ok;
 }
@@ -286,6 +275,7 @@ void regression_free(Regression *regression) {
     free(regression->runs);
     free(regression->causes);
     shown_free(&regression->shown);
+    rules_destroy(regression->rules);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};
 }

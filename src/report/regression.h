@@ -9,13 +9,14 @@
 #include "image/png_display.h"
 #include "image/sequence.h"
 #include "report/change.h"
+#include "report/rules.h"
 #include "report/shown.h"
 #include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
-    int max_difference; /* of a channel, 0..255 */
-    double max_share;   /* of the unmasked pixels, 0..1; a frame passes if it is within both limits */
-    const Mask *mask;
+    Tolerance tolerance;  /* replaces what the rules give */
+    const char *rules;    /* a file (report/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
     int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
     bool flat;            /* without subfolders */
     bool strict_metadata; /* files that display differently fail (image/png_display.h) */
@@ -27,7 +28,7 @@ typedef enum PixelVerdict {
     PIXELS_EQUAL,
     PIXELS_WITHIN, /* within tolerance */
     PIXELS_DIFFER,
-    PIXELS_RESIZED,
+    PIXELS_RESIZED, /* the difference is that of the overlap */
     PIXELS_MISSING, /* no actual picture */
     PIXELS_EXTRA    /* no expected picture */
 } PixelVerdict;
@@ -68,7 +69,7 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip;           /* image/flip.h, measured by the report; else NaN */
+    double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
     bool run_differs;      /* a trajectory of its scene differs in any frame */
     bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */
@@ -91,6 +92,7 @@ typedef struct RegressionRun {
 typedef struct Regression {
     RegressionOptions options;
     ImageSequence *sequences[SIDES];
+    Rules *rules; /* or NULL */
     int count, run_count;
     RegressionFrame *frames;                  /* by stem, then number */
     RegressionRun *runs;                      /* by name */

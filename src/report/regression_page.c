@@ -49,11 +49,11 @@ static void write_description(FILE *file, const Regression *regression) {
     fputs(", actual ", file);
     write_code(file, regression->sequences[ACTUAL]->folder);
     fprintf(file, ": %d %s, ", regression->count, regression->count == 1 ? "frame" : "frames");
-    if (options->max_difference > 0 && options->max_share > 0)
-        fprintf(file, "tolerance: differences of at most %d in at most %g%% of the pixels", options->max_difference,
-                100 * options->max_share);
-    else
-        fputs("tolerance: none", file);
+    fprintf(file, "tolerance: %s", tolerance_words(&options->tolerance).text);
+    if (regression->rules != NULL) {
+        fputs(", rules of ", file);
+        write_code(file, rules_path(regression->rules));
+    }
     if (options->mask != NULL && options->mask->count > 0)
         fprintf(file, ", %d %s", options->mask->count, options->mask->count == 1 ? "mask" : "masks");
     fputs(".</p>\n", file);

@@ -35,7 +35,7 @@ static ImageRegions regions_of(const Pair *pair, const uint8_t *masked) {
     Error error = {0};
     ImageDifference difference;
     ImageRegions regions;
-    image_compare_masked(pair->a, pair->b, masked, &difference);
+    image_compare_masked(pair->a, pair->b, masked, 0, &difference);
     assert_ok(image_regions_find(pair->a, pair->b, masked, &difference, &regions, &error), error);
     return regions;
 }
