@@ -130,7 +130,7 @@ bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, c
     Scan scan = {.width = a->width, .gap = image_regions_gap(a->width, a->height), .regions = regions};
     size_t width = (size_t)a->width;
     *regions = (ImageRegions){.count = 0};
-    if (!difference->same_size || difference->pixels == 0) return true;
+    if (difference->pixels == 0) return true;
     scan.capacity = 3 * a->width;
     scan.nodes = malloc((size_t)scan.capacity * sizeof *scan.nodes);
     scan.kept = malloc((size_t)scan.capacity * sizeof *scan.kept);

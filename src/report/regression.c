@@ -18,16 +18,16 @@
 static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                          Image *const images[SIDES], Error *error) {
     Image *expected = images[EXPECTED], *actual = images[ACTUAL];
-    const ImageDifference *difference = &frame->difference;
     uint8_t *masked;
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
     regression_compare(regression, frame, expected, actual, masked);
-    bool ok = !difference->same_size || difference->counted > 0 ||
-              error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared");
-    if (ok && difference->same_size && !difference->equal)
+    bool hidden = frame->difference.counted == 0 && frame->difference.same_size;
+    bool ok = hidden
+                  ? error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared")
+                  : regression_decide(regression, frame, expected, actual, masked, error);
+    if (ok && frame->difference.pixels > 0)
         ok = regression_find_changes(regression, frame, data, (const Image *const[SIDES]){expected, actual}, masked,
                                      error);
-    ok = ok && regression_decide(regression, frame, expected, actual, masked, error);
     free(masked);
     return ok;
 }
@@ -273,9 +273,9 @@ void regression_free(Regression *regression) {
     }
     free(regression->frames);
     free(regression->runs);
-    rules_destroy(regression->rules);
     free(regression->causes);
     shown_free(&regression->shown);
+    rules_destroy(regression->rules);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};
 }

@@ -41,6 +41,18 @@ static void add(RegressionText *text, const char *between, const char *format, .
     va_end(arguments);
 }
 
+/* The name of the largest region that has one. */
+static void add_changes(RegressionText *words, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame->changes;
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        if (changes->region_change[i] < 0) continue;
+        int others = changes->count - 1;
+        add(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
+        if (others > 0) add(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
+        return;
+    }
+}
+
 static void add_difference(RegressionText *words, const ImageDifference *difference) {
     if (difference->pixels == 0)
         add(words, "", "equal pixels");
@@ -52,18 +64,6 @@ static void add_difference(RegressionText *words, const ImageDifference *differe
     if (difference->moved > 0)
         add(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
             difference->moved == 1 ? "pixel" : "pixels");
-}
-
-/* The name of the largest region that has one. */
-static void add_changes(RegressionText *words, const RegressionFrame *frame) {
-    const FrameChanges *changes = frame->changes;
-    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
-        if (changes->region_change[i] < 0) continue;
-        int others = changes->count - 1;
-        add(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
-        if (others > 0) add(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
-        return;
-    }
 }
 
 RegressionText frame_words(const RegressionFrame *frame) {
