@@ -129,7 +129,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     const double line = line_height(spec->points), width = spec->width - 2 * edge;
     const double height = fmin(max_height, max_aspect * width);
     if (!run_frames(spec, DEFAULT_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
-    WorldWindow window = run_window(strobe.run, strobe.frames, strobe.count);
+    WorldWindow window = run_window(strobe.spec, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
     if (done) {
@@ -154,6 +154,7 @@ const FigureKind figure_strobe = {
     .min_runs = 1,
     .max_runs = 1,
     .takes_times = true,
+    .takes_view = true,
     .takes_moments = true,
     .draw = draw,
 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture/caption.h"
 
+#include "common/utf8.h"
 #include "picture/body.h"
 #include "picture/panel.h"
 #include "picture/pose.h"
@@ -8,16 +9,23 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double MAX_SHOWN_DISTANCE = 1000.0; /* m; larger distances show as ">1000" */
+/* The widest distances. All runs have this width: otherwise a body that flies off late would move the text of frame 0. */
+static const char LONGEST_DISTANCE[] = "0.00";
 
 typedef struct Item {
     char label[16], number[CAPTION_SIZE], unit[8];
 } Item;
 
-/* Pads a number on the left to the width of the run's longest one, so that text does not move between frames. */
+static size_t count_characters(const char *text) {
+    size_t count = 0;
+    for (; *text != '\0'; count++) utf8_next(&text);
+    return count;
+}
+
+/* Pads a number on the left to the width of the longest one, so that text does not move between frames. */
 static void pad(char *number, size_t size, const char *text, const char *longest) {
     size_t used = 0;
-    for (size_t i = strlen(text); i < strlen(longest); i++)
+    for (size_t i = count_characters(text); i < count_characters(longest); i++)
         used += (size_t)snprintf(number + used, size - used, "%s", FIGURE_SPACE);
     snprintf(number + used, size - used, "%s", text);
 }
@@ -25,19 +33,20 @@ static void pad(char *number, size_t size, const char *text, const char *longest
 void caption_distance(char *text, size_t size, double metres) {
     if (isnan(metres))
         snprintf(text, size, "\xE2\x80\x93");
-    else if (metres < MAX_SHOWN_DISTANCE)
-        snprintf(text, size, "%.2f", metres);
+    else if (metres < 99.95)
+        snprintf(text, size, "%.*f", metres < 9.995 ? 2 : 1, metres);
+    else if (metres < 999.5)
+        snprintf(text, size, "%.0f", metres);
     else
-        snprintf(text, size, ">%.0f", MAX_SHOWN_DISTANCE);
+        snprintf(text, size, ">999");
 }
 
-static Item distance_item(const char *label, double distance, double largest) {
+static Item distance_item(const char *label, double distance) {
     Item item = {.unit = " m"};
-    char text[32], longest[32];
+    char text[32];
     snprintf(item.label, sizeof item.label, "%s", label);
     caption_distance(text, sizeof text, distance);
-    caption_distance(longest, sizeof longest, largest);
-    pad(item.number, sizeof item.number, text, longest);
+    pad(item.number, sizeof item.number, text, LONGEST_DISTANCE);
     return item;
 }
 
@@ -95,7 +104,7 @@ static void draw_slow(const Picture *picture, Moment moment, int x, int right, D
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Item items[3] = {time_item(picture, moment), frame_item(picture, moment.frame),
-                           distance_item("distance ", picture_distance(picture, moment), picture->largest_distance)};
+                           distance_item("distance ", picture_distance(picture, moment))};
     int count = is_pair(picture) ? 3 : 2, gap = layout->status.pixels * 5 / 4, x = layout->right;
     for (int i = 0; i < count; i++) {
         int left = x - item_width(&layout->status, &items[i]);
@@ -150,7 +159,7 @@ static void draw_methods(const Picture *picture, Moment moment, int left, int ri
         char title[CAPTION_SIZE], note[CAPTION_SIZE];
         int start = left + run * width, end = start + width - gap;
         caption_method(picture, run, title, note);
-        Item item = distance_item("", picture_run_distance(picture, run, moment), picture->run_largest[run]);
+        Item item = distance_item("", picture_run_distance(picture, run, moment));
         int room = run > 0 ? item_width(font, &item) + gap / 2 : 0;
         int x = draw_name(picture, run, title, start, end - room, baseline, drawing) + gap / 2;
         if (run > 0) draw_item(picture, font, &item, x, baseline, drawing);
@@ -170,7 +179,7 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
     }
     char state[CAPTION_SIZE];
     if (run > 0 && !is_pair(picture)) {
-        Item item = distance_item("distance ", picture_run_distance(picture, run, moment), picture->run_largest[run]);
+        Item item = distance_item("distance ", picture_run_distance(picture, run, moment));
         right -= item_width(&layout->method, &item);
         draw_item(picture, &layout->method, &item, right, baseline, drawing);
         right -= layout->method.pixels;

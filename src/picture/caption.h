@@ -20,5 +20,5 @@ void caption_method(const Picture *picture, int run, char title[CAPTION_SIZE], c
 /* Text after the title: the options' note, the cost and the method's note. */
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size);
 
-/* Formats a distance for captions: "0.35", ">1000", or a dash for NaN. */
+/* Formats a distance for captions with at most four characters: "0.35", "35.2", "352", ">999", or a dash for NaN. */
 void caption_distance(char *text, size_t size, double metres);

@@ -118,8 +118,10 @@ static void cameras_ease(void **state) {
     for (int run = 0; run < RUNS; run++) trajectory_destroy(runs[run]);
     for (int run = 0; run < RUNS; run++) panels[run] = runs[run] = run_make("engine", 400);
     for (int frame = 200; frame < 400; frame++) run_position(runs[1], frame, SECOND_BOX)->x += 1;
-    for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
-        *run_position(runs[0], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
+    for (int run = 0; run < RUNS; run++) run_position(runs[run], 0, FIRST_BOX)->x = -30; /* a wide view to zoom from */
+    for (int run = 0; run < RUNS; run++)
+        for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
+            *run_position(runs[run], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
     for (int camera = LOOK_BOMB; camera <= LOOK_DIVERGENCE; camera++) {
         Picture picture = picture_with_look(2, &(RenderLook){.camera = (LookCamera)camera});
         const Rect panel = picture.layout.panels[0];
