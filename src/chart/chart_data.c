@@ -29,13 +29,14 @@ static bool is_set(const char *setting, const char *key) {
 static const char *rule_of(const ChartRow *row) {
     const MethodDescription *method = method_describe(row->method);
     const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
-    return near ? ", near" : "";
+    return near ? "near" : "";
 }
 
 static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
+    strcpy(words, rule_of(row));
     chart_split_setting(row->setting, numbers, words);
-    snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, rule_of(row), words);
+    snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, words[0] != '\0' ? ":" : "", words);
     chart_plain(label, numbers);
 }
 
@@ -46,18 +47,22 @@ static int find_line(const Chart *chart, const char *key) {
 }
 
 static bool add_lines(Chart *chart, const ChartTable *table, const char *path, Error *error) {
+    const MethodDescription *methods[CHART_MAX_LINES];
+    ChartStyle styles[CHART_MAX_LINES];
     char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
     for (int i = 0; i < table->count; i++) {
         name_row(&table->rows[i], key, label);
         if (find_line(chart, key) < chart->line_count) continue;
         if (chart->line_count == CHART_MAX_LINES)
             return error_input(error, path, "a chart can show at most %d methods", CHART_MAX_LINES);
+        const MethodDescription *method = methods[chart->line_count] = method_describe(table->rows[i].method);
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
-        const MethodDescription *method = method_describe(table->rows[i].method);
         line->no_push_out = method != NULL && method->no_push_out;
     }
+    chart_method_styles(methods, chart->line_count, styles);
+    for (int i = 0; i < chart->line_count; i++) chart->lines[i].style = styles[i];
     return true;
 }
 

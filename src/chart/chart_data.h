@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data of a chart of one scene: marks joined to lines, in two panels. */
 #pragma once
+#include "chart/chart_style.h"
 #include "study/chart_csv.h"
 
 #include <stdbool.h>
@@ -9,10 +10,10 @@ enum {
     CHART_MAX_LINES = 32,
     CHART_TEXT_SIZE = 40,
     CHART_PANELS = 2,
-    CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ", near" + 2 * CHART_SETTING_SIZE
+    CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ":near," + 2 * CHART_SETTING_SIZE
 };
 
-/* A method with its non-numeric settings ("engine, warm=off"). Runs with a stopping rule ("engine, near") are a line of
+/* A method with its non-numeric settings ("engine:warm=off"). Runs with a stopping rule ("engine:near") are a line of
    their own beside those with a fixed number of sweeps. */
 typedef struct ChartLine {
     char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
@@ -20,6 +21,7 @@ typedef struct ChartLine {
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
+    ChartStyle style;
 } ChartLine;
 
 typedef struct ChartMark {
@@ -44,7 +46,7 @@ typedef struct Chart {
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
 } Chart;
 
-/* Gathers a scene's rows. Lines keep their order in the table, and thereby their style. Texts are restricted to
+/* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?', so that gnuplot cannot interpret them.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h) are drawn

@@ -94,7 +94,7 @@ static void write_label(Labels *labels, int i, const char *text, bool must) {
     if (must) write_leader(labels->script, x, y, &box);
     fprintf(labels->script, "set label '%s' at screen %.5f,%.5f center font ',%g' tc rgb '%s'\n", text,
             (box.left + box.right) / 2 / CHART_WIDTH, (box.bottom + box.top) / 2 / CHART_HEIGHT, LABEL_POINTS,
-            chart_style(mark->line).ink);
+            labels->chart->lines[mark->line].style.ink);
 }
 
 static bool ends_line(const ChartPanel *panel, int i) {

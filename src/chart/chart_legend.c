@@ -127,7 +127,7 @@ void chart_write_legend(const ChartLayout *layout) {
     write_notes(layout);
     fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, PARETO_COLOUR);
     for (int i = 0; i < entry; i++) {
-        ChartStyle style = chart_style(styles[i]);
+        const ChartStyle style = layout->chart->lines[styles[i]].style;
         if (layout->chart->lines[styles[i]].marks[0] > 1 || layout->chart->lines[styles[i]].marks[1] > 1)
             chart_write_line(script, 'l', i, &style);
         chart_write_marks(script, 'm', i, &style);

@@ -86,12 +86,12 @@ static void write_plot_command(const ChartLayout *layout, int p, int corners, co
     fprintf(layout->script, "plot NaN");
     if (corners > 0) fprintf(layout->script, ", $front with lines lc rgb '%s' lw 6", PARETO_COLOUR);
     for (int line = 0; line < count; line++) {
-        ChartStyle style = chart_style(line);
+        const ChartStyle style = lines[line].style;
         if (lines[line].marks[p] > 1) chart_write_line(layout->script, 'm', line, &style);
         if (bars[line]) fprintf(layout->script, ", $q%d with lines lc rgb '%s' lw 1.6", line, style.colour);
     }
     for (int line = 0; line < count; line++) {
-        ChartStyle style = chart_style(line);
+        const ChartStyle style = lines[line].style;
         if (lines[line].marks[p] > 0) chart_write_marks(layout->script, 'm', line, &style);
     }
     if (ring) fprintf(layout->script, ", $ring with points pt 6 ps 2.4 lw 2.4 lc rgb 'black'");

@@ -46,18 +46,58 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "SCENE...",
-              .needed = "a scene file is needed",
+    .input = {.value = "SCENE...|CHART.csv",
+              .needed = "a scene file, or the chart.csv of an earlier run, is needed",
               OPTION_PATHS(Options, scenes, study.scene_count)},
     .inputs = {1, STUDY_MAX_SCENES, "scene"},
-    .help = "Measure speed against accuracy: every method in every scene, on held-out launches. Writes chart.csv and a "
-            "chart for each scene (PNG, SVG, PDF). An interrupted run continues where it stopped.\v"
-            "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
-            "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick"};
+    .help =
+        "Measure speed against accuracy: every method in every scene, on held-out launches. Writes chart.csv and a "
+        "chart for each scene (PNG, SVG, PDF). An interrupted run continues where it stopped. With the chart.csv of an "
+        "earlier run, only draws its charts again.\v"
+        "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
+        "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick\n"
+        "         twinbox chart out/chart/chart.csv -o out/drawn"};
 
 static const Progress *begin_stage(void *context, const char *what) {
     (void)context;
     return progress_bar_begin(what);
+}
+
+static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
+    bool drawn;
+    if (!equal_time_plot(csv, folder, &drawn, error)) return false;
+    printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", folder,
+           drawn ? ", equal_time.png, .svg, .pdf" : "");
+    return true;
+}
+
+static bool is_table(const char *path) {
+    const size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".csv") == 0;
+}
+
+static bool draw_scenes(const ChartTable *table, const char *csv, const char *folder, Error *error) {
+    for (int i = 0; i < table->count; i++) {
+        int first = 0;
+        while (strcmp(table->rows[first].scene, table->rows[i].scene) != 0) first++;
+        if (first < i) continue;
+        if (!chart_plot(csv, table->rows[i].scene, folder, error)) return false;
+        printf("%s -> %s/chart-%s.png, .svg, .pdf\n", table->rows[i].scene, folder, table->rows[i].scene);
+    }
+    return true;
+}
+
+/* The charts of a finished table. */
+static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Error *error) {
+    ChartTable table;
+    if (options->scene_count > 1 || options->methods != NULL || options->quick || options->launches.count > 0 ||
+        options->launches.table != NULL || options->launches.bomb_x.count > 0)
+        return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
+    if (!chart_csv_read(&table, csv, error)) return false;
+    const bool drawn = file_make_directory(options->folder, error) &&
+                       draw_scenes(&table, csv, options->folder, error) && draw_equal_time(csv, options->folder, error);
+    chart_csv_free(&table);
+    return drawn;
 }
 
 static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
@@ -75,10 +115,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
             "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
             scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
     }
-    bool drawn;
-    if (!equal_time_plot(csv, options->folder, &drawn, error)) return false;
-    printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", options->folder,
-           drawn ? ", equal_time.png, .svg, .pdf" : "");
+    if (!draw_equal_time(csv, options->folder, error)) return false;
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
@@ -92,6 +129,8 @@ bool command_chart(int argc, char **argv, Error *error) {
     const LaunchChoice *launches = &options.study.launches;
     if (launches->bomb_x.count > 0 && (launches->table != NULL || launches->count > 0))
         return error_input(error, "--bomb-x", "cannot be combined with --launches");
+    for (int i = 0; i < options.study.scene_count; i++)
+        if (is_table(options.scenes[i])) return draw_again(&options.study, options.scenes[i], error);
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
     bool ok = speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
     progress_bar_end();

@@ -13,6 +13,38 @@ typedef enum MethodRole {
     METHOD_REFERENCE /* the converged solution: errors of other methods are measured against it */
 } MethodRole;
 
+/* By its colour a reader finds a method again in all pictures (common/method_look.h). They differ with all common kinds of
+   colour blindness. The palettes are in picture/theme.c and chart/chart_style.c. */
+typedef enum MethodColour {
+    METHOD_NO_COLOUR, /* any that is left */
+    METHOD_BLUE,
+    METHOD_ORANGE,
+    METHOD_GREEN,
+    METHOD_PURPLE,
+    METHOD_SKY,
+    METHOD_WINE,
+    METHOD_VERMILION,
+    METHOD_BLACK,
+    METHOD_COLOURS
+} MethodColour;
+
+/* Marks and dashes in charts. */
+typedef enum MethodSymbol {
+    METHOD_CIRCLE,
+    METHOD_SQUARE,
+    METHOD_TRIANGLE,
+    METHOD_DIAMOND,
+    METHOD_INVERTED_TRIANGLE,
+    METHOD_PENTAGON,
+    METHOD_SYMBOLS
+} MethodSymbol;
+
+/* Different for every method: those of one colour differ in their symbol. */
+typedef struct MethodLook {
+    MethodColour colour;
+    MethodSymbol symbol;
+} MethodLook;
+
 /* Settings that a study runs a method with, each as on the command line ("k=10,warm=off"; "": none given), ended by
    NULL. */
 typedef const char *const *MethodRuns;
@@ -23,8 +55,8 @@ typedef const char *const *MethodRuns;
 typedef struct MethodDescription {
     const char *name, *summary;  /* as on the command line; one line for `twinbox methods` */
     const SettingSpec *settings; /* ended by a NULL key; NULL: the method has none */
-    const char *title;           /* in pictures: "Physics engine"; NULL: the method's text ("nncg:k=20") */
-    const char *caption;         /* in pictures, between the title and the method's text; NULL: nothing */
+    const char *caption;         /* in frames, after the method's text: "sequential impulses"; NULL: nothing */
+    MethodLook look;
     MethodRole role;
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */

@@ -20,6 +20,7 @@ enum { MAX_PANELS = 3 };
 typedef struct Annotated {
     const FigureSpec *spec;
     int frame;
+    MethodColour colours[FIGURE_RUNS_MAX];
     RunCells cells;
     double top, foot, start; /* mm: above and below the cells; left end of the first cell */
     ContactLook look;
@@ -94,19 +95,20 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     const Trajectory *run = spec->runs[panel];
     const double line = line_height(spec->points), top = low.y + figure->cells.height;
     char title[TRAJECTORY_NAME_SIZE + 32], counts[96], part[48] = "";
-    snprintf(title, sizeof title, "%s, %.3f s", run->method, figure->frame * (double)run->dt);
-    text_fit(title, spec->points, figure->cells.width);
+    snprintf(title, sizeof title, "%s, %.3f s", run_name(run).text, figure->frame * (double)run->dt);
+    text_fit(title, sizeof title, spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
                 title);
     if (numbered < count) snprintf(part, sizeof part, ", %d labelled", numbered);
     snprintf(counts, sizeof counts, "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
-    text_fit(counts, CONTACT_TYPE * spec->points, figure->cells.width);
+    text_fit(counts, sizeof counts, CONTACT_TYPE * spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 0.6 * line},
                 &(TextStyle){CONTACT_TYPE * spec->points, TEXT_LEFT, INK_SOFT, 0, false}, "%s", counts);
 }
 
 static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
-    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, panel, STILL_ALL, error);
+    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, figure->colours[panel],
+                                    STILL_ALL, error);
     if (image == NULL) return false;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
         image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
@@ -149,6 +151,7 @@ static void draw_legend(const Annotated *figure, Sketch *sketch) {
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Annotated figure = {.spec = spec};
+    run_colours(spec, figure.colours);
     bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && lay_out(&figure, error);
     if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
     for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);

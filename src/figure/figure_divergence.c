@@ -19,6 +19,7 @@ static const double sample = 6; /* mm, line sample in the legend */
 
 typedef struct Divergence {
     const FigureSpec *spec;
+    MethodColour colours[FIGURE_RUNS_MAX];
     int frames;                        /* of the first run */
     double *distance[FIGURE_RUNS_MAX]; /* [frames] m; NaN after the end of either run; NULL for the first run */
     double *low, *high;                /* [frames] m, the band; NULL: none. NaN after its end */
@@ -116,9 +117,14 @@ static int gather(const Divergence *d, const Plot *plot, const double *values, i
     return count;
 }
 
+/* The colour of the method; the dashes tell lines apart in grey. */
+static Pen line_pen(const Divergence *d, int run) {
+    const char *const dashes = chart_style(run - 1).dashes;
+    return pen_line(colour_of(chart_method_colour(d->colours[run])), 2.2, strcmp(dashes, "solid") == 0 ? NULL : dashes);
+}
+
 static void draw_line(const Divergence *d, Sketch *sketch, const Plot *plot, int run, Point *points) {
-    const ChartStyle style = chart_style(run - 1);
-    const Pen pen = pen_line(colour_of(style.colour), 2.2, strcmp(style.dashes, "solid") == 0 ? NULL : style.dashes);
+    const Pen pen = line_pen(d, run);
     for (int i = 0; i < d->frames; i++) {
         int count = gather(d, plot, d->distance[run], i, points);
         sketch_path(sketch, points, count, &pen);
@@ -143,8 +149,8 @@ static bool ever_diverges(const double *distance, int frames) {
     return false;
 }
 
-static void draw_legend_row(Sketch *sketch, Point at, double points, double width, char *words) {
-    text_fit(words, points, width - sample - 1.5);
+static void draw_legend_row(Sketch *sketch, Point at, double points, double width, char *words, size_t size) {
+    text_fit(words, size, points, width - sample - 1.5);
     sketch_text(sketch, (Point){at.x + sample + 1.5, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
                 words);
 }
@@ -156,20 +162,19 @@ static void draw_legend(const Divergence *d, Sketch *sketch, double left, double
     char words[2 * TRAJECTORY_NAME_SIZE + 64];
     Point at = {left, top - line / 2};
     for (int i = 1; i < spec->run_count; i++, at.y -= line) {
-        const ChartStyle style = chart_style(i - 1);
-        const Pen pen =
-            pen_line(colour_of(style.colour), 2.2, strcmp(style.dashes, "solid") == 0 ? NULL : style.dashes);
+        const Pen pen = line_pen(d, i);
         bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        snprintf(words, sizeof words, "%s vs %s%s", spec->runs[i]->method, spec->runs[0]->method,
+        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec->runs[i]).text, run_name(spec->runs[0]).text,
                  ever ? "" : ": identical");
-        draw_legend_row(sketch, at, spec->points, width, words);
+        draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
     }
     if (d->low == NULL) return;
     sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
                      &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
-    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", spec->runs[0]->method, d->shifted);
-    draw_legend_row(sketch, at, spec->points, width, words);
+    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec->runs[0]).text,
+             d->shifted);
+    draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
 }
 
 static void draw_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
@@ -206,6 +211,7 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, Range range, Error *e
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Divergence d = {.spec = spec};
+    run_colours(spec, d.colours);
     Range range = {HUGE_VAL, 0};
     bool done = run_check_worlds(spec, error) && measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
     for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);

@@ -46,7 +46,7 @@ void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *titl
     const double line = line_height(spec->points);
     char words[NETWORK_TEXT_SIZE];
     snprintf(words, sizeof words, "%s", title);
-    text_fit(words, spec->points, sketch->width);
+    text_fit(words, sizeof words, spec->points, sketch->width);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false},
                 "%s", words);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
+#include "common/method_look.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -16,6 +17,7 @@ typedef struct Strip {
     const FigureSpec *spec;
     int frames[FIGURE_MOMENTS_MAX], count;
     RunCells cells;
+    MethodColour colours[FIGURE_RUNS_MAX];
     double left, top, foot; /* mm: space beside, above and below the cells */
     double start;           /* left end of the first cell */
 } Strip;
@@ -24,10 +26,11 @@ static double strip_height(const Strip *strip) {
     return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + gap) - gap;
 }
 
-static bool lay_out(Strip *strip, Error *error) {
+/* Cells beside names of this many lines. */
+static bool lay_out_beside(Strip *strip, int lines, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points);
-    strip->left = 1.1 * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
+    strip->left = (lines + 0.1) * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
     const double width = (spec->width - edge - strip->left - (strip->count - 1) * gap) / strip->count;
     const double height =
         (FIGURE_HEIGHT_MAX - strip->top - strip->foot - (spec->run_count - 1) * gap) / spec->run_count;
@@ -45,10 +48,34 @@ static bool lay_out(Strip *strip, Error *error) {
     return true;
 }
 
+static bool names_fit(const Strip *strip) {
+    for (int i = 0; i < strip->spec->run_count; i++)
+        if (type_width(run_name(strip->spec->runs[i]).text, strip->spec->points) > strip->cells.height) return false;
+    return true;
+}
+
+static bool lay_out(Strip *strip, Error *error) {
+    if (!lay_out_beside(strip, 1, error)) return false;
+    if (names_fit(strip)) return true;
+    run_cells_free(&strip->cells);
+    return lay_out_beside(strip, 2, error);
+}
+
 static Point cell_corner(const Strip *strip, int row, int column) {
     const RunCells *cells = &strip->cells;
     return (Point){strip->start + column * (cells->width + gap),
                    strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + gap)};
+}
+
+/* In the upper right corner of a cell, in as many words as it has room for. */
+static void draw_outside(const Strip *strip, Sketch *sketch, Point corner, int count) {
+    const double points = 0.85 * strip->spec->points, margin = 0.8;
+    char words[32];
+    snprintf(words, sizeof words, "%d out of view", count);
+    if (type_width(words, points) > strip->cells.width - 2 * margin) snprintf(words, sizeof words, "%d out", count);
+    const double share = fmin(1, (strip->cells.width - 2 * margin) / type_width(words, points));
+    sketch_text(sketch, (Point){corner.x - margin, corner.y - line_height(strip->spec->points) / 2},
+                &(TextStyle){share * points, TEXT_RIGHT, INK_SOFT, 0, true}, "%s", words);
 }
 
 static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
@@ -57,25 +84,43 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     const Trajectory *run = spec->runs[row];
     const Point low = cell_corner(strip, row, column), high = {low.x + cells.width, low.y + cells.height};
     const int frame = strip->frames[column], outside = run_count_outside(run, frame, &cells.window);
-    if (!run_cells_draw(&cells, sketch, low, run, frame, row, error)) return false;
+    if (!run_cells_draw(&cells, sketch, low, run, frame, strip->colours[row], error)) return false;
     sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
-    if (outside > 0)
-        sketch_text(sketch, (Point){high.x - 0.8, high.y - line_height(spec->points) / 2},
-                    &(TextStyle){spec->points * 0.85, TEXT_RIGHT, INK_SOFT, 0, true}, "%d out of view", outside);
+    if (outside > 0) draw_outside(strip, sketch, high, outside);
     return true;
+}
+
+/* A line of a turned text beside a row, smaller if its row is too short for it. */
+static void draw_turned(const Strip *strip, Sketch *sketch, Point at, const char *words) {
+    const double points = strip->spec->points;
+    const double room = fmin(1, strip->cells.height / type_width(words, points));
+    sketch_text(sketch, at, &(TextStyle){room * points, TEXT_CENTER, INK, 90, false}, "%s", words);
+}
+
+/* The name of the method stays whole; its settings get a second line, and are cut to their row. */
+static void draw_name(const Strip *strip, Sketch *sketch, const RunName *name, Point low) {
+    const double middle = low.y + strip->cells.height / 2, points = strip->spec->points;
+    const size_t head = method_name_head(name->text);
+    if (type_width(name->text, points) <= strip->cells.height || name->text[head] == '\0') {
+        draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, name->text);
+        return;
+    }
+    RunName method = *name, settings = *name;
+    method.text[head + 1] = '\0';
+    memmove(settings.text, name->text + head + 1, sizeof settings.text - head - 1);
+    text_fit(settings.text, sizeof settings.text, points, strip->cells.height);
+    draw_turned(strip, sketch, (Point){low.x - 1.5 * line_height(points), middle}, method.text);
+    draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, settings.text);
 }
 
 static void draw_texts(const Strip *strip, Sketch *sketch) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
     const TextStyle upright = {spec->points, TEXT_CENTER, INK, 0, false};
-    const TextStyle turned = {spec->points, TEXT_CENTER, INK, 90, false};
     for (int row = 0; row < spec->run_count; row++) {
         const Point low = cell_corner(strip, row, 0);
-        char name[TRAJECTORY_NAME_SIZE];
-        memcpy(name, spec->runs[row]->method, sizeof name);
-        text_fit(name, spec->points, cells->height);
-        sketch_text(sketch, (Point){low.x - strip->left / 2, low.y + cells->height / 2}, &turned, "%s", name);
+        const RunName name = run_name(spec->runs[row]);
+        draw_name(strip, sketch, &name, low);
     }
     for (int column = 0; column < strip->count; column++) {
         const Point low = cell_corner(strip, 0, column);
@@ -87,6 +132,7 @@ static void draw_texts(const Strip *strip, Sketch *sketch) {
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
+    run_colours(spec, strip.colours);
     bool done = run_check_worlds(spec, error) &&
                 run_frames(spec, DEFAULT_MOMENTS, 0, strip.frames, &strip.count, error) && lay_out(&strip, error);
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));

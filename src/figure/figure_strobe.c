@@ -20,6 +20,7 @@ static const double small_type = 0.85;                /* font size of the times 
 typedef struct Strobe {
     const FigureSpec *spec;
     const Trajectory *run;
+    MethodColour colour;
     int frames[FIGURE_MOMENTS_MAX], count;
     RunCells cells;
     Point low;
@@ -38,10 +39,11 @@ static void blend_over(Image *image, const Image *upper, double opacity) {
 }
 
 static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
-    Image *image = run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], 0, STILL_FIXED, error);
+    Image *image = run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], strobe->colour, STILL_FIXED, error);
     bool done = image != NULL;
     for (int i = 0; done && i < strobe->count; i++) {
-        Image *moment = run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], 0, STILL_MOVING, error);
+        Image *moment =
+            run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], strobe->colour, STILL_MOVING, error);
         done = moment != NULL;
         if (done) blend_over(image, moment, opacity_of(strobe, i));
         image_destroy(moment);
@@ -110,11 +112,11 @@ static void draw_texts(const Strobe *strobe, Sketch *sketch) {
     const double dt = (double)strobe->run->dt;
     const double first = strobe->frames[0] * dt, last = strobe->frames[strobe->count - 1] * dt;
     if (strobe->count > 1)
-        snprintf(title, sizeof title, "%s, %d moments from %.2f to %.2f s", strobe->run->method, strobe->count, first,
-                 last);
+        snprintf(title, sizeof title, "%s, %d moments from %.2f to %.2f s", run_name(strobe->run).text, strobe->count,
+                 first, last);
     else
-        snprintf(title, sizeof title, "%s, %.2f s", strobe->run->method, last);
-    text_fit(title, spec->points, cells->width);
+        snprintf(title, sizeof title, "%s, %.2f s", run_name(strobe->run).text, last);
+    text_fit(title, sizeof title, spec->points, cells->width);
     sketch_text(sketch, (Point){strobe->low.x, strobe->low.y + cells->height + 0.6 * line},
                 &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
     run_cells_draw_scale_bar(cells, sketch, (Point){strobe->low.x, y}, spec->points);
@@ -128,6 +130,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strobe strobe = {.spec = spec, .run = spec->runs[0]};
     const double line = line_height(spec->points), width = spec->width - 2 * edge;
     const double height = fmin(max_height, max_aspect * width);
+    run_colours(spec, &strobe.colour);
     if (!run_frames(spec, DEFAULT_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
     WorldWindow window = run_window(strobe.spec, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);

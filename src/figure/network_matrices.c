@@ -87,10 +87,10 @@ static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error
                      &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
     snprintf(words, sizeof words, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
              matrix->activation);
-    text_fit(words, points, all->width);
+    text_fit(words, sizeof words, points, all->width);
     sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
     snprintf(words, sizeof words, "%d to %d, max |w| %.2g", matrix->inputs, matrix->outputs, largest);
-    text_fit(words, small, all->width);
+    text_fit(words, sizeof words, small, all->width);
     sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
                 words);
     return true;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/run_view.h"
 
+#include "common/method_look.h"
 #include "gl/font.h"
 #include "picture/framing.h"
 #include "picture/style.h"
+#include "simulate/method.h"
 #include "sketch/type.h"
 #include "trajectory/trajectory_states.h"
 
@@ -98,18 +100,18 @@ void run_cells_free(RunCells *cells) {
     cells->still = NULL;
 }
 
-Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, int colours, StillParts parts,
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
                         Error *error) {
-    const StillShot shot = {run, frame, colours, parts, cells->camera};
+    const StillShot shot = {run, frame, colour, parts, cells->camera};
     Image *image = image_create(cells->columns, cells->rows, error);
     if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
     image_destroy(image);
     return NULL;
 }
 
-bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, int colours,
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
                     Error *error) {
-    Image *image = run_cells_render(cells, run, frame, colours, STILL_ALL, error);
+    Image *image = run_cells_render(cells, run, frame, colour, STILL_ALL, error);
     if (image == NULL) return false;
     sketch_image(sketch, image, low, cells->width);
     image_destroy(image);
@@ -131,19 +133,26 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
 
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
 
-void text_fit(char *words, double points, double width) {
+void text_fit(char *words, size_t size, double points, double width) {
     static const char ellipsis[] = "\xE2\x80\xA6";
     if (type_width(words, points) <= width) return;
-    double room = width - type_width(ellipsis, points);
+    const double room = width - type_width(ellipsis, points);
     const char *end = words, *next = words;
-    for (double used = 0; *next != '\0'; end = next) {
+    for (double used = 0; *next != '\0' && (size_t)(next - words) + sizeof ellipsis <= size; end = next) {
         used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
         if (used > room) break;
     }
-    /* An ellipsis is three bytes long: there is no room for it if fewer bytes are removed. */
-    size_t kept = (size_t)(end - words), left = strlen(words) - kept;
-    if (left >= sizeof ellipsis - 1)
-        memcpy(words + kept, ellipsis, sizeof ellipsis);
-    else
-        words[kept] = '\0';
+    memcpy(words + (end - words), ellipsis, sizeof ellipsis);
+}
+
+RunName run_name(const Trajectory *run) {
+    RunName name;
+    method_name(name.text, sizeof name.text, run->method);
+    return name;
+}
+
+void run_colours(const FigureSpec *spec, MethodColour *colours) {
+    const MethodDescription *methods[FIGURE_RUNS_MAX];
+    for (int i = 0; i < spec->run_count; i++) methods[i] = method_describe(spec->runs[i]->method);
+    method_colours_assign(methods, spec->run_count, colours);
 }

@@ -41,10 +41,11 @@ bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, d
 void run_cells_free(RunCells *cells);
 
 /* Renders part of a frame into a new image of a cell's size. */
-Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, int colours, StillParts parts, Error *error);
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
+                        Error *error);
 
 /* Renders a frame onto the page, lower left corner at `low`. */
-bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, int colours,
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
                     Error *error);
 
 /* The mapping from metres to the page in a cell. */
@@ -57,4 +58,11 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
 double line_height(double points);
 
 /* Shortens a text to a width in mm, with an ellipsis. */
-void text_fit(char *words, double points, double width);
+void text_fit(char *words, size_t size, double points, double width);
+
+/* The name of a run's method (common/method_look.h), and the runs' colours, FIGURE_RUNS_MAX of them. */
+typedef struct RunName {
+    char text[TRAJECTORY_NAME_SIZE];
+} RunName;
+RunName run_name(const Trajectory *run);
+void run_colours(const FigureSpec *spec, MethodColour *colours);

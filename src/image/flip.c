@@ -80,13 +80,14 @@ typedef struct Region {
     int left, top, width, height;
     FlipPlane planes[2][PLANES]; /* blurred lightness, red-green, blue-yellow; edges, points in x and y */
     FlipPlane scratch[SCRATCH], channels[CHANNELS];
-    float *padded; /* one row */
+    FlipPlane largest; /* of all backgrounds */
+    float *padded;     /* one row */
     float *memory;
 } Region;
 
 static bool region_create(Region *region, Error *error) {
     size_t size = (size_t)region->width * (size_t)region->height;
-    enum { ALL = 2 * PLANES + SCRATCH + CHANNELS };
+    enum { ALL = 2 * PLANES + SCRATCH + CHANNELS + 1 };
     float *next = region->memory = malloc((size * ALL + (size_t)region->width + 2 * FLIP_RADIUS_MAX) * sizeof *next);
     if (next == NULL) return error_memory(error, "FLIP");
     for (int i = 0; i < ALL; i++, next += size) {
@@ -95,21 +96,42 @@ static bool region_create(Region *region, Error *error) {
             region->planes[i / PLANES][i % PLANES] = plane;
         else if (i < 2 * PLANES + SCRATCH)
             region->scratch[i - 2 * PLANES] = plane;
-        else
+        else if (i < ALL - 1)
             region->channels[i - 2 * PLANES - SCRATCH] = plane;
+        else
+            region->largest = plane;
     }
+    memset(region->largest.values, 0, size * sizeof *region->largest.values);
     region->padded = next;
     return true;
 }
 
-static void load_channels(Region *region, const Image *image, const float linear_of[256]) {
+static const uint8_t *region_row(const Region *region, const Image *image, int y) {
+    return image->pixels + ((size_t)(region->top + y) * (size_t)image->width + (size_t)region->left) * 4;
+}
+
+static bool is_opaque(const Region *region, const Image *image) {
+    for (int y = 0; y < region->height; y++) {
+        const uint8_t *p = region_row(region, image, y);
+        for (int x = 0; x < region->width; x++)
+            if (p[4 * x + 3] != 255) return false;
+    }
+    return true;
+}
+
+typedef enum Background { WHITE, BLACK } Background;
+
+static int shown_on(Background background, int value, int alpha) {
+    return background == WHITE ? 255 - (255 - value) * alpha / 255 : value * alpha / 255;
+}
+
+static void load_channels(Region *region, const Image *image, Background background, const float linear_of[256]) {
     size_t i = 0;
     for (int y = 0; y < region->height; y++) {
-        const uint8_t *p =
-            image->pixels + ((size_t)(region->top + y) * (size_t)image->width + (size_t)region->left) * 4;
+        const uint8_t *p = region_row(region, image, y);
         for (int x = 0; x < region->width; x++, p += 4, i++) {
             float rgb[3];
-            for (int c = 0; c < 3; c++) rgb[c] = linear_of[255 - (255 - p[c]) * p[3] / 255];
+            for (int c = 0; c < 3; c++) rgb[c] = linear_of[shown_on(background, p[c], p[3])];
             Color color = rgb_to_opponent((Color){rgb[0], rgb[1], rgb[2]});
             region->channels[0].values[i] = color.x;
             region->channels[1].values[i] = color.y;
@@ -169,13 +191,19 @@ static float largest_color_error(void) {
     return powf(hyab(rgb_to_hunt_lab((Color){0, 1, 0}), rgb_to_hunt_lab((Color){0, 0, 1})), COLOR_POWER);
 }
 
+static void keep_largest(Region *region) {
+    size_t size = (size_t)region->width * (size_t)region->height;
+    float largest = largest_color_error();
+    for (size_t i = 0; i < size; i++)
+        region->largest.values[i] = fmaxf(region->largest.values[i], pixel_flip(region, i, largest));
+}
+
 static double fill(const Region *region, int width, float *map) {
     double sum = 0;
-    float largest = largest_color_error();
     size_t i = 0;
     for (int y = 0; y < region->height; y++)
         for (int x = 0; x < region->width; x++, i++) {
-            float value = pixel_flip(region, i, largest);
+            float value = region->largest.values[i];
             sum += (double)value;
             if (map != NULL) map[(size_t)(region->top + y) * (size_t)width + (size_t)(region->left + x)] = value;
         }
@@ -212,10 +240,14 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
     if (!find_region(&region, expected, actual, reach)) return true;
     if (!region_create(&region, error)) return false;
     for (int i = 0; i < 256; i++) linear_of[i] = linear(i);
-    for (int picture = 0; picture < 2; picture++) {
-        load_channels(&region, picture == 0 ? expected : actual, linear_of);
-        for (int c = 0; c < CHANNELS; c++) blur(&region, (FlipChannel)c, &blurs[c], &region.planes[picture][c]);
-        find_features(&region, &features, region.planes[picture] + CHANNELS);
+    Background last = is_opaque(&region, expected) && is_opaque(&region, actual) ? WHITE : BLACK;
+    for (Background background = WHITE; background <= last; background++) {
+        for (int picture = 0; picture < 2; picture++) {
+            load_channels(&region, picture == 0 ? expected : actual, background, linear_of);
+            for (int c = 0; c < CHANNELS; c++) blur(&region, (FlipChannel)c, &blurs[c], &region.planes[picture][c]);
+            find_features(&region, &features, region.planes[picture] + CHANNELS);
+        }
+        keep_largest(&region);
     }
     *mean = fill(&region, expected->width, map) / (double)all;
     free(region.memory);

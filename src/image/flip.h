@@ -10,7 +10,8 @@
 /* Pixels per degree of a screen of 0.7 m and 3840 pixels seen from 0.7 m, as in the paper. */
 #define FLIP_PIXELS_PER_DEGREE 67.02064327658225
 
-/* Compares two pictures of equal size, on white where they are transparent. *mean: over all pixels, 0 (equal) to 1.
-   map, NULL or [height, width]: per pixel. False with error set if out of memory. */
+/* Compares two pictures of equal size. If a pixel near a difference is not opaque, they are compared on white and on
+   black, and the larger value of each pixel counts: transparent white is not opaque white. *mean: over all pixels, 0
+   (equal) to 1. map, NULL or [height, width]: per pixel. False with error set if out of memory. */
 bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, float *map, double *mean,
                   Error *error);

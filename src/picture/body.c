@@ -61,7 +61,7 @@ static void draw_target(const Shape *bomb, double radius, uint32_t light, const 
 static BodyColors distance_colors(const Picture *picture, int run, Moment moment, int body) {
     const Theme *theme = picture->theme;
     const Trajectory *first = picture->runs[0], *other = picture->runs[run];
-    uint32_t line = theme->bodies[run].line;
+    uint32_t line = picture_body_colors(picture, run)->line;
     bool ended = moment.frame >= first->frames || moment.frame >= other->frames;
     double distance = pose_distance(pose_at(first, moment, body), pose_at(other, moment, body));
     if (ended || isnan(distance)) return (BodyColors){theme->ground, line, theme->ground_line};
@@ -76,7 +76,7 @@ static BodyColors colors_of(const Picture *picture, int run, Moment moment, int 
     const Trajectory *trajectory = picture->runs[run];
     if (trajectory->fixed[body]) return (BodyColors){theme->ground, theme->ground_line, theme->ground};
     if (picture_colors_distance(picture, run)) return distance_colors(picture, run, moment, body);
-    BodyColors colors = body == trajectory->bomb ? theme->bomb : theme->bodies[run];
+    BodyColors colors = body == trajectory->bomb ? theme->bomb : *picture_body_colors(picture, run);
     if (picture->look.compare != LOOK_OVERLAY) return colors;
     return (BodyColors){theme_mix(colors.fill, theme->panel, FADE), colors.line,
                         theme_mix(colors.band, theme->panel, FADE)};
@@ -116,8 +116,8 @@ void body_draw_all(const Picture *picture, int panel, int run, Moment moment, bo
 static uint32_t outline_color(const Picture *picture, int run, Moment moment, int body) {
     const Theme *theme = picture->theme;
     if (picture_colors_distance(picture, run)) return colors_of(picture, run, moment, body).fill;
-    if (run > 0) return theme->bodies[run].fill;
-    return body == picture->runs[0]->bomb ? theme->bomb.fill : theme->ghost;
+    if (run > 0) return picture_body_colors(picture, run)->fill;
+    return body == picture->runs[0]->bomb ? theme->bomb.fill : picture_ghost_color(picture, 0);
 }
 
 /* Coincident outlines of several runs: later ones are thinner, so all are visible. */
@@ -128,7 +128,7 @@ void body_draw_outlines(const Picture *picture, int panel, int run, Moment momen
                        (1 + above * fmin(NESTED_STEP, NESTED_TOTAL / picture->count));
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body]) continue;
-        Shape shape = body_shape(picture, panel, run, moment, body, &picture->theme->bodies[run]);
+        Shape shape = body_shape(picture, panel, run, moment, body, picture_body_colors(picture, run));
         shape.hollow = true;
         shape.line = outline_color(picture, run, moment, body);
         shape.outline = thickness;
@@ -139,12 +139,13 @@ void body_draw_outlines(const Picture *picture, int panel, int run, Moment momen
 int body_draw_swatch(const Picture *picture, int run, bool hollow, int left, int baseline, int pixels,
                      Drawing *drawing) {
     int side = pixels * 3 / 4;
-    const BodyColors *colors = &picture->theme->bodies[run];
+    const BodyColors *colors = picture_body_colors(picture, run);
     Shape shape = styled_box(picture, side, side, colors);
     shape.x = left + side / 2.0;
     shape.y = baseline - side / 2.0;
     shape.hollow = hollow;
-    if (hollow) shape.line = run == 0 ? picture->theme->ghost : colors->fill, shape.outline = fmax(2, side / 8.0);
+    if (hollow)
+        shape.line = run == 0 ? picture_ghost_color(picture, 0) : colors->fill, shape.outline = fmax(2, side / 8.0);
     drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
     return left + side;
 }

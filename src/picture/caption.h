@@ -14,10 +14,11 @@ enum { CAPTION_SIZE = 256 };
 /* "pyramid_settled" -> "Pyramid settled": the options' title, or the scene's name. */
 void caption_title(const Picture *picture, char title[CAPTION_SIZE]);
 
-/* The method of a run in two parts: "Physics engine" and "sequential impulses, engine"; the second may be empty. */
-void caption_method(const Picture *picture, int run, char title[CAPTION_SIZE], char note[CAPTION_SIZE]);
+/* The name of a run's method (common/method_look.h) and what it is: "engine" and "physics engine, sequential impulses"; the
+   second may be empty. */
+void caption_method(const Picture *picture, int run, char name[CAPTION_SIZE], char note[CAPTION_SIZE]);
 
-/* Text after the title: the options' note, the cost and the method's note. */
+/* Text after the name: the options' note, the cost and what the method is. */
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size);
 
 /* Formats a distance for captions with at most four characters: "0.35", "35.2", "352", ">999", or a dash for NaN. */

@@ -75,7 +75,7 @@ static void draw_trail(const Picture *picture, int panel, int run, Moment moment
     moment = pose_moment(trajectory, moment);
     int first = trail_start(trajectory, moment, body), length = trail_frames(trajectory);
     if (!moved_far(trajectory, moment, body, first)) return;
-    uint32_t color = body == trajectory->bomb ? theme->bomb.fill : theme->bodies[run].fill;
+    uint32_t color = body == trajectory->bomb ? theme->bomb.fill : picture_body_colors(picture, run)->fill;
     for (int frame = first, end; frame <= moment.frame; frame = end) {
         end = segment_end(trajectory, moment, body, frame, TOLERANCE / picture->camera.scale);
         Pose a = trail_pose(trajectory, moment, body, frame), b = trail_pose(trajectory, moment, body, end);

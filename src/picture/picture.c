@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture/picture.h"
 
+#include "common/method_look.h"
 #include "picture/camera_path.h"
 #include "picture/caption.h"
 #include "picture/card.h"
@@ -68,6 +69,7 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
         picture->runs[i] = runs[i];
         if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
     }
+    method_colours_assign(picture->methods, count, picture->colours);
     arrange(picture, width, height, 0);
     find_largest_distances(picture);
     return true;
@@ -106,6 +108,7 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
         picture->notes[i] = options->notes[i];
         if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
     }
+    method_colours_assign(picture->methods, picture->count, picture->colours);
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
@@ -134,6 +137,15 @@ bool picture_draws_outlines(const Picture *picture, int panel, int run) {
     if (look->compare == LOOK_OVERLAY) return run > 0;
     return run == 0 && picture_run(picture, panel) > 0 &&
            (look->compare == LOOK_DIFFERENCE || (look->show & LOOK_GHOSTS) != 0);
+}
+
+const BodyColors *picture_body_colors(const Picture *picture, int run) {
+    return &picture->theme->bodies[picture->colours[run]];
+}
+
+uint32_t picture_ghost_color(const Picture *picture, int run) {
+    const BodyColors *colors = picture_body_colors(picture, run);
+    return picture->theme->ghost_is_band ? colors->band : colors->fill;
 }
 
 bool picture_colors_distance(const Picture *picture, int run) {

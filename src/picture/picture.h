@@ -21,6 +21,7 @@ typedef struct Picture {
     const char *title;                     /* as in RenderOptions; must outlive the picture */
     const char *notes[RENDER_PANELS_MAX];
     const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
+    MethodColour colours[RENDER_PANELS_MAX];             /* of the runs, all different */
     RenderLook look;
     const Theme *theme;
     int panel_count; /* number of panels drawn */
@@ -59,6 +60,10 @@ int picture_run(const Picture *picture, int panel);
 
 /* Whether a panel shows the run's bodies as outlines. */
 bool picture_draws_outlines(const Picture *picture, int panel, int run);
+
+/* The colours of a run's bodies, and of its bodies as outlines over those of other runs. */
+const BodyColors *picture_body_colors(const Picture *picture, int run);
+uint32_t picture_ghost_color(const Picture *picture, int run);
 
 /* Whether the run's bodies are coloured by their distance from the first run's. */
 bool picture_colors_distance(const Picture *picture, int run);

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Of the runs' colours, blue is the darkest and yellow the lightest. */
+/* The hues of methods are Okabe and Ito's (2008); wine, from Tol (2021), replaces yellow, which is too light for lines. */
 static const Theme light = {
     .page = PAGE,
     .panel = PANEL,
@@ -17,16 +17,18 @@ static const Theme light = {
     .impulse = 0x10161F,
     .velocity = 0xA3005C,
     .event = 0x8A94A3,
-    .ghost = 0x0072B2,
+    .ghost_is_band = false,
     .bomb = BOMB_COLORS,
     .bodies =
         {
-            {0x0072B2, 0x00395C, 0x4FA6D8}, /* blue: the first run, usually the engine */
-            {0xE69F00, 0x7A4F00, 0xFFD47A}, /* orange */
-            {0x009E73, 0x004D38, 0x5CCBAA}, /* bluish green */
-            {0xCC79A7, 0x6E2F52, 0xEBBBD5}, /* reddish purple */
-            {0x56B4E9, 0x1D5F87, 0xB5DFF7}, /* sky blue */
-            {0xD8CB2B, 0x6B640E, 0xF4EDA0}, /* yellow, darkened for contrast with white */
+            [METHOD_BLUE] = {0x0072B2, 0x00395C, 0x4FA6D8},
+            [METHOD_ORANGE] = {0xE69F00, 0x7A4F00, 0xFFD47A},
+            [METHOD_GREEN] = {0x009E73, 0x004D38, 0x5CCBAA},
+            [METHOD_PURPLE] = {0xCC79A7, 0x6E2F52, 0xEBBBD5},
+            [METHOD_SKY] = {0x56B4E9, 0x1D5F87, 0xB5DFF7},
+            [METHOD_WINE] = {0x882255, 0x3F0F27, 0xC98BA6},
+            [METHOD_VERMILION] = {0xD55E00, 0x6B2F00, 0xF7B07A},
+            [METHOD_BLACK] = {0x181D24, 0x000000, 0x8D99A8},
         },
     .ramp_near = 0,
     .ramp_far = 1,
@@ -46,16 +48,18 @@ static const Theme dark = {
     .impulse = 0xF7F9FB,
     .velocity = 0xFF8AC4,
     .event = 0x77849A,
-    .ghost = 0x8CCBF0,
+    .ghost_is_band = true,
     .bomb = {0xE4573A, 0x3D0D03, 0xFFF1EA},
     .bodies =
         {
-            {0x2A86C4, 0x061D2D, 0x8CCBF0},
-            {0xE9A92A, 0x3B2600, 0xFFE3A3},
-            {0x1FAE85, 0x02271C, 0x8FE3C8},
-            {0xD58BB4, 0x3A132A, 0xF6D3E5},
-            {0x6FC1F0, 0x0F3349, 0xD0ECFC},
-            {0xE3D84A, 0x39350A, 0xFAF6C4},
+            [METHOD_BLUE] = {0x2A86C4, 0x061D2D, 0x8CCBF0},
+            [METHOD_ORANGE] = {0xE9A92A, 0x3B2600, 0xFFE3A3},
+            [METHOD_GREEN] = {0x1FAE85, 0x02271C, 0x8FE3C8},
+            [METHOD_PURPLE] = {0xD58BB4, 0x3A132A, 0xF6D3E5},
+            [METHOD_SKY] = {0x6FC1F0, 0x0F3349, 0xD0ECFC},
+            [METHOD_WINE] = {0xB0487D, 0x2A0818, 0xE8B4CE},
+            [METHOD_VERMILION] = {0xE2762A, 0x3A1600, 0xFFC9A0},
+            [METHOD_BLACK] = {0xC3CCD7, 0x232A33, 0xF2F5F8}, /* white here: what is most unlike the page */
         },
     .ramp_near = 0.86,
     .ramp_far = 0,

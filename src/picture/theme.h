@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The colours of a whole picture, 0xRRGGBB: light as in style.h, or dark. */
 #pragma once
+#include "common/method_description.h"
 #include "picture/look.h"
 #include "picture/style.h"
 
@@ -8,10 +9,10 @@ typedef struct Theme {
     uint32_t page, panel, frame, grid, grid_strong, ink, ink_soft, ground, ground_line;
     uint32_t impulse, velocity; /* arrows */
     uint32_t event;             /* event lines in the timeline */
-    uint32_t ghost;             /* outlines of the first run over others */
     BodyColors bomb;
-    BodyColors bodies[LOOK_RUNS_MAX]; /* per run */
-    double ramp_near, ramp_far;       /* range of the colour scale: large distances stand out most */
+    BodyColors bodies[METHOD_COLOURS]; /* by the colour of the run's method */
+    bool ghost_is_band;         /* outlines of a run over others have the colour of its bands, else of its boxes */
+    double ramp_near, ramp_far; /* range of the colour scale: large distances stand out most */
 } Theme;
 
 const Theme *theme_get(LookTheme theme);

@@ -86,7 +86,7 @@ static int segment_end(const Picture *picture, const float *curve, int i) {
 
 static void draw_curve(const Picture *picture, int run, Drawing *drawing) {
     const float *curve = picture->curves + (size_t)run * (size_t)picture->curve_points;
-    DashedLine line = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
+    DashedLine line = {thickness(picture), 0, picture_body_colors(picture, run)->fill, dashes[run]};
     Rect clip = picture->layout.timeline;
     clip.top -= 2, clip.bottom += 2;
     double every = (double)picture->frames / picture->curve_points;
@@ -182,7 +182,7 @@ static void draw_key(const Picture *picture, Drawing *drawing) {
     int x = layout->timeline.left, baseline = layout->key_baseline, right = layout->right;
     x = font_add_fitting(drawing, font, text, x, baseline, right - x, picture->theme->ink_soft) + 2 * font->pixels;
     for (int run = 1; run < picture->count; run++) {
-        DashedLine line = {thickness(picture), 0, picture->theme->bodies[run].fill, dashes[run]};
+        DashedLine line = {thickness(picture), 0, picture_body_colors(picture, run)->fill, dashes[run]};
         double y = baseline - font->pixels * 0.36;
         int end = x + font->pixels * 5 / 2;
         if (end + 4 * font->pixels > right) return;
@@ -217,7 +217,7 @@ void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawin
     for (int run = 1; run < picture->count; run++) {
         double distance = picture_run_distance(picture, run, moment);
         if (isnan(distance)) continue;
-        stroke_dot(drawing, (Point){x, y_at(picture, distance)}, radius, picture->theme->bodies[run].fill,
+        stroke_dot(drawing, (Point){x, y_at(picture, distance)}, radius, picture_body_colors(picture, run)->fill,
                    picture->theme->ink, &clip);
     }
 }

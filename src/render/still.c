@@ -48,24 +48,22 @@ void still_destroy(Still *still) {
     free(still);
 }
 
-/* A picture of one panel without margins, in the requested run's colours. */
+/* A picture of one panel without margins, in the requested colours. */
 static Picture plan(const Still *still, const StillShot *shot) {
-    Picture picture = {.count = shot->colours + 1, .frames = shot->run->frames, .camera = shot->camera};
-    for (int i = 0; i <= shot->colours; i++) {
-        picture.layout.panels[i] = (Rect){0, 0, still->on_white->width, still->on_white->height};
-        picture.runs[i] = shot->run;
-    }
+    Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera};
+    picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
+    picture.runs[0] = shot->run;
+    picture.colours[0] = shot->colour;
     picture.theme = theme_get(LOOK_LIGHT);
     return picture;
 }
 
 static void draw_bodies(const Picture *picture, const StillShot *shot, Drawing *drawing) {
     const Moment moment = moment_stored(shot->frame);
-    const int run = shot->colours;
-    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(picture, run, run, moment, true, drawing);
+    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(picture, 0, 0, moment, true, drawing);
     if ((shot->parts & STILL_MOVING) == 0) return;
-    body_draw_all(picture, run, run, moment, false, drawing);
-    if (shot->run->bomb >= 0) body_draw(picture, run, run, moment, shot->run->bomb, drawing);
+    body_draw_all(picture, 0, 0, moment, false, drawing);
+    if (shot->run->bomb >= 0) body_draw(picture, 0, 0, moment, shot->run->bomb, drawing);
 }
 
 /* Computes colour and alpha of a pixel from its values on black and on white. */

@@ -9,7 +9,8 @@ typedef enum StillParts { STILL_FIXED = 1, STILL_MOVING = 2, STILL_ALL = 3 } Sti
 
 typedef struct StillShot {
     const Trajectory *run;
-    int frame, colours; /* colours: of the run with this index, 0 .. RENDER_PANELS_MAX - 1 */
+    int frame;
+    MethodColour colour; /* of the bodies */
     StillParts parts;
     Camera camera; /* for the whole image */
 } StillShot;

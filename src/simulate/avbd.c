@@ -131,9 +131,9 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 const SteppingKind stepping_avbd = {
     .description = {.name = "avbd",
                     .summary = "augmented vertex block descent: implicit positions, body after body",
-                    .settings = settings,
-                    .title = "AVBD",
                     .caption = "augmented vertex block descent",
+                    .look = {METHOD_GREEN, METHOD_DIAMOND},
+                    .settings = settings,
                     .no_push_out = true,
                     .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10"),

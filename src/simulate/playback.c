@@ -162,6 +162,8 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 const SteppingKind stepping_playback = {
     .description = {.name = "playback",
                     .summary = "baseline without physics: replays the velocities of the nearest recorded launch",
+                    .caption = "nearest recorded launch",
+                    .look = {METHOD_BLACK, METHOD_INVERTED_TRIANGLE},
                     .settings = settings,
                     .role = METHOD_BASELINE,
                     .chart = METHOD_RUNS("launches=25", "launches=100"),

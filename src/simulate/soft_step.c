@@ -172,9 +172,9 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 const SteppingKind stepping_soft_step = {
     .description = {.name = "soft-step",
                     .summary = "Box2D v3's solver: soft contacts, substeps and relaxation",
+                    .caption = "Box2D v3's solver",
+                    .look = {METHOD_BLUE, METHOD_SQUARE},
                     .settings = settings,
-                    .title = "Soft step",
-                    .caption = "the solver of Box2D v3",
                     .no_push_out = true,
                     .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=8", "substeps=16"),
                     .chart_quick = METHOD_RUNS("substeps=4"),

@@ -175,6 +175,8 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
 const SteppingKind stepping_substepping = {
     .description = {.name = "substepping",
                     .summary = "one collision pass, then small steps of sequential impulses",
+                    .caption = "small steps of sequential impulses",
+                    .look = {METHOD_PURPLE, METHOD_SQUARE},
                     .settings = settings,
                     .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=10", "substeps=20", "substeps=50"),
                     .chart_quick = METHOD_RUNS("substeps=10"),

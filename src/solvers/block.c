@@ -58,6 +58,8 @@ static void destroy(void *state) {
 const ContactSolverKind solver_block = {
     .description = {.name = "block",
                     .summary = "sequential impulses that solve both normal impulses of a pair together",
+                    .caption = "both impulses of a pair at once",
+                    .look = {METHOD_SKY, METHOD_PENTAGON},
                     .settings = settings,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
                     .chart_quick = METHOD_RUNS("k=10"),

@@ -21,6 +21,8 @@ const ContactSolverKind solver_constant = {
     .description = {.name = "constant",
                     .summary =
                         "baseline: predicts the mean of the training data of pair-net or contact-net for every pair",
+                    .caption = "mean of the training data",
+                    .look = {METHOD_WINE, METHOD_SQUARE},
                     .settings = settings,
                     .role = METHOD_BASELINE,
                     .needs_network = true,

@@ -30,6 +30,8 @@ const ContactSolverKind solver_contact_net = {
     .description = {.name = "contact-net",
                     .summary =
                         "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
+                    .caption = "neural network for contact points",
+                    .look = {METHOD_WINE, METHOD_TRIANGLE},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "contact-net:net=off",

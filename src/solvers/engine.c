@@ -67,9 +67,9 @@ static void destroy(void *state) {
 const ContactSolverKind solver_engine = {
     .description = {.name = "engine",
                     .summary = "sequential impulses with warm starting: the physics engine",
+                    .caption = "physics engine, sequential impulses",
+                    .look = {METHOD_BLUE, METHOD_CIRCLE},
                     .settings = settings,
-                    .title = "Physics engine",
-                    .caption = "sequential impulses",
                     .shipped = "k=10",
                     .chart = METHOD_RUNS("k=1", "k=4", "k=10", "k=20", "k=50", "k=100"),
                     .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50"),

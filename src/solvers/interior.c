@@ -222,8 +222,9 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_interior = {
     .description = {.name = "interior",
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
+                    .caption = "interior-point steps",
+                    .look = {METHOD_PURPLE, METHOD_DIAMOND},
                     .settings = settings,
-                    .title = "Interior point",
                     .falls_back = true,
                     .chart = METHOD_RUNS("near=0.1", "near=0.02", "near=0.001"),
                     .chart_quick = METHOD_NO_RUNS,
@@ -239,8 +240,9 @@ static const SettingSpec net_settings[] = {{"near", "residual at which iteration
 const ContactSolverKind solver_interior_net = {
     .description = {.name = "interior-net",
                     .summary = "interior with a network that places each contact before an iteration",
+                    .caption = "interior-point steps with a network",
+                    .look = {METHOD_VERMILION, METHOD_INVERTED_TRIANGLE},
                     .settings = net_settings,
-                    .title = "Interior point with a network",
                     .needs_network = true,
                     .twin = "interior",
                     .chart = METHOD_RUNS("near=0.02", "near=0.001"),

@@ -73,6 +73,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_learned_momentum = {
     .description = {.name = "learned-momentum",
                     .summary = "momentum with learned factors, one per sweep",
+                    .caption = "momentum with learned factors",
+                    .look = {METHOD_ORANGE, METHOD_INVERTED_TRIANGLE},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "momentum",

@@ -156,6 +156,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_momentum = {
     .description = {.name = "momentum",
                     .summary = "sequential impulses with momentum extrapolation between sweeps",
+                    .caption = "sequential impulses with momentum",
+                    .look = {METHOD_GREEN, METHOD_TRIANGLE},
                     .settings = settings,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.5,more=200",
                                          "near=0.1,more=200", "near=0.02,more=200", "near=0.005,more=200"),

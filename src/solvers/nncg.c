@@ -171,6 +171,8 @@ static void destroy(void *state) {
 
 const ContactSolverKind solver_nncg = {.description = {.name = "nncg",
                                                        .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
+                                                       .caption = "conjugate gradients over sweeps",
+                                                       .look = {METHOD_BLACK, METHOD_DIAMOND},
                                                        .settings = settings,
                                                        .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
                                                        .chart_quick = METHOD_RUNS("k=20"),

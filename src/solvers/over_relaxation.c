@@ -61,6 +61,8 @@ static void destroy(void *state) {
 const ContactSolverKind solver_over_relaxation = {
     .description = {.name = "over-relaxation",
                     .summary = "projected successive over-relaxation: sequential impulses with scaled increments",
+                    .caption = "scaled sequential impulses",
+                    .look = {METHOD_VERMILION, METHOD_SQUARE},
                     .settings = settings,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
                     .chart_quick = METHOD_RUNS("k=10"),

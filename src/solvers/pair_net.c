@@ -56,8 +56,9 @@ static void *create(const Settings *chosen, Error *error) {
 const ContactSolverKind solver_pair_net = {
     .description = {.name = "pair-net",
                     .summary = "the paper's network: predicts the change of velocities, pair by pair",
+                    .caption = "neural network for pairs",
+                    .look = {METHOD_ORANGE, METHOD_DIAMOND},
                     .settings = settings,
-                    .title = "Neural network",
                     .needs_network = true,
                     .twin = "pair-net:net=off",
                     .chart = METHOD_RUNS("", "net=off"),

@@ -36,7 +36,8 @@ static void destroy(void *state) {
 const ContactSolverKind solver_reference = {
     .description = {.name = "reference",
                     .summary = "the converged solution, by interior points in double; errors are measured against it",
-                    .title = "Converged solution",
+                    .caption = "converged solution",
+                    .look = {METHOD_BLACK, METHOD_CIRCLE},
                     .role = METHOD_REFERENCE,
                     .stability_place = 6},
     .create = create,

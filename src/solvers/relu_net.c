@@ -71,6 +71,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_relu_net = {
     .description = {.name = "relu-net",
                     .summary = "sequential impulses written as a ReLU network; nothing is trained",
+                    .caption = "sequential impulses as a ReLU network",
+                    .look = {METHOD_WINE, METHOD_CIRCLE},
                     .settings = settings,
                     .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,

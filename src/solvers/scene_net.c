@@ -238,8 +238,9 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 const ContactSolverKind solver_scene_net = {
     .description = {.name = "scene-net",
                     .summary = "a network predicts all impulses of a scene at impacts; sweeps follow",
+                    .caption = "neural network for a scene",
+                    .look = {METHOD_SKY, METHOD_DIAMOND},
                     .settings = settings,
-                    .title = "Scene network",
                     .needs_network = true,
                     .twin = "scene-net:net=off",
                     .chart = METHOD_RUNS("", "near=3", "more=200", "net=off", "more=200,net=off"),

@@ -3,12 +3,11 @@
 
 #include "chart/chart_data.h"
 #include "common/file.h"
+#include "common/method_look.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
-
-enum { LEAST_NAME = 6 };
 
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
     snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
@@ -121,30 +120,11 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-/* "k=10,warm=off" -> "k=10, warm=off"; "k=5,network=DIR/net.npz" -> "k=5, net.npz". */
-static size_t show_setting(char shown[2 * STABILITY_SETTING_SIZE], const char *setting) {
-    size_t used = 0, item = 0;
-    for (const char *c = setting; *c != '\0'; c++) {
-        if (*c == '/') {
-            used = item;
-            continue;
-        }
-        shown[used++] = chart_plain_letter(*c);
-        if (*c != ',') continue;
-        shown[used++] = ' ';
-        item = used;
-    }
-    shown[used] = '\0';
-    return used;
-}
-
-/* If too long, the method's name is cut first: settings distinguish the panels. */
 void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
-    char name[CSV_NAME_SIZE], shown[2 * STABILITY_SETTING_SIZE];
-    size_t used = show_setting(shown, setting);
-    snprintf(name, sizeof name, "%s", method);
-    if (used > 0 && used + 2 + LEAST_NAME <= most) gnuplot_truncate(name, most - used - 2);
-    snprintf(text, STABILITY_TEXT_SIZE, "%s%s%s", name, used > 0 ? ", " : "", shown);
+    char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
+    snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
+    method_name(text, STABILITY_TEXT_SIZE, whole);
+    for (char *c = text; *c != '\0'; c++) *c = chart_plain_letter(*c);
     gnuplot_truncate(text, most);
 }
 

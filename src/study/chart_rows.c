@@ -16,8 +16,9 @@ void chart_split_setting(const char *setting, char *numbers, char *words) {
         const char *value = strchr(item, '=');
         double number;
         bool is_number = value != NULL && parse_double(value + 1, &number);
-        if (!is_number || numbers[0] != '\0') strcat(is_number ? numbers : words, ", ");
-        strcat(is_number ? numbers : words, item);
+        char *part = is_number ? numbers : words;
+        if (part[0] != '\0') strcat(part, ",");
+        strcat(part, item);
         setting += length + (setting[length] == ',');
     }
 }
@@ -25,7 +26,7 @@ void chart_split_setting(const char *setting, char *numbers, char *words) {
 void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]) {
     char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
     chart_split_setting(row->setting, numbers, words);
-    snprintf(family, CHART_FAMILY_SIZE, "%s%s", row->method, words);
+    snprintf(family, CHART_FAMILY_SIZE, "%s%s%s", row->method, words[0] != '\0' ? ":" : "", words);
 }
 
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {

@@ -7,10 +7,10 @@
 
 enum { CHART_FAMILY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE };
 
-/* Splits "k=20,warm=off" into numbers "k=20" and words ", warm=off", appended to empty texts of 2 * CHART_SETTING_SIZE. */
+/* Splits "k=20,warm=off" into numbers "k=20" and words "warm=off", appended to texts of 2 * CHART_SETTING_SIZE. */
 void chart_split_setting(const char *setting, char *numbers, char *words);
 
-/* The family of a row: its method with the words of its setting ("engine, warm=off"). Settings of one family differ in
+/* The family of a row: its method with the words of its setting ("engine:warm=off"). Settings of one family differ in
    numbers only. */
 void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The families of a chart, each with its curve of error over time in one scene.
 
-   A family is a method with the words of its setting ("engine, warm=off"); its settings differ in numbers. The rivals of a
+   A family is a method with the words of its setting ("engine:warm=off"); its settings differ in numbers. The rivals of a
    method are the families of other methods that learn nothing; a learned method's silenced twin is no rival of it. The
    best rival at a time is the one with the least error in that time. Closed loop only. Baselines, the reference and rows
    without time or error are left out; a setting that lost the scene is on no curve. Errors below PARETO_RESOLUTION count

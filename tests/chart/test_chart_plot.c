@@ -48,7 +48,7 @@ static void three_files_are_drawn(void **state) {
         "root = tree.parse(sys.argv[1]).getroot()\n"
         "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
         "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
-        "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine, warm=off',\n"
+        "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine:warm=off',\n"
         "               'momentum-schedule', 'playback', 'pair-net', 'Pareto front of solvers', 'k=100', 'm/s',\n"
         "               'pyramid_settled, 40 launches', 'Errors below 0.0001 m/s are drawn there'):\n"
         "    assert wanted in texts, (wanted, texts)\n",
@@ -223,7 +223,7 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     assert_ok(chart_gather(&chart, &table, "stack", "rows.csv", &error), error);
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "engine");
-    assert_string_equal(chart.lines[1].name, "momentum, warm=off");
+    assert_string_equal(chart.lines[1].name, "momentum:warm=off");
     assert_int_equal(chart.launches, 40);
     assert_int_equal(chart.lines[0].left_out, 0);
     assert_int_equal(chart.floored, 1); /* 1e-9 */
@@ -235,7 +235,7 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     assert_true(impact->marks[0].on_front && !impact->marks[0].shipped);
     assert_string_equal(impact->marks[1].label, "k=10");
     assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
-    assert_string_equal(impact->marks[2].label, "k=7, b=0.5");
+    assert_string_equal(impact->marks[2].label, "k=7,b=0.5");
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
     chart_free(&chart);
     chart_csv_free(&table);
@@ -259,11 +259,11 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
     assert_int_equal(chart.line_count, 3);
     assert_string_equal(chart.lines[0].name, "momentum");
-    assert_string_equal(chart.lines[1].name, "momentum, near");
+    assert_string_equal(chart.lines[1].name, "momentum:near");
     assert_string_equal(chart.lines[2].name, "scene-net");
     assert_int_equal(chart.lines[0].marks[0], 2);
     for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
-    assert_string_equal(chart.panels[0].marks[3].label, "k=5, near=0.1");
+    assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
     chart_free(&chart);
     chart_csv_free(&table);
 }

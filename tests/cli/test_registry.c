@@ -23,7 +23,7 @@ static void destroy(void *state) { solver_engine.destroy(state); }
 
 static const ContactSolverKind solver_of_test = {.description = {.name = "of-test",
                                                                  .summary = "a solver that only a test has",
-                                                                 .title = "Solver of a test",
+                                                                 .caption = "solver of a test",
                                                                  .falls_back = true},
                                                  .create = create,
                                                  .solve = solve,
@@ -133,18 +133,19 @@ static void its_fallbacks_are_counted(void **state) {
     free(printed);
 }
 
-static void a_picture_has_its_title(void **state) {
+static void a_picture_has_its_caption(void **state) {
     (void)state;
     Error error = {0};
     Picture picture;
     Trajectory *run = run_make("of-test", 2);
     const RenderOptions options = draw_panels_defaults(".");
-    char title[CAPTION_SIZE], note[CAPTION_SIZE];
+    char name[CAPTION_SIZE], note[CAPTION_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
-    caption_method(&picture, 0, title, note);
-    assert_string_equal(title, "Solver of a test");
-    assert_string_equal(note, "of-test");
+    caption_method(&picture, 0, name, note);
+    assert_string_equal(name, "of-test");
+    assert_string_equal(note, "solver of a test");
+    assert_int_equal(picture.colours[0], METHOD_BLUE); /* none stated: the first */
     picture_free(&picture);
     trajectory_destroy(run);
 }
@@ -153,6 +154,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_lists_it),          cmocka_unit_test(every_study_has_it),
         cmocka_unit_test(a_chart_scores_it),         cmocka_unit_test(a_border_is_found_for_it),
-        cmocka_unit_test(its_fallbacks_are_counted), cmocka_unit_test(a_picture_has_its_title)};
+        cmocka_unit_test(its_fallbacks_are_counted), cmocka_unit_test(a_picture_has_its_caption)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,18 +82,45 @@ static void who_has_left_is_counted(void **state) {
     trajectory_destroy(runs[1]);
 }
 
-static void long_names_are_cut_to_their_row(void **state) {
+static double row_height(const Sketch *sketch) {
+    const SketchMark *cell = nth_mark(sketch, MARK_IMAGE, 0);
+    return cell->width * cell->image->height / cell->image->width;
+}
+
+/* Whatever the width of the page, the method's name is there as a whole, and so are settings that have room. */
+static void the_name_of_a_method_never_disappears(void **state) {
     (void)state;
-    Trajectory *run = run_make("pair-net:network=some/where/a/very/long/name/of/a/network/that/fits/nowhere.npz", 61);
+    Trajectory *run = run_make("momentum:k=20", 61);
+    FigureSpec spec = spec_of(&run, 1);
+    for (int moments = 2; moments <= 12; moments += 5)
+        for (spec.width = 40 + 7 * moments; spec.width < 240; spec.width += 31.5) {
+            spec.moments = moments;
+            Sketch sketch;
+            draw_kind(&sketch, "strip", &spec);
+            const bool one_line = count_texts(&sketch, "momentum:k=20") == 1;
+            assert_true(one_line || (count_texts(&sketch, "momentum:") == 1 && count_texts(&sketch, "k=20") == 1));
+            for (int i = 0; i < (one_line ? 1 : 2); i++) {
+                const SketchMark *name = nth_mark(&sketch, MARK_TEXT, i);
+                assert_true(type_width(sketch.texts + name->text, name->style.points) <= row_height(&sketch) + 1e-9);
+                assert_true(name->at.x > 0.3 * name->style.points * MM_PER_POINT);
+            }
+            sketch_free(&sketch);
+        }
+    trajectory_destroy(run);
+}
+
+static void long_settings_are_cut_to_their_row(void **state) {
+    (void)state;
+    Trajectory *run = run_make("pair-net:network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz", 61);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 6;
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
-    const SketchMark *cell = nth_mark(&sketch, MARK_IMAGE, 0);
-    const char *name = sketch.texts + nth_mark(&sketch, MARK_TEXT, 0)->text;
-    assert_memory_equal(name, "pair-net:", 9);
-    assert_non_null(strstr(name, "\xE2\x80\xA6"));
-    assert_true(type_width(name, spec.points) <= cell->width * cell->image->height / cell->image->width);
+    assert_int_equal(count_texts(&sketch, "pair-net:"), 1);
+    const char *settings = sketch.texts + nth_mark(&sketch, MARK_TEXT, 1)->text;
+    assert_memory_equal(settings, "network=a-", 10);
+    assert_non_null(strstr(settings, "\xE2\x80\xA6"));
+    assert_true(type_width(settings, spec.points) <= row_height(&sketch));
     sketch_free(&sketch);
     trajectory_destroy(run);
 }
@@ -125,7 +152,8 @@ int main(void) {
         cmocka_unit_test(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run),
         cmocka_unit_test(the_window_holds_what_moves),
         cmocka_unit_test(who_has_left_is_counted),
-        cmocka_unit_test(long_names_are_cut_to_their_row),
+        cmocka_unit_test(the_name_of_a_method_never_disappears),
+        cmocka_unit_test(long_settings_are_cut_to_their_row),
         cmocka_unit_test(what_cannot_be_shown_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -217,13 +217,28 @@ static void filters_are_scaled_by_what_they_find(void **state) {
     for (int i = 0; i < WIDTH * HEIGHT; i++) assert_near(to[i], 0, 1e-6);
 }
 
-static void pictures_of_one_pixel_are_pictures(void **state) {
-    (void)state;
+static double flip_of_pixels(const uint8_t first[4], const uint8_t second[4]) {
     Error error = {0};
     double mean;
-    Image black = {1, 1, (uint8_t[]){0, 0, 0, 255}, NULL}, clear = {1, 1, (uint8_t[]){9, 9, 9, 0}, NULL};
-    assert_ok(flip_compare(&black, &clear, FLIP_PIXELS_PER_DEGREE, NULL, &mean, &error), error);
-    assert_near(mean, 0.967380, 1e-5); /* transparent is white */
+    uint8_t pixels[2][4];
+    memcpy(pixels[0], first, 4);
+    memcpy(pixels[1], second, 4);
+    const Image x = {1, 1, pixels[0], NULL}, y = {1, 1, pixels[1], NULL};
+    assert_ok(flip_compare(&x, &y, FLIP_PIXELS_PER_DEGREE, NULL, &mean, &error), error);
+    return mean;
+}
+
+/* The larger of the values on white and on black. 0.967380 is that of black and white. */
+static void transparency_is_a_difference(void **state) {
+    (void)state;
+    static const uint8_t clear_white[] = {255, 255, 255, 0}, clear_black[] = {0, 0, 0, 0}, black[] = {0, 0, 0, 255},
+                         white[] = {255, 255, 255, 255}, half_white[] = {255, 255, 255, 128};
+    assert_near(flip_of_pixels(white, clear_white), 0.967380, 1e-5);
+    assert_near(flip_of_pixels(clear_white, white), 0.967380, 1e-5);
+    assert_near(flip_of_pixels(black, clear_black), 0.967380, 1e-5);
+    assert_near(flip_of_pixels(white, half_white), expected_grey(255, 128), 1e-4); /* on black */
+    /* Nobody sees the colour of a transparent pixel. */
+    assert_true(flip_of_pixels(clear_white, clear_black) == 0);
 }
 
 int main(void) {
@@ -238,7 +253,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_surroundings_do_not_matter, make, destroy),
         cmocka_unit_test(kernels_are_derivatives_of_a_gaussian),
         cmocka_unit_test(filters_are_scaled_by_what_they_find),
-        cmocka_unit_test(pictures_of_one_pixel_are_pictures),
+        cmocka_unit_test(transparency_is_a_difference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

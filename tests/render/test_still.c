@@ -11,11 +11,11 @@ enum { SIDE = 200 };
 /* 20 pixels per metre; the ground's top is row 160. */
 static const Camera camera = {20, 100, 160};
 
-static Image *shoot(const Trajectory *run, int frame, int colours, StillParts parts) {
+static Image *shoot(const Trajectory *run, int frame, MethodColour colour, StillParts parts) {
     Error error = {0};
     Still *still = still_create(SIDE, SIDE, &error);
     Image *image = image_create(SIDE, SIDE, &error);
-    const StillShot shot = {run, frame, colours, parts, camera};
+    const StillShot shot = {run, frame, colour, parts, camera};
     assert_ok(still != NULL && image != NULL && still_draw(still, &shot, image, &error), error);
     still_destroy(still);
     return image;
@@ -30,17 +30,17 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 static void bodies_stand_on_nothing(void **state) {
     (void)state;
     Trajectory *run = run_make("engine", 3);
-    Image *image = shoot(run, 0, 0, STILL_ALL);
+    Image *image = shoot(run, 0, METHOD_BLUE, STILL_ALL);
     expect_pixel(image, 60, 150, 0x0072B2FF);  /* the middle of the first box */
     expect_pixel(image, 100, 150, 0x00000000); /* between the boxes */
     expect_pixel(image, 100, 180, 0xD3D8DFFF); /* the ground */
     expect_pixel(image, 120, 48, 0x00000000);  /* the bomb appears later */
     image_destroy(image);
-    image = shoot(run, 0, 1, STILL_MOVING);
+    image = shoot(run, 0, METHOD_ORANGE, STILL_MOVING);
     expect_pixel(image, 60, 150, 0xE69F00FF);
     expect_pixel(image, 100, 180, 0x00000000);
     image_destroy(image);
-    image = shoot(run, 2, 0, STILL_FIXED);
+    image = shoot(run, 2, METHOD_BLUE, STILL_FIXED);
     expect_pixel(image, 60, 150, 0x00000000);
     expect_pixel(image, 100, 180, 0xD3D8DFFF);
     image_destroy(image);
@@ -51,7 +51,7 @@ static void bodies_stand_on_nothing(void **state) {
 static void alpha_is_coverage(void **state) {
     (void)state;
     Trajectory *run = run_make("engine", 8);
-    Image *image = shoot(run, 7, 0, STILL_MOVING);
+    Image *image = shoot(run, 7, METHOD_BLUE, STILL_MOVING);
     double sum = 0;
     int partial = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {

@@ -16,7 +16,7 @@ static void borders_are_drawn_as_in_the_table(void **state) {
              "expect(count(svg, '#A3CBE5'), 4 + 2 + 2, 'bars')\n"
              "expect(count(svg, '%s'), 3 + 1, 'falls')\nexpect(count(svg, '%s'), 1 + 1, 'explodes')\n"
              "expect(count(svg, '%s'), 1 + 1, 'sinks')\n"
-             "for text in ('Time step', 'Rate (Hz)', 'engine, k=10', 'never holds', 'not applicable'):\n"
+             "for text in ('Time step', 'Rate (Hz)', 'engine:k=10', 'never holds', 'not applicable'):\n"
              "    expect(texts(svg).count(text), 1, text)\n",
              SVG_FUNCTIONS, verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill,
              verdict_looks[VERDICT_SINKS].fill);

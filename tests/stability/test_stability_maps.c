@@ -14,7 +14,7 @@ static void each_verdict_has_its_tile(void **state) {
         used += (size_t)snprintf(program + used, sizeof program - used, "expect(count(svg, '%s'), 2, '%s')\n",
                                  verdict_looks[look].fill, verdict_looks[look].name);
     snprintf(program + used, sizeof program - used,
-             "for text in ('settles', 'non-finite', 'not applicable', 'Height (boxes)', 'Ratio', 'engine, k=0'):\n"
+             "for text in ('settles', 'non-finite', 'not applicable', 'Height (boxes)', 'Ratio', 'engine:k=0'):\n"
              "    expect(texts(svg).count(text), 1, text)\n"
              "assert 'not run' not in texts(svg)\n");
     run_python(program, temporary_folder);
@@ -77,8 +77,8 @@ static void settings_may_be_paths(void **state) {
     snprintf(program, sizeof program,
              "%ssvg = read('map-m')\n"
              "expect('m:pair-net:network=' + 103 * '0' + '/?it?s?/net.npz:1,2 falls' in svg, True, 'link')\n"
-             "expect(texts(svg).count('pair-net, net.npz'), 1, 'title')\n"
-             "expect(texts(read('borders')).count('pair-net, net.npz'), 1, 'label')\n",
+             "expect(texts(svg).count('pair-net:network=net.npz'), 1, 'title')\n"
+             "expect(texts(read('borders')).count('pair-net:network=net...'), 1, 'label')\n",
              SVG_FUNCTIONS);
     run_python(program, temporary_folder);
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
@@ -99,19 +99,19 @@ static void axes_name_their_values(void **state) {
                temporary_folder);
 }
 
-static void titles_are_cut_in_the_methods_name(void **state) {
+static void titles_are_cut_in_the_settings(void **state) {
     (void)state;
     static const struct {
         const char *method, *setting, *text;
         size_t most;
     } cases[] = {{"engine", "", "engine", 20},
-                 {"engine", "k=10,warm=off", "engine, k=10, warm=off", 22},
-                 {"learned-momentum", "k=10,warm=off", "learned..., k=10, warm=off", 26},
-                 {"learned-momentum", "k=10,warm=off", "learned-momentum,...", 20},
+                 {"engine", "k=10,warm=off", "engine:k=10,warm=off", 20},
+                 {"learned-momentum", "k=10,warm=off", "learned-momentum:k=10,w...", 26},
+                 {"learned-momentum", "k=10,warm=off", "learned-momentum:...", 20},
                  {"learned-momentum", "", "learned...", 10},
-                 {"scene-net", "network=../of/networks/a-b.npz,k=4", "scene-net, a-b.npz, k=4", 40},
-                 {"scene-net", "k=4,network=<it's>.npz", "scene-net, k=4, network=?it?s?.npz", 40},
-                 {"pair-net", "network=a-long-name-of-a-network.npz", "pair-net, network=a-long-name...", 32}};
+                 {"scene-net", "network=../of/networks/a-b.npz,k=4", "scene-net:network=a-b.npz,k=4", 40},
+                 {"scene-net", "k=4,network=<it's>.npz", "scene-net:k=4,network=?it?s?.npz", 40},
+                 {"pair-net", "network=a-long-name-of-a-network.npz", "pair-net:network=a-long-name-...", 32}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[STABILITY_TEXT_SIZE];
         stability_method_text(text, cases[i].most, cases[i].method, cases[i].setting);
@@ -130,7 +130,7 @@ static void many_methods_and_large_grids_are_drawn(void **state) {
         int cells = cases[i].across * cases[i].up;
         snprintf(program, sizeof program,
                  "%ssvg = read('map-grid')\nexpect(count(svg, '%s'), %d, 'settles')\n"
-                 "expect(sum(t.startswith('engine, k=') for t in texts(svg)), %d, 'panels')\n",
+                 "expect(sum(t.startswith('engine:k=') for t in texts(svg)), %d, 'panels')\n",
                  SVG_FUNCTIONS, verdict_looks[0].fill,
                  cases[i].methods * ((cells + LOOK_MISSING - 1) / LOOK_MISSING) + 1, cases[i].methods);
         run_python(program, temporary_folder);
@@ -187,7 +187,7 @@ int main(void) {
         cmocka_unit_test(cells_link_to_their_clips),
         cmocka_unit_test(settings_may_be_paths),
         cmocka_unit_test(axes_name_their_values),
-        cmocka_unit_test(titles_are_cut_in_the_methods_name),
+        cmocka_unit_test(titles_are_cut_in_the_settings),
         cmocka_unit_test(many_methods_and_large_grids_are_drawn),
         cmocka_unit_test(invalid_maps_are_refused_with_their_place),
         cmocka_unit_test(maps_too_large_are_refused),

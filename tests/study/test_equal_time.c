@@ -96,7 +96,7 @@ static void methods_are_compared_at_one_time(void **state) {
         {"momentum", "interior", 0.2, 20},
         {"learned-momentum", "interior", 0.4, 40},
         {"scene-net", "interior", 0.1, 10},
-        {"scene-net, net=off", "interior", 0.5, 50},
+        {"scene-net:net=off", "interior", 0.5, 50},
         {"interior", "momentum", 0.01, 0.05},
         {"block", "interior", NAN, NAN}, /* lost the scene */
     };
