@@ -93,7 +93,8 @@ static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *
     int needed = 0;
     for (int rows = 0; rows <= needed; rows++) {
         arrange(picture, options->width, options->height, rows);
-        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->largest_distance, error))
+        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->camera.scale,
+                           picture->largest_distance, error))
             return false;
         needed = legend_rows(picture);
     }

@@ -176,7 +176,7 @@ static void distances_have_their_place_on_the_scale(void **state) {
     Scales scales;
     Error error = {0};
     Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
-    assert_ok(scales_choose(&scales, runs[0], &picture.layout, 0.5, &error), error);
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
     assert_false(scales.exceeded);
     assert_near(scales_share(&scales, 0), 0, 0);
@@ -184,7 +184,7 @@ static void distances_have_their_place_on_the_scale(void **state) {
     assert_near(scales_share(&scales, 0.001), 0, 1e-12);
     assert_near(scales_share(&scales, 0.1), 2.0 / 3, 1e-12);
     assert_near(scales_share(&scales, 5), 1, 0);
-    assert_ok(scales_choose(&scales, runs[0], &picture.layout, 5000, &error), error);
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 5000, &error), error);
     assert_true(scales.exceeded && scales.last_decade == 1);
     picture_free(&picture);
 }
