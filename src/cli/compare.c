@@ -2,12 +2,18 @@
 #include "cli/commands.h"
 #include "cli/compare_options.h"
 #include "cli/compare_print.h"
+#include "cli/compare_watch.h"
 #include "cli/progress_bar.h"
+#include "common/hash.h"
+#include "report/regression_github.h"
 #include "report/regression_report.h"
 #include "trajectory/trajectory.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static bool is_trajectory(const char *path) {
     size_t length = strlen(path);
@@ -48,6 +54,24 @@ static bool report(Regression *regression, const CompareOptions *options, Error 
     return ok;
 }
 
+/* A name may look like a command of GitHub's runner. Nobody can name a file by a token that has the time in it. */
+static void print(const CompareOptions *options, const Regression *regression) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t token = hash_xxh3(&now, sizeof now);
+    bool github = options->annotations == ANNOTATE_GITHUB;
+    if (github) printf("::stop-commands::%016" PRIx64 "\n", token);
+    compare_print(regression);
+    if (github) printf("::%016" PRIx64 "::\n", token);
+}
+
+static bool annotate(const CompareOptions *options, const Regression *regression, Error *error) {
+    const char *summary = getenv("GITHUB_STEP_SUMMARY");
+    if (options->annotations != ANNOTATE_GITHUB) return true;
+    github_annotate(stdout, regression);
+    return summary == NULL || summary[0] == '\0' || github_summary_append(regression, summary, error);
+}
+
 static bool compare_pictures(const CompareOptions *options, Error *error) {
     const RegressionOptions compared = {options->max_difference, options->max_share, &options->mask,
                                         options->max_pixels};
@@ -56,26 +80,36 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                              progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
-    compare_print(&regression);
+    print(options, &regression);
     ok = regression_passed(&regression);
     if (options->report != NULL && !report(&regression, options, error)) ok = false;
+    if (error->kind == ERROR_NONE && !annotate(options, &regression, error)) ok = false;
     regression_free(&regression);
     return ok;
 }
 
-static bool compare(const CompareOptions *options, Error *error) {
+static bool compare_inputs(const CompareOptions *options, Error *error) {
     bool first = is_trajectory(options->paths[0]), second = is_trajectory(options->paths[1]);
     if (first != second)
         return error_input(error, options->paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is",
                            options->paths[first ? 0 : 1]);
-    if (first && (options->report != NULL || options->fuzzy || options->mask.count > 0))
-        return error_input(error, options->paths[0], "--report, --fuzzy and --mask apply to pictures only");
+    if (first && (options->report != NULL || options->fuzzy || options->mask.count > 0 || options->annotations != 0))
+        return error_input(error, options->paths[0],
+                           "--report, --annotations, --fuzzy and --mask apply to pictures only");
     return first ? compare_trajectories(options->paths, error) : compare_pictures(options, error);
+}
+
+static bool compare(const CompareOptions *options, Error *error) {
+    bool same = compare_inputs(options, error);
+    if (error->kind != ERROR_NONE && options->annotations == ANNOTATE_GITHUB)
+        github_annotate_message(stdout, "twinbox compare", error->message);
+    return same;
 }
 
 bool command_compare(int argc, char **argv, Error *error) {
     CompareOptions options;
-    bool same = compare_options_parse(&options, argc, argv, error) && compare(&options, error);
+    bool same = compare_options_parse(&options, argc, argv, error) &&
+                (options.watch ? compare_watch(&options, compare, error) : compare(&options, error));
     compare_options_free(&options);
     return same;
 }

@@ -10,6 +10,8 @@
 
 static OptionRead read_fuzzy, read_mask;
 
+static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
+
 static const Option option_table[] = {
     {"--fuzzy", 0, "MAX,SHARE",
      "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
@@ -20,9 +22,17 @@ static const Option option_table[] = {
      OPTION_READ(read_mask, CompareOptions, mask)},
     {"--max-pixels", 0, "N", "Refuse larger pictures before decoding them (default: 100000000)",
      OPTION_INT(CompareOptions, max_pixels, 1, INT_MAX)},
-    {"--report", 0, "DIR", "Folder for report.html, junit.xml and results.json", OPTION_TEXT(CompareOptions, report)},
+    {"--report", 0, "DIR", "Folder for report.html, junit.xml, results.tap and results.json",
+     OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB", "Most that the pictures in the report may take (default: 64)",
      OPTION_INT(CompareOptions, megabytes, 1, 1000)},
+    {"--annotations", 0, "KIND",
+     "none, or github: print failures as annotations of GitHub Actions (at most ten) and append a summary to the file "
+     "named by GITHUB_STEP_SUMMARY (default: none)",
+     OPTION_ENUM(CompareOptions, annotations, annotation_kinds)},
+    {"--watch", 0, NULL,
+     "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
+     OPTION_FLAG(CompareOptions, watch)},
     {0}};
 
 static const CommandSpec spec = {

@@ -3,6 +3,8 @@
 #pragma once
 #include "image/mask.h"
 
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+
 typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
@@ -10,6 +12,8 @@ typedef struct CompareOptions {
     int max_difference; /* of a channel */
     double max_share;   /* of the pixels */
     int max_pixels;
+    unsigned annotations; /* CompareAnnotations */
+    bool watch;
     Mask mask;
 } CompareOptions;
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 
+#include "common/clock.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t interrupted;
@@ -22,12 +23,6 @@ static void on_interrupt(int signal_number) {
 }
 
 bool progress_interrupted(void) { return interrupted != 0; }
-
-static double now(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static void format_seconds(char *text, size_t size, double seconds) {
     int whole = seconds > 359999 ? 359999 : (int)(seconds + 0.5);
@@ -55,7 +50,7 @@ static void show(double part, double elapsed) {
 
 static bool report(void *context, double done, double total) {
     (void)context;
-    double time = now(), pause = bar.terminal ? 0.1 : 5.0;
+    double time = clock_seconds(), pause = bar.terminal ? 0.1 : 5.0;
     if (time - bar.begun >= 1.0 && time - bar.shown >= pause && done > 0) {
         bar.shown = time;
         bar.visible = true;
@@ -74,7 +69,7 @@ const Progress *progress_bar_begin(const char *what) {
         sigaction(SIGTERM, &action, NULL);
     }
     progress_bar_end();
-    bar.begun = now();
+    bar.begun = clock_seconds();
     bar.shown = 0;
     bar.terminal = isatty(STDERR_FILENO) == 1;
     snprintf(bar.what, sizeof bar.what, "%s", what);

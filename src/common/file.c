@@ -166,6 +166,11 @@ static bool put(const char *path, const void *data, size_t size, bool wait) {
     return realpath(path, target) != NULL && replace(target, data, size, wait);
 }
 
+bool file_append(const char *path, const void *data, size_t size, Error *error) {
+    return write_into(open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666), data, size) ||
+           error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
     return put(path, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
 }

@@ -24,6 +24,9 @@ bool file_write_text(const char *path, void (*print)(FILE *out, const void *cont
    file_sync(). An fsync per file takes longer than rendering a small frame. */
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error);
 
+/* Writes behind what is in the file; creates it if it is missing. */
+bool file_append(const char *path, const void *data, size_t size, Error *error);
+
 /* Waits until a file, or the entries of a directory, are on the disk. */
 bool file_sync(const char *path, Error *error);
 

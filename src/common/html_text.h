@@ -2,5 +2,6 @@
 #pragma once
 #include <stdio.h>
 
-/* Writes text escaped for HTML or XML, also for use in attributes, so that no text can become markup. */
+/* Writes text escaped for HTML or XML, also for use in attributes, so that no text can become markup. Bytes that are not
+   UTF-8 and characters that XML does not allow become U+FFFD: a parser would refuse the whole file. */
 void html_put(FILE *file, const char *text);

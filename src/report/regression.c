@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/regression.h"
 
+#include "common/clock.h"
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "report/regression_states.h"
@@ -77,6 +78,7 @@ static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t 
 static bool compare_frame(void *context, int i, Error *error) {
     const Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
+    const double begun = clock_seconds();
     Error read_error = {0};
     uint8_t *data[SIDES] = {NULL, NULL};
     bool ok = true;
@@ -88,6 +90,7 @@ static bool compare_frame(void *context, int i, Error *error) {
     }
     ok = ok && judge(regression, frame, data, &read_error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
+    frame->seconds = clock_seconds() - begun;
     if (!ok && read_error.kind == ERROR_INPUT && (frame->read_error = strdup(read_error.message)) != NULL) return true;
     if (!ok) *error = read_error;
     return ok;
@@ -195,12 +198,14 @@ static bool refuse_empty(const Regression *regression, Error *error) {
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error) {
     *regression = (Regression){.options = *options};
+    const double begun = clock_seconds();
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
               refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
+    regression->seconds = clock_seconds() - begun;
     if (ok)
         count(regression);
     else

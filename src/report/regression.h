@@ -49,6 +49,7 @@ typedef struct RegressionFrame {
     double flip;      /* image/flip.h, measured by the report; else NaN */
     bool run_differs; /* a trajectory of its scene differs in any frame */
     bool shown;       /* in the report */
+    double seconds;   /* that its comparison took, wall time */
     char *read_error; /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
@@ -60,6 +61,7 @@ typedef struct RegressionRun {
     char scene[TRAJECTORY_NAME_SIZE];
     int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
+    double seconds;
 } RegressionRun;
 
 typedef struct Regression {
@@ -73,6 +75,7 @@ typedef struct Regression {
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
+    double seconds;                           /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file

@@ -65,7 +65,8 @@ static void write_head(FILE *file, const Regression *regression) {
           "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>twinbox compare: ",
           file);
     html_put(file, regression_verdict(regression).text);
-    fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n", report_page_css);
+    fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n", report_page_css);
+    fputs("<a class=\"skip\" id=\"skip\" href=\"#stage\">Skip to the pictures</a>\n<main>\n", file);
 }
 
 static void write_summary(FILE *file, const Report *report) {

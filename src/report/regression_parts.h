@@ -33,7 +33,8 @@ typedef struct Report {
 /* Writers for file_write_text(); `report` is a Report. */
 void report_write_page(FILE *file, const void *report);
 void report_write_junit(FILE *file, const void *report);
+void report_write_tap(FILE *file, const void *report);
 void report_write_json(FILE *file, const void *report);
 
-/* Plots FLIP and the largest difference over the frames, as SVG. */
+/* Plots FLIP and the largest difference over the frames, as HTML with SVG. There must be a frame. */
 void report_write_plot(FILE *file, const Regression *regression);

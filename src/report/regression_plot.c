@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so
+   they keep their size on any screen and are never clipped. */
+#include "common/html_text.h"
 #include "report/regression_parts.h"
 
 #include <math.h>
 
-enum { WIDTH = 1200, HEIGHT = 124, LEFT = 50, RIGHT = 1190, ROW = 34, FLIP_TOP = 22, LARGEST_TOP = 84 };
+enum { HEIGHT = 100 };
 
 typedef double (*Measure)(const RegressionFrame *frame);
 
@@ -13,44 +16,49 @@ static double largest_of(const RegressionFrame *frame) {
     return is_measured(frame) ? (double)frame->difference.largest : (double)NAN;
 }
 
-static double step(const Regression *regression) { return (double)(RIGHT - LEFT) / regression->count; }
-
 /* A step curve with one step per frame; equal steps are joined, and frames without a value leave a gap. */
-static void write_curve(FILE *file, const Regression *regression, const char *name, Measure measure, double most,
-                        int top) {
+static void write_curve(FILE *file, const Regression *regression, const char *name, Measure measure, double most) {
     double before = NAN;
-    fprintf(file, "<path class=\"curve %s\" d=\"", name);
+    fprintf(file, "<path class=\"%s\" d=\"", name);
     for (int i = 0; i < regression->count; i++) {
-        double value = measure(&regression->frames[i]), x = LEFT + i * step(regression),
-               y = top + ROW - ROW * value / most;
+        double value = measure(&regression->frames[i]), y = HEIGHT - HEIGHT * value / most;
         if (isnan(value) ? isnan(before) : value == before) continue;
-        if (!isnan(before)) fprintf(file, "H%.2f", x);
-        if (!isnan(value) && isnan(before)) fprintf(file, "M%.2f %.2f", x, y);
+        if (!isnan(before)) fprintf(file, "H%d", i);
+        if (!isnan(value) && isnan(before)) fprintf(file, "M%d %.2f", i, y);
         if (!isnan(value) && !isnan(before)) fprintf(file, "V%.2f", y);
         before = value;
     }
-    if (!isnan(before)) fprintf(file, "H%d", RIGHT);
-    fputs("\"/>\n", file);
+    if (!isnan(before)) fprintf(file, "H%d", regression->count);
+    fputs("\"/>", file);
 }
 
-static void write_row(FILE *file, const Regression *regression, const char *title, const char *name, Measure measure,
-                      double most, int top) {
-    fprintf(file, "<text x=\"%d\" y=\"%d\">%s</text>\n", LEFT, top - 8, title);
-    fprintf(file, "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%.3g</text>\n", LEFT - 6, top + 10, most);
-    fprintf(file, "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">0</text>\n", LEFT - 6, top + ROW);
-    fprintf(file, "<path class=\"axis\" d=\"M%d %dV%dH%d\"/>\n", LEFT, top, top + ROW, RIGHT);
-    write_curve(file, regression, name, measure, most, top);
+static void write_end(FILE *file, const RegressionFrame *frame) {
+    fputs("<span>", file);
+    html_put(file, frame_name(frame));
+    fputs("</span>", file);
+}
+
+static void write_plot(FILE *file, const Regression *regression, const char *title, const char *name, Measure measure,
+                       double most) {
+    fprintf(file, "<div class=\"plot\"><h3>%s</h3>\n<div class=\"values\"><span>%.3g</span><span>0</span></div>\n",
+            title, most);
+    fprintf(
+        file,
+        "<svg viewBox=\"0 0 %d %d\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"%s, of each of %d frames, "
+        "at most %.3g\">",
+        regression->count, HEIGHT, title, regression->count, most);
+    write_curve(file, regression, name, measure, most);
+    fprintf(file, "<line class=\"cursor\" visibility=\"hidden\" x1=\"0\" x2=\"0\" y1=\"0\" y2=\"%d\"/></svg>\n",
+            HEIGHT);
+    fputs("<div class=\"ends\">", file);
+    write_end(file, &regression->frames[0]);
+    if (regression->count > 1) write_end(file, &regression->frames[regression->count - 1]);
+    fputs("</div></div>\n", file);
 }
 
 void report_write_plot(FILE *file, const Regression *regression) {
     double most = 0;
     for (int i = 0; i < regression->count; i++) most = fmax(most, flip_of(&regression->frames[i]));
-    fprintf(file,
-            "<svg viewBox=\"0 0 %d %d\" data-left=\"%d\" data-step=\"%.9g\" role=\"img\" "
-            "aria-label=\"FLIP and largest difference of each of %d frames; FLIP is at most %.3g\">\n",
-            WIDTH, HEIGHT, LEFT, step(regression), regression->count, most);
-    write_row(file, regression, "FLIP, mean of the frame", "flip", flip_of, most > 0 ? most : 1, FLIP_TOP);
-    write_row(file, regression, "Largest difference of a channel", "largest", largest_of, 255, LARGEST_TOP);
-    fprintf(file, "<line class=\"cursor\" visibility=\"hidden\" x1=\"0\" x2=\"0\" y1=\"%d\" y2=\"%d\"/>\n</svg>\n",
-            FLIP_TOP - 4, LARGEST_TOP + ROW + 4);
+    write_plot(file, regression, "FLIP, mean of the frame", "flip", flip_of, most > 0 ? most : 1);
+    write_plot(file, regression, "Largest difference of a channel", "largest", largest_of, 255);
 }

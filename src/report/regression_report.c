@@ -10,8 +10,10 @@
 static const struct {
     const char *name;
     void (*write)(FILE *file, const void *report);
-} parts[] = {
-    {"report.html", report_write_page}, {"junit.xml", report_write_junit}, {"results.json", report_write_json}};
+} parts[] = {{"report.html", report_write_page},
+             {"junit.xml", report_write_junit},
+             {"results.tap", report_write_tap},
+             {"results.json", report_write_json}};
 
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error) {

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report of a comparison: report.html, a self-contained page; junit.xml for CI; results.json for programs and for
-   approval (approve.h). */
+/* The report of a comparison: report.html, a self-contained page; junit.xml and results.tap for CI; results.json for
+   programs and for approval (approve.h). */
 #pragma once
 #include "report/regression.h"
 
 /* Default limit for the pictures in a report: a browser opens this size in a second or two. */
 enum { REPORT_MEGABYTES = 64 };
 
-/* Writes the three files into a folder, created if missing. Pictures of failed frames, then of frames within tolerance,
+/* Writes the four files into a folder, created if missing. Pictures of failed frames, then of frames within tolerance,
    are shown as long as they fit into max_bytes; the other frames cannot be approved. FLIP is measured for all.
-   ERROR_INPUT if a file has changed since the comparison. The same comparison gives the same bytes. */
+   ERROR_INPUT if a file has changed since the comparison. The same comparison gives the same bytes,
+   except for the times in junit.xml. */
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error);

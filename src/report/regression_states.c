@@ -2,6 +2,7 @@
 #include "report/regression_states.h"
 
 #include "common/array.h"
+#include "common/clock.h"
 #include "common/file.h"
 #include "common/hash.h"
 #include "trajectory/trajectory_states.h"
@@ -116,7 +117,9 @@ bool regression_find_runs(Regression *regression, Error *error) {
     for (int i = 0; i < regression->run_count; i++) {
         bool foreign = false;
         RegressionRun run = regression->runs[i];
+        double begun = clock_seconds();
         ok = ok && judge_run(regression, &run, &foreign, error);
+        run.seconds = clock_seconds() - begun;
         if (foreign)
             free(run.name);
         else

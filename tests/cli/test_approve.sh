@@ -146,8 +146,20 @@ suite = xml.etree.ElementTree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "7" and suite.get("failures") == "7"
 failures = [case.find("failure").get("type") for case in suite]
 assert failures == verdicts + ["physics changed"], failures
+times = [float(case.get("time")) for case in suite]
+assert all(0 < time < 600 for time in times) and 0 < float(suite.get("time")) < 600, times
+missing, changed, extra = suite[0], suite[1], suite[5]
+assert [case.get("file") for case in (missing, changed, extra)] == [
+    "expected/frame_000000.png", "expected/frame_000001.png", "actual/frame_000005.png"]
+assert changed.find("failure").text == "expected: expected/frame_000001.png\nactual: actual/frame_000001.png\n"
+assert missing.find("failure").text == "expected: expected/frame_000000.png\n"
+assert changed.find("system-out").text.startswith("[[ATTACHMENT|actual/frame_000001.png]]\n")
+tap = open("report/results.tap").read().split("\n")
+assert tap[:3] == ["TAP version 14", "1..7", "not ok 1 - frame_000000.png: missing"], tap[:3]
+assert json.loads(tap[4])["expected"] == "expected/frame_000000.png" and tap[3] == "  ---" and tap[5] == "  ..."
 PYTHON
 cp -r report again
 run 1 compare expected actual --report report
+sed -i 's/ time="[0-9.]*"//' report/junit.xml again/junit.xml # the only times in a report
 equal "the same comparison, the same report" "$(sums report)" "$(sums again)"
 finish

@@ -166,7 +166,7 @@ complains "is given twice"
 run 2 chart nowhere.yaml -o none --quick
 complains "nowhere.yaml: error:"
 run 2 chart -o none
-complains "a scene file is needed"
+complains "a scene file, or the chart.csv of an earlier run, is needed"
 run 2 chart "$scenes/single.yaml"
 complains "-o DIR is needed"
 run 3 chart "$scenes/single.yaml" -o /proc/none --quick --methods engine:k=10

@@ -156,8 +156,9 @@ static void assert_colour(const json_t *panel, const json_t *camera, const Image
     assert_int_equal(colour_at(image, x, y), colour);
 }
 
-/* A box has the colour of its panel's run; the bomb has a light dot in its centre. */
+/* A box has the colour of its run's method; the bomb has a light dot in its centre. */
 static void check_bodies(const json_t *view_panels, const json_t *picture, const Image *image) {
+    static const MethodColour colours[2] = {METHOD_BLUE, METHOD_ORANGE}; /* of engine and pair-net */
     const Theme *theme = theme_get(LOOK_LIGHT);
     const json_t *moving = json_object_get(picture, "camera");
     const int frame = (int)number_of(picture, "frame");
@@ -165,7 +166,8 @@ static void check_bodies(const json_t *view_panels, const json_t *picture, const
         const json_t *panel = json_array_get(view_panels, (size_t)run);
         const int shown = frame < runs[run]->frames ? frame : runs[run]->frames - 1;
         if (moving == NULL)
-            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX), theme->bodies[run].fill);
+            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX),
+                          theme->bodies[colours[run]].fill);
         else if (shown >= 2)
             assert_colour(panel, moving, image, *run_position(runs[run], shown, BOMB_BODY), theme->bomb.band);
     }

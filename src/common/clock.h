@@ -1,0 +1,5 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#pragma once
+
+/* Seconds of a clock that never steps back. */
+double clock_seconds(void);
