@@ -21,10 +21,10 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "report"},
     .help =
         "Accept the changes that a report of twinbox compare (--report REPORT) shows: actual files replace the "
-        "expected "
-        "files that failed, new files are added, missing files are removed. If a selected file has changed since the "
-        "report was written, nothing is changed. Run it in the folder in which compare ran. Exit status 1: failures "
-        "that the report does not show remain.\v"
+        "expected files that failed, new files are added, missing files are removed. If a selected file has changed "
+        "since the report was written, nothing is changed. Of several accepted pictures, that in the report is "
+        "replaced. "
+        "Run it in the folder in which compare ran. Exit status 1: failures that the report does not show remain.\v"
         "Example: twinbox approve out/report --only 'stack_*'"};
 
 static void print_change(const char *what, const char *path) { printf("%s %s\n", what, path); }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/compare_notes.h"
 #include "cli/compare_options.h"
 #include "cli/compare_print.h"
 #include "cli/compare_watch.h"
@@ -62,6 +63,7 @@ static void print(const CompareOptions *options, const Regression *regression) {
     bool github = options->annotations == ANNOTATE_GITHUB;
     if (github) printf("::stop-commands::%016" PRIx64 "\n", token);
     compare_print(regression);
+    compare_print_notes(regression);
     if (github) printf("::%016" PRIx64 "::\n", token);
 }
 
@@ -73,8 +75,12 @@ static bool annotate(const CompareOptions *options, const Regression *regression
 }
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {
-    const RegressionOptions compared = {options->max_difference, options->max_share, &options->mask,
-                                        options->max_pixels};
+    const RegressionOptions compared = {.max_difference = options->max_difference,
+                                        .max_share = options->max_share,
+                                        .mask = &options->mask,
+                                        .max_pixels = options->max_pixels,
+                                        .flat = options->flat,
+                                        .strict_metadata = options->metadata == METADATA_STRICT};
     Regression regression;
     bool ok = regression_run(&regression, options->paths[0], options->paths[1], &compared,
                              progress_bar_begin("comparing"), error);

@@ -11,6 +11,7 @@
 static OptionRead read_fuzzy, read_mask;
 
 static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
+static const char *const metadata_kinds[] = {"report", "strict", NULL};
 
 static const Option option_table[] = {
     {"--fuzzy", 0, "MAX,SHARE",
@@ -22,6 +23,12 @@ static const Option option_table[] = {
      OPTION_READ(read_mask, CompareOptions, mask)},
     {"--max-pixels", 0, "N", "Refuse larger pictures before decoding them (default: 100000000)",
      OPTION_INT(CompareOptions, max_pixels, 1, INT_MAX)},
+    {"--no-recursive", 0, NULL, "Leave out subfolders, and print how many pictures they hold",
+     OPTION_FLAG(CompareOptions, flat)},
+    {"--metadata", 0, "KIND",
+     "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
+     "orientation) are reported, or fail (default: report)",
+     OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR", "Folder for report.html, junit.xml, results.tap and results.json",
      OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB", "Most that the pictures in the report may take (default: 64)",
@@ -42,9 +49,10 @@ static const CommandSpec spec = {
               OPTION_TEXTS(CompareOptions, paths, count)},
     .inputs = {2, 2, "input"},
     .help =
-        "Compare two trajectories (.npz) or two PNG sequences (folders or single files). Trajectories are equal if "
-        "every bit of every pose and velocity is equal; pictures are equal if every decoded pixel is. Frames are "
-        "matched by the stem and the number of their names. Trajectories that are in both folders, and the states "
+        "Compare two trajectories (.npz) or two PNG sequences (folders with their subfolders, or single files). "
+        "Trajectories are equal if every bit of every pose and velocity is equal; pictures are equal if every decoded "
+        "pixel is. Frames are matched by name, or by the stem and the number of their names. Trajectories that are in "
+        "both folders, and the states "
         "named in twinbox's own pictures, tell whether the physics or the renderer changed. Exit status 0: equal, 1: "
         "different, 2: not comparable.\v"
         "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"

@@ -4,6 +4,7 @@
 #include "image/mask.h"
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
 
 typedef struct CompareOptions {
     const char *paths[2], *report;
@@ -12,6 +13,8 @@ typedef struct CompareOptions {
     int max_difference; /* of a channel */
     double max_share;   /* of the pixels */
     int max_pixels;
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
     bool watch;
     Mask mask;

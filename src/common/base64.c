@@ -5,16 +5,25 @@
 
 static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
+static void put_group(const uint8_t *bytes, size_t left, char *to) {
+    uint32_t group = (uint32_t)bytes[0] << 16;
+    if (left > 1) group |= (uint32_t)bytes[1] << 8;
+    if (left > 2) group |= bytes[2];
+    to[0] = digits[group >> 18];
+    to[1] = digits[group >> 12 & 63];
+    to[2] = left > 1 ? digits[group >> 6 & 63] : '=';
+    to[3] = left > 2 ? digits[group & 63] : '=';
+}
+
 void base64_put(FILE *file, const void *data, size_t size) {
-    const uint8_t *bytes = data;
-    for (size_t i = 0; i < size; i += 3) {
-        size_t left = size - i;
-        uint32_t group = (uint32_t)bytes[i] << 16;
-        if (left > 1) group |= (uint32_t)bytes[i + 1] << 8;
-        if (left > 2) group |= bytes[i + 2];
-        fputc(digits[group >> 18], file);
-        fputc(digits[group >> 12 & 63], file);
-        fputc(left > 1 ? digits[group >> 6 & 63] : '=', file);
-        fputc(left > 2 ? digits[group & 63] : '=', file);
+    char text[4096];
+    size_t used = 0;
+    for (size_t i = 0; i < size; i += 3, used += 4) {
+        if (used == sizeof text) {
+            fwrite(text, 1, used, file); /* an error stays in the file, for the caller */
+            used = 0;
+        }
+        put_group((const uint8_t *)data + i, size - i, text + used);
     }
+    fwrite(text, 1, used, file);
 }

@@ -17,8 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* An input error, unless the system lacks memory or file descriptors, or the disk fails. */
-static bool open_failed(const char *path, Error *error) {
+bool file_open_error(const char *path, Error *error) {
     int cause = errno;
     bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
     return machine ? error_system(error, path, "cannot open: %s", strerror(cause))
@@ -56,11 +55,12 @@ static char *read_all(int file, const char *path, size_t limit, size_t expected,
     return NULL;
 }
 
-char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
-    /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
-    int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+/* Without O_NONBLOCK, opening a FIFO waits for a writer. */
+enum { OPEN_TO_READ = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC };
+
+static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
     if (file < 0) {
-        open_failed(path, error);
+        file_open_error(path, error);
         return NULL;
     }
     char *data = NULL;
@@ -77,6 +77,14 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
     return data;
 }
 
+char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
+    return read_and_close(open(path, OPEN_TO_READ), path, limit, size, error);
+}
+
+char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error) {
+    return read_and_close(openat(folder, name, OPEN_TO_READ | O_NOFOLLOW), path, limit, size, error);
+}
+
 static bool write_all(int file, const char *data, size_t size) {
     while (size > 0) {
         ssize_t written = write(file, data, size);
@@ -88,9 +96,9 @@ static bool write_all(int file, const char *data, size_t size) {
     return true;
 }
 
-/* Creates a file in the folder of path and returns its name in `name`. Not mkstemp: its files are readable by their
+/* Creates a file in the folder of path (relative to the directory `at`) and returns its name in `name`. Not mkstemp: its files are readable by their
    owner only, whatever the umask. */
-static int create_beside(const char *path, char *name, size_t name_size) {
+static int create_beside(int at, const char *path, char *name, size_t name_size) {
     for (unsigned attempt = 0;; attempt++) {
         struct timespec now;
         clock_gettime(CLOCK_REALTIME, &now);
@@ -100,7 +108,7 @@ static int create_beside(const char *path, char *name, size_t name_size) {
             errno = ENAMETOOLONG;
             return -1;
         }
-        int file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int file = openat(at, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file >= 0 || errno != EEXIST || attempt == 100) return file;
     }
 }
@@ -117,8 +125,9 @@ static bool sync_entry(const char *path) {
 }
 
 /* Also the directory entry must survive a power cut. */
-static bool sync_folder(const char *path) {
+static bool sync_folder(int at, const char *path) {
     char folder[PATH_MAX];
+    if (at != AT_FDCWD) return fsync(at) == 0 || errno == EINVAL;
     int length = (int)file_folder_length(path);
     snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
     return sync_entry(folder);
@@ -132,14 +141,14 @@ static bool close_after(int file, bool done) {
     return done;
 }
 
-static bool replace(const char *path, const void *data, size_t size, bool wait) {
+static bool replace(int at, const char *path, const void *data, size_t size, bool wait) {
     char name[PATH_MAX];
-    int file = create_beside(path, name, sizeof name);
+    int file = create_beside(at, path, name, sizeof name);
     if (file < 0) return false;
     bool done = close_after(file, write_all(file, data, size) && (!wait || fsync(file) == 0));
-    if (done && rename(name, path) == 0) return !wait || sync_folder(path);
+    if (done && renameat(at, name, at, path) == 0) return !wait || sync_folder(at, path);
     int cause = errno;
-    unlink(name);
+    unlinkat(at, name, 0);
     errno = cause;
     return false;
 }
@@ -156,14 +165,14 @@ static bool write_into(int file, const void *data, size_t size) {
 
 static bool put(const char *path, const void *data, size_t size, bool wait) {
     struct stat status;
-    if (lstat(path, &status) != 0) return replace(path, data, size, wait);
+    if (lstat(path, &status) != 0) return replace(AT_FDCWD, path, data, size, wait);
     bool is_link = S_ISLNK(status.st_mode);
     if (is_link && stat(path, &status) != 0) return false;
     if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), data, size);
     if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), data, size);
-    if (!is_link) return replace(path, data, size, wait);
+    if (!is_link) return replace(AT_FDCWD, path, data, size, wait);
     char target[PATH_MAX];
-    return realpath(path, target) != NULL && replace(target, data, size, wait);
+    return realpath(path, target) != NULL && replace(AT_FDCWD, target, data, size, wait);
 }
 
 bool file_append(const char *path, const void *data, size_t size, Error *error) {
@@ -173,6 +182,10 @@ bool file_append(const char *path, const void *data, size_t size, Error *error) 
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
     return put(path, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
+    return replace(folder, name, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {

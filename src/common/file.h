@@ -6,12 +6,21 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
+   descriptors, or the disk fails. Returns false. */
+bool file_open_error(const char *path, Error *error);
+
 /* Reads a regular file of at most `limit` bytes into a malloc'ed block with a NUL behind its last byte (not counted in
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
+
+/* The same for a file `name` of the open directory `folder`, without following links: file_read_at() refuses one,
+   file_write_at() replaces it. `path` is used in messages. */
+char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);
+bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error);
 
 /* Returns the output of `print` as a malloc'ed string, with the C locale's decimal point; NULL when memory is short. */
 char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size);

@@ -32,8 +32,7 @@ typedef struct Walk {
 static bool add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
     size_t size = strlen(folder) + strlen(name) + strlen(ending) + 1;
     char *whole = malloc(size);
-    if (whole == NULL ||
-        !array_reserve((void **)&list->names, &list->capacity, list->count + 1, sizeof *list->names)) {
+    if (whole == NULL || !array_reserve((void **)&list->names, &list->capacity, list->count + 1, sizeof *list->names)) {
         free(whole);
         return error_memory(error, name);
     }
@@ -66,7 +65,8 @@ static bool add_link(Walk *walk, int at, const char *folder, const char *name, E
     struct stat target;
     if (!file_path(path, sizeof path, error, "%s/%s%s", walk->root, folder, name)) return false;
     bool file = walk->wanted(name), inside = folder[0] != '\0';
-    if (fstatat(at, name, &target, 0) != 0) return (!file && errno == ENOENT) || folder_error(path, error);
+    if (fstatat(at, name, &target, 0) != 0)
+        return (!file && (errno == ENOENT || errno == ELOOP)) || folder_error(path, error);
     bool is_folder = S_ISDIR(target.st_mode);
     if ((!is_folder && !file) || (!walk->recursive && (is_folder || inside))) return true;
     return check_link(walk, path, error) && (is_folder || add_file(walk, folder, name, error));

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of the differences between two pictures. */
 #pragma once
+#include "image/flip.h"
 #include "image/image.h"
+#include "image/indexed_png.h"
 
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255.
-   Masked pixels (see image/image_compare.h) are hatched. Both pictures must have the same size. NULL with error set
-   if out of memory. */
-Image *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, Error *error);
+   Masked pixels (see image/image_compare.h) are hatched. Both pictures must have the same size. A PNG file, malloc'ed;
+   NULL with error set if out of memory. */
+uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, size_t *size,
+                            Error *error);
 
-/* Values 0 to 1, [height, width], as colours from black over violet and orange to pale yellow. */
-Image *heat_picture(const float *values, int width, int height, Error *error);
+/* A picture of values 0 to 1, black over violet and orange to pale yellow, whose rows come through the sink. NULL with
+   error set if out of memory. */
+IndexedPng *heat_picture(int width, int height, Error *error);
+FlipSink heat_picture_sink(IndexedPng *picture);

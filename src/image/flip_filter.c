@@ -2,7 +2,6 @@
 #include "image/flip_filter.h"
 
 #include <math.h>
-#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -56,35 +55,13 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     normalise(&features->point, point);
 }
 
-static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
-
-/* One weight at a time, so that the compiler vectorises over columns. */
-static void add_weighted(const float *from, int count, float weight, float *to) {
-    for (int i = 0; i < count; i++) to[i] += weight * from[i];
-}
-
-/* `padded` has room for a row and a kernel. */
-static void filter_row(const float *from, int width, const FlipKernel *kernel, float *padded, float *to) {
-    int radius = kernel->radius;
-    for (int i = 0; i < width + 2 * radius; i++) padded[i] = from[inside(i - radius, width)];
-    memset(to, 0, (size_t)width * sizeof *to);
-    for (int k = 0; k <= 2 * radius; k++) add_weighted(padded + k, width, kernel->weights[k], to);
-}
-
-static void filter_columns(const FlipPlane *from, int y, const FlipKernel *kernel, float *to) {
-    memset(to, 0, (size_t)from->width * sizeof *to);
-    for (int k = -kernel->radius; k <= kernel->radius; k++) {
-        const float *row = from->values + (size_t)inside(y + k, from->height) * (size_t)from->width;
-        add_weighted(row, from->width, kernel->weights[k + kernel->radius], to);
+void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
+                 float *to) {
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("avx2")) {
+        flip_filter_avx2(from, kernel, step, stride, width, height, to);
+        return;
     }
-}
-
-void flip_filter(const FlipPlane *from, const FlipKernel *x, const FlipKernel *y, FlipPlane *scratch, float *padded,
-                 FlipPlane *to) {
-    for (int row = 0; row < from->height; row++) {
-        size_t first = (size_t)row * (size_t)from->width;
-        filter_row(from->values + first, from->width, x, padded, scratch->values + first);
-    }
-    for (int row = 0; row < from->height; row++)
-        filter_columns(scratch, row, y, to->values + (size_t)row * (size_t)from->width);
+#endif
+    flip_filter_baseline(from, kernel, step, stride, width, height, to);
 }

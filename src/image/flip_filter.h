@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The separable filters of FLIP. */
 #pragma once
-#include "common/error.h"
+#include <stddef.h>
 
 enum { FLIP_RADIUS_MAX = 256 };
-
-/* Values [height, width]. */
-typedef struct FlipPlane {
-    int width, height;
-    float *values;
-} FlipPlane;
 
 /* Weights of pixels -radius .. radius. */
 typedef struct FlipKernel {
@@ -23,7 +17,7 @@ typedef struct FlipBlur {
     float share[2];
     FlipKernel kernels[2];
 } FlipBlur;
-typedef enum FlipChannel { FLIP_LIGHTNESS, FLIP_RED_GREEN, FLIP_BLUE_YELLOW } FlipChannel;
+typedef enum FlipChannel { FLIP_LIGHTNESS, FLIP_RED_GREEN, FLIP_BLUE_YELLOW, FLIP_CHANNELS } FlipChannel;
 void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degree);
 
 /* Edge and point detectors (section 4.2.1): first and second derivative of a Gaussian, with the Gaussian across. */
@@ -32,7 +26,17 @@ typedef struct FlipFeatures {
 } FlipFeatures;
 void flip_make_features(FlipFeatures *features, double pixels_per_degree);
 
-/* to = from, filtered along rows by `x` and along columns by `y`; borders are replicated. scratch has the same size;
-   padded[width + 2 * FLIP_RADIUS_MAX]. */
-void flip_filter(const FlipPlane *from, const FlipKernel *x, const FlipKernel *y, FlipPlane *scratch, float *padded,
-                 FlipPlane *to);
+/* Values are filtered in blocks: `width` is a multiple of this. */
+enum { FLIP_BLOCK = 64 };
+
+/* to[height, width] = the sums over k of weights[k] * from[k * step], in ascending order of k, which fixes the bits.
+   `from` is where weight 0 of the first value applies; its rows, and those of `to`, are `stride` apart. step 1 filters
+   along rows, `stride` along columns. */
+void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
+                 float *to);
+
+/* The same for one instruction set; flip_filter() takes the widest that the processor has. */
+void flip_filter_baseline(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width,
+                          int height, float *to);
+void flip_filter_avx2(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
+                      float *to);

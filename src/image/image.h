@@ -30,7 +30,7 @@ enum { IMAGE_MAX_PIXELS = 100000000 };
    is damaged, truncated or animated. */
 Image *image_read_png(const char *path, Error *error);
 
-/* Reads a whole file without decoding it. NULL with error set, as for image_decode_png(). */
+/* Reads a whole file without decoding it. NULL with error set, also if it does not begin as a PNG file. */
 uint8_t *image_load_png(const char *path, size_t *size, Error *error);
 
 /* Like image_read_png(), for a file in memory and with another limit; `path` is used in messages. */

@@ -2,6 +2,7 @@
 /* Reads PNG files from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
 #include "common/file.h"
 #include "image/image.h"
+#include "image/png_check.h"
 
 #include <png.h>
 #include <stdlib.h>
@@ -52,7 +53,10 @@ static void close_decoder(Decoder *decoder) {
 }
 
 uint8_t *image_load_png(const char *path, size_t *size, Error *error) {
-    return (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
+    uint8_t *data = (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
+    if (data != NULL && png_check_start(data, *size, path, error)) return data;
+    free(data);
+    return NULL;
 }
 
 /* Every irregularity is an error: a partly guessed frame must not count as a frame. */

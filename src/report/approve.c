@@ -3,9 +3,11 @@
 
 #include "common/file.h"
 #include "common/hash.h"
+#include "report/approve_place.h"
 #include "report/approve_read.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,19 +25,32 @@ typedef struct Found {
     uint64_t hash;
 } Found;
 
-static bool inspect(const char *path, Found *found, Error *error) {
+static bool inspect(const Place *place, Found *found, Error *error) {
     struct stat status;
-    *found = (Found){.there = lstat(path, &status) == 0};
-    if (!found->there) return errno == ENOENT || error_input(error, path, "cannot be read: %s", strerror(errno));
+    *found =
+        (Found){.there = place->folder >= 0 && fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) == 0};
+    if (!found->there)
+        return place->folder < 0 || errno == ENOENT ||
+               error_system(error, place->path, "cannot be read: %s", strerror(errno));
     found->link = S_ISLNK(status.st_mode);
     found->other = !found->link && !S_ISREG(status.st_mode);
     if (found->link || found->other) return true;
     size_t size;
-    char *data = file_read(path, MAX_FILE_SIZE, &size, error);
+    char *data = file_read_at(place->folder, place->name, place->path, MAX_FILE_SIZE, &size, error);
     if (data == NULL) return false;
     found->hash = hash_xxh3(data, size);
     free(data);
     return true;
+}
+
+static bool inspect_below(const char *root, const char *name, Found *found, Error *error) {
+    Place place;
+    if (!place_open(&place, root, name, false, error)) return false;
+    bool ok = inspect(&place, found, error);
+    if (ok && (found->link || found->other))
+        ok = error_input(error, place.path, "must be a regular file%s", found->link ? " (is a link)" : "");
+    place_close(&place);
+    return ok;
 }
 
 static bool as_reported(const Found *found, const ApprovalFile *file) {
@@ -48,36 +63,42 @@ static const char *target_name(const ApprovalItem *item) {
     return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
 }
 
+static bool refuse_changed(const char *root, const char *name, Error *error) {
+    char path[PATH_MAX];
+    return file_path(path, sizeof path, error, "%s/%s", root, name) &&
+           error_input(error, path, "has changed since the report was written; compare again");
+}
+
 static bool decide(const ApprovalList *list, const ApprovalItem *item, Action *action, Error *error) {
-    char target[PATH_MAX], source[PATH_MAX];
     Found expected, actual = {.there = false};
-    if (!file_path(target, sizeof target, error, "%s/%s", list->expected, target_name(item)) ||
-        !inspect(target, &expected, error))
-        return false;
-    if (expected.link || expected.other)
-        return error_input(error, target, "must be a regular file%s", expected.link ? " (is a link)" : "");
+    if (!inspect_below(list->expected, target_name(item), &expected, error)) return false;
     *action = ACTION_NONE;
     bool removed = item->actual.name[0] == '\0';
     if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
-    if (!as_reported(&expected, &item->expected))
-        return error_input(error, target, "has changed since the report was written; compare again");
+    if (!as_reported(&expected, &item->expected)) return refuse_changed(list->expected, target_name(item), error);
     *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
     const char *name = removed ? item->expected.name : item->actual.name;
-    if (!file_path(source, sizeof source, error, "%s/%s", list->actual, name) || !inspect(source, &actual, error))
-        return false;
-    if (actual.link) return error_input(error, source, "must be a regular file (is a link)");
-    return as_reported(&actual, &item->actual) ||
-           error_input(error, source, "has changed since the report was written; compare again");
+    return inspect_below(list->actual, name, &actual, error) &&
+           (as_reported(&actual, &item->actual) || refuse_changed(list->actual, name, error));
 }
 
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool copy(const char *source, uint64_t hash, const char *target, Error *error) {
+static bool copy(const Place *source, uint64_t hash, const Place *target, Error *error) {
     size_t size;
-    char *data = file_read(source, MAX_FILE_SIZE, &size, error);
+    if (source->folder < 0) return error_input(error, source->path, "has changed during the approval");
+    char *data = file_read_at(source->folder, source->name, source->path, MAX_FILE_SIZE, &size, error);
     bool ok = data != NULL &&
-              (hash_xxh3(data, size) == hash || error_input(error, source, "has changed during the approval")) &&
-              file_write(target, data, size, error);
+              (hash_xxh3(data, size) == hash || error_input(error, source->path, "has changed during the approval")) &&
+              file_write_at(target->folder, target->name, target->path, data, size, error);
     free(data);
+    return ok;
+}
+
+static bool copy_from(const ApprovalList *list, const ApprovalFile *actual, const Place *target, Error *error) {
+    Place source;
+    if (!place_open(&source, list->actual, actual->name, false, error)) return false;
+    bool ok = copy(&source, actual->hash, target, error);
+    place_close(&source);
     return ok;
 }
 
@@ -85,21 +106,24 @@ static bool apply(const ApprovalList *list, const ApprovalItem *item, Action act
                   void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
     static const char *const words[] = {"", "replaced", "added", "removed"};
     int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
-    char target[PATH_MAX], source[PATH_MAX];
-    if (!file_path(target, sizeof target, error, "%s/%s", list->expected, target_name(item)) ||
-        !file_path(source, sizeof source, error, "%s/%s", list->actual, item->actual.name))
-        return false;
-    if (action == ACTION_REMOVE && unlink(target) != 0)
-        return error_system(error, target, "cannot be removed: %s", strerror(errno));
-    if ((action == ACTION_REPLACE || action == ACTION_ADD) && !copy(source, item->actual.hash, target, error))
-        return false;
+    Place target;
     (*counts[action])++;
-    if (action != ACTION_NONE) on_change(words[action], target);
-    return true;
+    if (action == ACTION_NONE) return true;
+    if (!place_open(&target, list->expected, target_name(item), action == ACTION_ADD, error)) return false;
+    bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
+    if (ok && action == ACTION_REMOVE)
+        ok = unlinkat(target.folder, target.name, 0) == 0 ||
+             error_system(error, target.path, "cannot be removed: %s", strerror(errno));
+    else if (ok)
+        ok = copy_from(list, &item->actual, &target, error);
+    if (ok) on_change(words[action], target.path);
+    place_close(&target);
+    return ok;
 }
 
 static bool is_selected(const ApprovalItem *item, const char *only, Approval *approval) {
-    bool matches = only == NULL || fnmatch(only, target_name(item), 0) == 0;
+    bool matches = only == NULL || fnmatch(only, target_name(item), 0) == 0 ||
+                   fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
     approval->not_selected += !matches;
     approval->not_shown += matches && !item->shown;
     return matches && item->shown;

@@ -15,10 +15,13 @@ enum { MAX_SIZE = 1 << 25 };
 enum { FORMAT, EXPECTED, ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
 static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
 
-static bool is_plain_name(const char *name) {
+/* "x.png" or "sub/x.png": no part is empty or hidden, which includes "." and "..". */
+static bool is_name_below(const char *name) {
     const char *ending = strrchr(name, '.');
-    return name[0] != '.' && strchr(name, '/') == NULL && name_is_text(name) && ending != NULL &&
-           (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
+    char before = '/';
+    for (const char *c = name; *c != '\0'; before = *c++)
+        if (before == '/' && (*c == '/' || *c == '.')) return false;
+    return name_is_text(name) && ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
 }
 
 /* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */
@@ -43,10 +46,10 @@ static bool read_file(const JsonReader *json, const json_t *item, const char *ke
     *file = (ApprovalFile){.name = ""};
     if (value == NULL || json_is_null(value)) return true;
     if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
-    file->name = read_text(json, json_object_get(value, "name"), "name", NAME_MAX, error);
+    file->name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
     if (file->name == NULL) return false;
-    if (!is_plain_name(file->name))
-        return json_read_error(json, error, "a name must end with .png or .npz and have no folder");
+    if (!is_name_below(file->name))
+        return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
         return json_read_error(json, error, "a hash must have 16 digits from 0 to f");

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 typedef struct ApprovalFile {
-    const char *name; /* malloc'ed; empty: there was no file */
+    const char *name; /* relative to the folder, malloc'ed; empty: there was no file */
     uint64_t hash;
 } ApprovalFile;
 
@@ -23,7 +23,7 @@ typedef struct ApprovalList {
     size_t count, capacity;
 } ApprovalList;
 
-/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names with a folder, hidden
-   names and names that do not end with .png or .npz. On failure nothing needs to be freed. */
+/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
+   hidden names and names that do not end with .png or .npz. On failure nothing needs to be freed. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

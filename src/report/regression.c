@@ -4,6 +4,8 @@
 #include "common/clock.h"
 #include "common/hash.h"
 #include "common/parallel.h"
+#include "image/mask_cover.h"
+#include "image/png_check.h"
 #include "report/regression_states.h"
 
 #include <assert.h>
@@ -25,11 +27,13 @@ static bool judge_pixels(const RegressionOptions *options, RegressionFrame *fram
         return false;
     ImageDifference *difference = &frame->difference;
     image_compare_masked(expected, actual, masked, difference);
+    free(masked);
+    if (difference->same_size && difference->counted == 0)
+        return error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared");
     frame->pixels = !difference->same_size        ? PIXELS_RESIZED
                     : difference->equal           ? PIXELS_EQUAL
                     : within(options, difference) ? PIXELS_WITHIN
                                                   : PIXELS_DIFFER;
-    free(masked);
     return true;
 }
 
@@ -61,16 +65,63 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
     return true;
 }
 
+/* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
+static bool judge_same_bytes(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error) {
+    RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
+    if (!png_check(data[EXPECTED], a->size, frame->at[EXPECTED]->path, &a->width, &a->height, error)) return false;
+    b->width = a->width, b->height = a->height;
+    if (options->mask != NULL && options->mask->count > 0 && mask_may_cover(options->mask, a->width, a->height))
+        return decode_and_judge(options, frame, data, error);
+    frame->pixels = PIXELS_EQUAL;
+    frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
+    return true;
+}
+
 static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     const RegressionOptions *options = &regression->options;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
     regression_judge_states(regression, frame, data);
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
-    bool same_bytes = a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0;
-    if (!same_bytes) return decode_and_judge(options, frame, data, error);
-    frame->pixels = PIXELS_EQUAL;
-    frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
+    if (a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0)
+        return judge_same_bytes(options, frame, data, error);
+    frame->metadata = png_display_compare(data[EXPECTED], a->size, data[ACTUAL], b->size);
+    frame->metadata_failed = options->strict_metadata && frame->metadata.text[0] != '\0';
+    return decode_and_judge(options, frame, data, error);
+}
+
+static bool compare_files(const Regression *regression, RegressionFrame *frame, Error *error) {
+    uint8_t *data[SIDES] = {NULL, NULL};
+    bool ok = true;
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
+        if (frame->at[side] == NULL) continue;
+        RegressionFile *file = &frame->files[side];
+        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, error)) != NULL;
+        if (ok) file->hash = hash_xxh3(data[side], file->size);
+    }
+    ok = ok && judge(regression, frame, data, error);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
+    return ok;
+}
+
+static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
+    const ImageDifference *x = &a->difference, *y = &b->difference;
+    if (frame_failed(a) != frame_failed(b)) return frame_failed(b);
+    if (x->same_size != y->same_size) return x->same_size;
+    return x->pixels != y->pixels ? x->pixels < y->pixels : x->largest < y->largest;
+}
+
+/* Where several pictures are accepted, the first that passes counts, or else the closest. */
+static bool compare_accepted(const Regression *regression, RegressionFrame *frame, Error *error) {
+    const RegressionFrame fresh = *frame;
+    if (!compare_files(regression, frame, error)) return false;
+    for (const SequenceFrame *other = frame->base->next; other != NULL && frame_failed(frame); other = other->next) {
+        RegressionFrame attempt = fresh;
+        attempt.at[EXPECTED] = other;
+        if (!compare_files(regression, &attempt, error)) return false;
+        if (is_closer(&attempt, frame)) *frame = attempt;
+    }
     return true;
 }
 
@@ -80,16 +131,7 @@ static bool compare_frame(void *context, int i, Error *error) {
     RegressionFrame *frame = &regression->frames[i];
     const double begun = clock_seconds();
     Error read_error = {0};
-    uint8_t *data[SIDES] = {NULL, NULL};
-    bool ok = true;
-    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
-        if (frame->at[side] == NULL) continue;
-        RegressionFile *file = &frame->files[side];
-        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, &read_error)) != NULL;
-        if (ok) file->hash = hash_xxh3(data[side], file->size);
-    }
-    ok = ok && judge(regression, frame, data, &read_error);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
+    bool ok = compare_accepted(regression, frame, &read_error);
     frame->seconds = clock_seconds() - begun;
     if (!ok && read_error.kind == ERROR_INPUT && (frame->read_error = strdup(read_error.message)) != NULL) return true;
     if (!ok) *error = read_error;
@@ -111,7 +153,7 @@ static bool report_read_errors(const Regression *regression, Error *error) {
 }
 
 bool frame_failed(const RegressionFrame *frame) {
-    return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER;
+    return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER || frame->metadata_failed;
 }
 
 static void count_first(int *count, int *first, int i) {
@@ -128,11 +170,13 @@ static void count_frame(Regression *regression, int i) {
     regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
     if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
     regression->unknown += pictures && frame->states == STATES_UNKNOWN;
+    if (frame->metadata.text[0] != '\0') count_first(&regression->metadata, &regression->first_metadata, i);
+    regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
+    regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
 }
 
 static bool same_sequence(const RegressionFrame *a, const RegressionFrame *b) {
-    const SequenceFrame *x = a->at[EXPECTED], *y = b->at[EXPECTED];
-    return x->stem == y->stem && memcmp(x->name, y->name, (size_t)x->stem) == 0;
+    return sequence_compare_stems(a->base, b->base) == 0;
 }
 
 /* Sets STATES_DIFFER_ELSEWHERE (see StateVerdict) in the frames of one sequence. */
@@ -140,7 +184,8 @@ static void judge_sequence(RegressionFrame *const *frames, int count) {
     bool physics = false, same_framing = false;
     for (int i = 0; i < count; i++) {
         physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
-        same_framing = same_framing || (frames[i]->states == STATES_EQUAL && frames[i]->pixels == PIXELS_EQUAL);
+        bool same = frames[i]->at[EXPECTED] == frames[i]->base && frames[i]->pixels == PIXELS_EQUAL;
+        same_framing = same_framing || (same && frames[i]->states == STATES_EQUAL);
     }
     for (int i = 0; physics && !same_framing && i < count; i++)
         if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;
@@ -163,6 +208,7 @@ static bool judge_sequences(Regression *regression, Error *error) {
 
 static void count(Regression *regression) {
     regression->first = regression->first_physics = regression->first_renderer = regression->first_run = -1;
+    regression->first_metadata = -1;
     for (int i = 0; i < regression->count; i++) count_frame(regression, i);
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *runs = regression->runs;
@@ -180,17 +226,20 @@ static bool pair_frames(Regression *regression, Error *error) {
     if (pairs == NULL) return false;
     regression->frames = calloc((size_t)regression->count + 1, sizeof *regression->frames);
     for (int i = 0; regression->frames != NULL && i < regression->count; i++)
-        regression->frames[i] = (RegressionFrame){.at = {pairs[i].a, pairs[i].b}, .flip = NAN};
+        regression->frames[i] = (RegressionFrame){
+            .base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b, .at = {pairs[i].a, pairs[i].b}, .flip = NAN};
     free(pairs);
     return regression->frames != NULL || error_memory(error, "frames");
 }
 
-/* An empty folder is an error, not a difference. */
+/* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. */
 static bool refuse_empty(const Regression *regression, Error *error) {
+    bool runs_alone = regression->count == 0 && regression->run_count > 0;
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
-        if (sequence->count == 0 && regression->run_count == 0)
-            return error_input(error, sequence->folder, "no PNG files (such as frame_000000.png) in this folder");
+        if (sequence->count == 0 && !runs_alone)
+            return error_input(error, sequence->folder, "no PNG files (such as frame_000000.png) in this folder%s",
+                               sequence->skipped > 0 ? ", only in its subfolders" : "");
     }
     return true;
 }
@@ -200,8 +249,8 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     *regression = (Regression){.options = *options};
     const double begun = clock_seconds();
     const ParallelWork work = {compare_frame, regression};
-    bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, error)) != NULL &&
-              (regression->sequences[ACTUAL] = image_sequence_open(actual, error)) != NULL &&
+    bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
+              (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
               refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);

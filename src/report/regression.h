@@ -6,6 +6,7 @@
 #include "common/progress.h"
 #include "image/image_compare.h"
 #include "image/mask.h"
+#include "image/png_display.h"
 #include "image/sequence.h"
 #include "trajectory/trajectory.h"
 
@@ -13,7 +14,9 @@ typedef struct RegressionOptions {
     int max_difference; /* of a channel, 0..255 */
     double max_share;   /* of the unmasked pixels, 0..1; a frame passes if it is within both limits */
     const Mask *mask;
-    int64_t max_pixels; /* of a picture; larger ones are refused before decompression */
+    int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
+    bool flat;            /* without subfolders */
+    bool strict_metadata; /* files that display differently fail (image/png_display.h) */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -36,16 +39,20 @@ typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_
 typedef struct RegressionFile {
     uint64_t hash; /* XXH3 of its bytes */
     size_t size;
-    int width, height; /* of a picture; 0 if not decoded (identical files) */
+    int width, height; /* of a picture */
 } RegressionFile;
 
 typedef struct RegressionFrame {
-    const SequenceFrame *at[SIDES]; /* NULL on one side for a missing or extra frame */
+    const SequenceFrame *base;      /* has the frame's name: the expected file, or the actual one of an extra frame */
+    const SequenceFrame *at[SIDES]; /* NULL on one side for a missing or extra frame; where several pictures are
+                                       accepted (base->next), the one that passes or is closest */
     RegressionFile files[SIDES];
     PixelVerdict pixels;
     StateVerdict states;
     int panel; /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;
+    PngDisplay metadata; /* that differs; only for different files */
+    bool metadata_failed;
     double flip;      /* image/flip.h, measured by the report; else NaN */
     bool run_differs; /* a trajectory of its scene differs in any frame */
     bool shown;       /* in the report */
@@ -75,21 +82,27 @@ typedef struct Regression {
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
-    double seconds;                           /* of the whole comparison */
+    int metadata, first_metadata;             /* frames whose metadata differs, and the first of them (-1: none) */
+    int metadata_failed;                      /* frames that fail for nothing else */
+    int runs_left_out;                        /* .npz files that only the expected folder has */
+    int runs_foreign;                         /* .npz files that are a trajectory in neither folder */
+    int other_accepted; /* frames that pass by another accepted picture than the one of their name */
+    double seconds;     /* of the whole comparison */
 } Regression;
 
-/* Compares two folders, or two files, with all threads. Identical files are not decoded. False with error set if a file
-   cannot be read (the first by the order of frames) or progress stops the comparison; then nothing needs to be
-   freed. */
+/* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.
+   False with error set if a file cannot be read (the first by the order of frames), if masks hide all its pixels, or if
+   progress stops the comparison; then nothing needs to be freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error);
 void regression_free(Regression *regression);
 
 bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
-const char *frame_name(const RegressionFrame *frame); /* of the expected file; of an extra frame, the actual one */
+const char *frame_name(const RegressionFrame *frame); /* of `base` */
 
-/* "equal", "within tolerance", "renderer changed", "physics changed", "pictures differ", "missing", "extra" */
+/* "equal", "within tolerance", "renderer changed", "physics changed", "pictures differ", "metadata changed",
+   "missing", "extra" */
 const char *frame_verdict(const RegressionFrame *frame);
 
 /* One line of text: how a frame or a run differs. */

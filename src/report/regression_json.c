@@ -52,6 +52,7 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_int(json, "largest", frame->difference.largest);
     write_box(json, &frame->difference);
     json_put_number(json, "flip", rounded(frame->flip));
+    json_put_text(json, "metadata", frame->metadata.text[0] != '\0' ? frame->metadata.text : NULL);
     write_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
     write_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
     json_end(json);

@@ -3,8 +3,6 @@
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "image/difference_picture.h"
-#include "image/flip.h"
-#include "image/png_encoder.h"
 #include "report/regression_parts.h"
 
 #include <assert.h>
@@ -23,30 +21,17 @@ static bool load(const RegressionFrame *frame, RegressionSide side, ReportPictur
            error_input(error, path, "has changed since the comparison");
 }
 
-static bool encode(const Image *image, ReportPicture *picture, Error *error) {
-    const uint8_t *data;
-    PngEncoder *encoder = image == NULL ? NULL : png_encoder_create(image->width, image->height, PNG_SMALL, error);
-    bool ok = encoder != NULL && png_encode(encoder, image, NULL, NULL, 0, &data, &picture->size, error);
-    if (ok && (picture->data = malloc(picture->size)) == NULL) ok = error_memory(error, "report");
-    if (ok) memcpy(picture->data, data, picture->size);
-    png_encoder_destroy(encoder);
-    return ok;
-}
-
 /* Measures FLIP; draws its picture only if picture != NULL. */
 static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
                     Error *error) {
-    float *map = NULL;
-    Image *heat = NULL;
-    if (picture != NULL && (map = malloc((size_t)expected->width * (size_t)expected->height * sizeof *map)) == NULL)
-        return error_memory(error, "report");
-    bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, map, &frame->flip, error);
-    if (ok && map != NULL) {
-        heat = heat_picture(map, expected->width, expected->height, error);
-        ok = heat != NULL && encode(heat, picture, error);
-    }
-    image_destroy(heat);
-    free(map);
+    IndexedPng *heat = NULL;
+    FlipSummary flip;
+    if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
+    const FlipSink sink = heat_picture_sink(heat);
+    bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, heat != NULL ? &sink : NULL, &flip, error);
+    if (ok) frame->flip = flip.mean;
+    if (ok && heat != NULL) ok = (picture->data = indexed_png_end(heat, &picture->size, error)) != NULL;
+    indexed_png_destroy(heat);
     return ok;
 }
 
@@ -58,11 +43,11 @@ static bool draw(const Regression *regression, RegressionFrame *frame, const Ima
     if (mask != NULL && mask->count > 0 &&
         (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
         return false;
-    Image *difference = room ? difference_picture(expected, actual, masked, error) : NULL;
+    ReportPicture *difference = &pictures[DIFFERENCE];
+    bool ok =
+        !room || (difference->data = difference_picture(expected, actual, masked, &difference->size, error)) != NULL;
     image_copy_masked(expected, actual, masked);
-    bool ok = (!room || (difference != NULL && encode(difference, &pictures[DIFFERENCE], error))) &&
-              measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
-    image_destroy(difference);
+    ok = ok && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);
     return ok;
 }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/regression_states.h"
 
-#include "common/array.h"
 #include "common/clock.h"
 #include "common/file.h"
+#include "common/folder.h"
 #include "common/hash.h"
+#include "common/lfs_pointer.h"
 #include "trajectory/trajectory_states.h"
 
-#include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,42 +22,37 @@ static bool run_path(const Regression *regression, RegressionSide side, const ch
     return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
 }
 
-static bool is_file(const char *path) {
-    struct stat status;
-    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
-}
-
-static bool is_run(const Regression *regression, const char *name) {
+static bool is_run(const char *name) {
     size_t length = strlen(name);
-    if (name[0] == '.' || length < 5 || strcmp(name + length - 4, ".npz") != 0 || !name_is_text(name)) return false;
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        char path[PATH_MAX];
-        if (!run_path(regression, side, name, path, &(Error){0}) || !is_file(path)) return false;
-    }
-    return true;
+    return length >= 5 && strcmp(name + length - 4, ".npz") == 0 && name_is_text(name);
 }
 
-static int by_name(const void *a, const void *b) {
-    return strcmp(((const RegressionRun *)a)->name, ((const RegressionRun *)b)->name);
+/* Adds a file of the expected folder if the actual folder has it, too. */
+static bool add_run(Regression *regression, const char *name, Error *error) {
+    char path[PATH_MAX];
+    struct stat status;
+    if (!name_is_text(name)) return true; /* of its folder */
+    if (!run_path(regression, ACTUAL, name, path, error)) return false;
+    if (stat(path, &status) != 0) {
+        if (errno != ENOENT && errno != ENOTDIR)
+            return error_system(error, path, "cannot be read: %s", strerror(errno));
+        regression->runs_left_out++;
+        return true;
+    }
+    char *copy = strdup(name);
+    if (copy == NULL) return error_memory(error, name);
+    regression->runs[regression->run_count++] = (RegressionRun){.name = copy};
+    return true;
 }
 
 static bool list_runs(Regression *regression, Error *error) {
     const char *folder = regression->sequences[EXPECTED]->folder;
-    DIR *directory = opendir(folder);
-    size_t capacity = 0;
-    bool ok = directory != NULL || error_input(error, folder, "cannot be read");
-    for (struct dirent *entry; ok && (entry = readdir(directory)) != NULL;) {
-        if (!is_run(regression, entry->d_name)) continue;
-        void *runs = regression->runs;
-        ok = array_reserve(&runs, &capacity, (size_t)regression->run_count + 1, sizeof *regression->runs);
-        regression->runs = runs;
-        char *name = ok ? strdup(entry->d_name) : NULL;
-        if (name != NULL) regression->runs[regression->run_count++] = (RegressionRun){.name = name};
-        ok = name != NULL || error_memory(error, folder);
-    }
-    if (directory != NULL) closedir(directory);
-    if (regression->run_count > 0)
-        qsort(regression->runs, (size_t)regression->run_count, sizeof *regression->runs, by_name);
+    FolderList files;
+    if (!folder_list(&files, folder, is_run, !regression->options.flat, error)) return false;
+    regression->runs = calloc(files.count + 1, sizeof *regression->runs);
+    bool ok = regression->runs != NULL || error_memory(error, folder);
+    for (size_t i = 0; ok && i < files.count; i++) ok = add_run(regression, files.names[i], error);
+    folder_list_free(&files);
     return ok;
 }
 
@@ -81,16 +77,29 @@ static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *f
     Trajectory *sides[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         sides[side] = trajectory_read(paths[side], &failures[side]);
-    bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL;
-    *foreign = sides[EXPECTED] == NULL && sides[ACTUAL] == NULL;
+    bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL, system = false;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
+    *foreign = !system && sides[EXPECTED] == NULL && sides[ACTUAL] == NULL;
     if (ok) {
         trajectory_compare(sides[EXPECTED], sides[ACTUAL], &run->difference);
         memcpy(run->scene, sides[EXPECTED]->scene, sizeof run->scene);
         ok = run->difference.equal || mark_frames(run, sides[EXPECTED], sides[ACTUAL], error);
-    } else if (!*foreign)
+    } else if (!*foreign && !system)
         *error = failures[sides[EXPECTED] == NULL ? EXPECTED : ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(sides[side]);
     return ok || *foreign;
+}
+
+/* Equal bytes are equal runs, if they are a run. */
+static bool read_run(RegressionRun *run, const char *path, bool *foreign, Error *error) {
+    Error failure = {0};
+    Trajectory *trajectory = trajectory_read(path, &failure);
+    *foreign = trajectory == NULL;
+    trajectory_destroy(trajectory);
+    run->difference.equal = true;
+    if (failure.kind == ERROR_SYSTEM) *error = failure;
+    return failure.kind != ERROR_SYSTEM;
 }
 
 static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
@@ -101,12 +110,13 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
         char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
         if (data == NULL) return false;
         file->hash = hash_xxh3(data, file->size);
+        bool pointer = !lfs_pointer_refuse(data, file->size, paths[side], error);
         free(data);
+        if (pointer) return false;
     }
-    *foreign = false;
-    run->difference.equal = true;
     const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
-    return (a->hash == b->hash && a->size == b->size) || compare_run(run, paths, foreign, error);
+    bool same = a->hash == b->hash && a->size == b->size;
+    return same ? read_run(run, paths[EXPECTED], foreign, error) : compare_run(run, paths, foreign, error);
 }
 
 bool regression_find_runs(Regression *regression, Error *error) {
@@ -120,9 +130,10 @@ bool regression_find_runs(Regression *regression, Error *error) {
         double begun = clock_seconds();
         ok = ok && judge_run(regression, &run, &foreign, error);
         run.seconds = clock_seconds() - begun;
-        if (foreign)
+        if (foreign) {
+            regression->runs_foreign++;
             free(run.name);
-        else
+        } else
             regression->runs[kept++] = run;
     }
     regression->run_count = kept;
@@ -147,18 +158,32 @@ static int first_panel(const char *a, const char *b) {
     return panel;
 }
 
-/* Whether a run of the picture's scene (of any scene if the picture names none) differs in this frame. *somewhere: in
-   any frame. */
-static bool runs_differ(const Regression *regression, const Texts *texts, int64_t frame, bool *somewhere) {
+static bool in_its_folder(const RegressionRun *run, const SequenceFrame *picture) {
+    return file_folder_length(run->name) == (size_t)picture->folder &&
+           memcmp(run->name, picture->name, (size_t)picture->folder) == 0;
+}
+
+/* Whether a run of the picture's folder and scene (of any scene if the picture names none) differs in this frame.
+   *somewhere: in any frame. */
+static bool runs_differ(const Regression *regression, const SequenceFrame *picture, const Texts *texts, int64_t frame,
+                        bool *somewhere) {
     bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
-        if (run->differs == NULL || (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0)) continue;
+        if (run->differs == NULL || !in_its_folder(run, picture) ||
+            (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0))
+            continue;
         int64_t at = frame < run->frames ? frame : run->frames - 1;
         here = here || run->differs[at < 0 ? 0 : at];
         *somewhere = true;
     }
     return here;
+}
+
+static bool has_runs(const Regression *regression, const SequenceFrame *picture) {
+    for (int i = 0; i < regression->run_count; i++)
+        if (in_its_folder(&regression->runs[i], picture)) return true;
+    return false;
 }
 
 void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]) {
@@ -169,10 +194,8 @@ void regression_judge_states(const Regression *regression, RegressionFrame *fram
     bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
     if (texts_differ) frame->panel = first_panel(a, b);
     const char *number = texts[EXPECTED].frame;
-    int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->at[EXPECTED]->number;
-    bool differs = runs_differ(regression, &texts[EXPECTED], at, &frame->run_differs);
-    if (texts_differ || differs)
-        frame->states = STATES_DIFFER;
-    else
-        frame->states = have_texts || regression->run_count > 0 ? STATES_EQUAL : STATES_UNKNOWN;
+    int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->base->number;
+    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &frame->run_differs);
+    bool known = have_texts || has_runs(regression, frame->base);
+    frame->states = texts_differ || differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
 }

@@ -8,9 +8,7 @@
 
 bool regression_passed(const Regression *regression) { return regression->failed == 0 && regression->run_failed == 0; }
 
-const char *frame_name(const RegressionFrame *frame) {
-    return frame->at[frame->at[EXPECTED] != NULL ? EXPECTED : ACTUAL]->name;
-}
+const char *frame_name(const RegressionFrame *frame) { return frame->base->name; }
 
 const char *frame_verdict(const RegressionFrame *frame) {
     switch (frame->pixels) {
@@ -24,6 +22,7 @@ const char *frame_verdict(const RegressionFrame *frame) {
     case PIXELS_WITHIN: break;
     }
     if (frame->states == STATES_DIFFER) return "physics changed";
+    if (frame->metadata_failed) return "metadata changed";
     return frame->pixels == PIXELS_EQUAL ? "equal" : "within tolerance";
 }
 
@@ -61,6 +60,10 @@ RegressionText frame_words(const RegressionFrame *frame) {
     if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
         add(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
+    if (frame->metadata.text[0] != '\0') add(&words, ", ", "metadata differs: %s", frame->metadata.text);
+    if (frame->at[EXPECTED] != NULL && frame->at[EXPECTED] != frame->base)
+        add(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
+            frame->at[EXPECTED]->name + frame->at[EXPECTED]->folder);
     return words;
 }
 
@@ -88,6 +91,7 @@ RegressionText regression_verdict(const Regression *regression) {
             : physics           ? "physics changed"
                                 : "renderer changed");
     if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (cause unknown: no states)");
+    if (regression->metadata_failed > 0) add(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
     if (verdict.text[0] == '\0') add(&verdict, "", "equal");

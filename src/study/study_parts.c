@@ -5,6 +5,7 @@
 #include "common/file.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,10 +108,11 @@ bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLay
     return csv_table_path(path, folder, layout, error) && file_write_text(path, print_table, &table, error);
 }
 
-void study_parts_remove(const StudyParts *parts) {
+bool study_parts_remove(const StudyParts *parts, Error *error) {
     DIR *folder = opendir(parts->folder);
-    if (folder == NULL) return;
+    if (folder == NULL) return error_system(error, parts->folder, "cannot be read: %s", strerror(errno));
     for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) unlinkat(dirfd(folder), entry->d_name, 0);
     closedir(folder);
-    rmdir(parts->folder);
+    /* Fails, too, if an entry could not be read or removed. */
+    return rmdir(parts->folder) == 0 || error_system(error, parts->folder, "cannot be removed: %s", strerror(errno));
 }

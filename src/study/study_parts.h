@@ -39,5 +39,5 @@ bool study_parts_print(FILE *lines, const CsvLayout *layout, const void *row, Er
 /* Writes folder/TABLE.csv: the header and the table's rows in the order of the parts. */
 bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLayout *layout, Error *error);
 
-/* Removes the stored parts: the study is done. */
-void study_parts_remove(const StudyParts *parts);
+/* Removes the stored parts: the study is done. ERROR_SYSTEM if any is left. */
+bool study_parts_remove(const StudyParts *parts, Error *error);

@@ -111,9 +111,9 @@ chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.p
 random.seed(1)
 for folder in "ab":
     for i in range(3):
-        rows = b"".join(b"\0" + random.randbytes(400 * 3) for _ in range(250))
+        rows = b"".join(b"\0" + random.randbytes(400 * 3) for _ in range(400))
         with open(f"large.{folder}/{i}.png", "wb") as file:
-            file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 400, 250, 8, 2, 0, 0, 0)))
+            file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 400, 400, 8, 2, 0, 0, 0)))
             file.write(chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 PYTHON
 run 0 compare large.a large.b --fuzzy 255,1 --report report

@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-. "$(dirname "$0")/checks.sh"
+tests=$(cd "$(dirname "$0")" && pwd)
+. "$tests/checks.sh"
 
 run 0 simulate "$scenes/stack.yaml" --frames 40 -o a.npz
 run 0 simulate "$scenes/stack.yaml" --frames 40 --bomb-x 1 -o b.npz
@@ -52,19 +53,7 @@ complains "two/frame_000001.png"
 complains "(further frames that cannot be compared: 1)"
 
 # Pictures of other programs: no states, other names, other depths.
-cat >png.py <<'PYTHON'
-# png.py FILE WIDTH HEIGHT "R G B A" [X Y "R G B A"]...: an RGBA picture, written by hand.
-import struct, sys, zlib
-path, width, height, ground = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), bytes(map(int, sys.argv[4].split()))
-rows = [bytearray(ground * width) for _ in range(height)]
-for x, y, color in zip(*[iter(sys.argv[5:])] * 3):
-    rows[int(y)][4 * int(x) : 4 * int(x) + 4] = bytes(map(int, color.split()))
-chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-with open(path, "wb") as file:
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)))
-    file.write(chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
-PYTHON
-png() { /usr/bin/python3 png.py "$@"; }
+png() { /usr/bin/python3 "$tests/png.py" "$@"; }
 mkdir theirs ours
 png theirs/shot-1.png 20 10 "9 9 9 255"
 png theirs/shot-2.png 20 10 "9 9 9 255"
@@ -103,7 +92,7 @@ png mask.png 20 10 "0 0 0 255" 3 4 "1 0 0 1" 5 4 "0 0 9 255"
 run 0 compare theirs ours --mask mask.png
 png mask.png 20 11 "0 0 0 255"
 run 2 compare theirs ours --mask mask.png
-complains "mask.png: error: the mask has 20 x 11 pixels, but theirs/shot-2.png has 20 x 10"
+complains "mask.png: error: the mask has 20 x 11 pixels, but theirs/shot-1.png has 20 x 10"
 for wrong in 1,2,3 1,2,0,4 a,b,c,d 1,2,3,4,5 mask.jpg; do
     run 2 compare theirs ours --mask $wrong
     complains "'$wrong' is neither a PNG file nor X,Y,W,H"

@@ -15,7 +15,7 @@
 enum { FRAMES = 6, WIDTH = 320, HEIGHT = 180, SEEN = 10 };
 static const float SIXTEENTH = 1.0F / 512;
 
-static char expected[256], actual[256];
+static char expected[256], actual[256], kept[256];
 static Trajectory *run;
 
 static const char *in(const char *folder, const char *name) {
@@ -53,8 +53,9 @@ static int draw_expected(void **state) {
     (void)state;
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
     snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
+    snprintf(kept, sizeof kept, "%s", temporary_path("kept"));
     run = make_run();
-    render_into(in(expected, "kept"));
+    render_into(kept);
     trajectory_destroy(run);
     return 0;
 }
@@ -63,8 +64,7 @@ static int make(void **state) {
     (void)state;
     char command[2048];
     run = make_run();
-    snprintf(command, sizeof command, "mkdir %s && cp %s/kept/* %s && cp %s/kept/* %s", actual, expected, actual,
-             expected, expected);
+    snprintf(command, sizeof command, "cp -r %s %s && cp -r %s %s", kept, actual, kept, expected);
     return system(command);
 }
 
@@ -72,7 +72,7 @@ static int remove_folders(void **state) {
     (void)state;
     char command[1024];
     trajectory_destroy(run);
-    snprintf(command, sizeof command, "rm -r %s %s/*.*", actual, expected);
+    snprintf(command, sizeof command, "rm -r %s %s", actual, expected);
     return system(command);
 }
 

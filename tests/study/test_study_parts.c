@@ -39,14 +39,21 @@ static void tables_have_the_order_of_the_parts(void **state) {
     assert_ok(study_parts_do(&parts, &(StudyPart){"second", 3, write_counted, &second}, &error), error);
     assert_near(parts.done, 4, 0);
     assert_ok(study_parts_table(&parts, folder, &layout, &error), error);
-    char path[400];
+    char path[sizeof parts.folder + 8];
     size_t size;
     snprintf(path, sizeof path, "%s/a.csv", folder);
     char *text = file_read(path, 1000, &size, &error);
     assert_ok(text != NULL, error);
     assert_string_equal(text, "x,y\n1,2\n5,6\n");
     free(text);
-    study_parts_remove(&parts);
+    /* What cannot be removed is reported. */
+    snprintf(path, sizeof path, "%s/other", parts.folder);
+    assert_ok(file_make_directory(path, &error), error);
+    assert_false(study_parts_remove(&parts, &error));
+    assert_error(error, ERROR_SYSTEM, "cannot be removed");
+    error = (Error){0};
+    assert_int_equal(rmdir(path), 0);
+    assert_ok(study_parts_remove(&parts, &error), error);
     assert_int_equal(access(parts.folder, F_OK), -1);
     study_parts_close(&parts);
 }

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* PNG files made of single chunks with valid checksums. Include testing.h first. */
+#pragma once
+#include <zlib.h>
+
+typedef struct PngParts {
+    uint8_t data[8192];
+    size_t size;
+} PngParts;
+
+static inline void put_bytes(PngParts *parts, const void *data, size_t size) {
+    assert_true(parts->size + size <= sizeof parts->data);
+    if (size > 0) memcpy(parts->data + parts->size, data, size);
+    parts->size += size;
+}
+
+static inline void put_number(PngParts *parts, uint32_t value) {
+    put_bytes(parts, (uint8_t[]){(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8), (uint8_t)value},
+              4);
+}
+
+static inline void put_chunk(PngParts *parts, const char *type, const void *data, size_t size) {
+    put_number(parts, (uint32_t)size);
+    size_t start = parts->size;
+    put_bytes(parts, type, 4);
+    put_bytes(parts, data, size);
+    put_number(parts, (uint32_t)crc32(0, parts->data + start, (uInt)(size + 4)));
+}
+
+static inline void put_header(PngParts *parts, uint32_t width, uint32_t height, int depth, int color) {
+    uint8_t data[13] = {0};
+    for (int i = 0; i < 4; i++)
+        data[i] = (uint8_t)(width >> (24 - 8 * i)), data[4 + i] = (uint8_t)(height >> (24 - 8 * i));
+    data[8] = (uint8_t)depth, data[9] = (uint8_t)color;
+    *parts = (PngParts){.size = 0};
+    put_bytes(parts, "\x89PNG\r\n\x1a\n", 8);
+    put_chunk(parts, "IHDR", data, sizeof data);
+}
+
+/* Compressed zeros: black pixels, if they are as many as the header tells. */
+static inline size_t compress_zeros(uint8_t *compressed, size_t room, size_t size) {
+    uLongf length = (uLongf)room;
+    uint8_t *zeros = calloc(size, 1);
+    assert_non_null(zeros);
+    assert_int_equal(compress2(compressed, &length, zeros, (uLong)size, 9), Z_OK);
+    free(zeros);
+    return length;
+}
