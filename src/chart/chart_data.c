@@ -60,6 +60,7 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         strcpy(line->key, key);
         chart_plain(line->name, key);
         line->no_push_out = method != NULL && method->no_push_out;
+        line->competes = method == NULL || method->role == METHOD_COMPETES;
     }
     chart_method_styles(methods, chart->line_count, styles);
     for (int i = 0; i < chart->line_count; i++) chart->lines[i].style = styles[i];
@@ -94,6 +95,7 @@ static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel
     name_row(row, key, mark.label);
     mark.line = find_line(chart, key);
     mark.error = fmax(row->error_mean, PARETO_RESOLUTION);
+    mark.floored = row->error_mean < PARETO_RESOLUTION;
     mark.on_front = on_front;
     mark.shipped = is_shipped(row);
     ChartLine *line = &chart->lines[mark.line];
@@ -102,9 +104,6 @@ static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel
         line->left_out++;
         return;
     }
-    line->marks[panel]++;
-    chart->floored += row->error_mean < PARETO_RESOLUTION;
-    widen(chart, &mark);
     chart->panels[panel].marks[chart->panels[panel].count++] = mark;
 }
 
@@ -113,6 +112,45 @@ static int compare_marks(const void *left, const void *right) {
     if (a->line != b->line) return a->line - b->line;
     if (a->us != b->us) return a->us < b->us ? -1 : 1;
     return (a->error > b->error) - (a->error < b->error);
+}
+
+static bool is_far(double value, double least, double most) { return value < least / 10 || value > most * 10; }
+
+static void leave_out(ChartLine *line, const ChartMark *mark) {
+    if (line->beyond++ == 0) {
+        line->beyond_us[0] = line->beyond_us[1] = mark->us;
+        line->beyond_error[0] = line->beyond_error[1] = mark->error;
+    }
+    line->beyond_us[0] = fmin(line->beyond_us[0], mark->us), line->beyond_us[1] = fmax(line->beyond_us[1], mark->us);
+    line->beyond_error[0] = fmin(line->beyond_error[0], mark->error);
+    line->beyond_error[1] = fmax(line->beyond_error[1], mark->error);
+}
+
+/* A baseline a thousand times faster than all others would push these into a corner. */
+static void fit_axes(Chart *chart) {
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++)
+            if (chart->lines[chart->panels[p].marks[i].line].competes) widen(chart, &chart->panels[p].marks[i]);
+    const Chart alone = *chart;
+    const bool any = alone.us_most > 0;
+    for (int p = 0; p < CHART_PANELS; p++) {
+        ChartPanel *panel = &chart->panels[p];
+        int kept = 0;
+        for (int i = 0; i < panel->count; i++) {
+            const ChartMark mark = panel->marks[i];
+            ChartLine *line = &chart->lines[mark.line];
+            if (any && (is_far(mark.us, alone.us_least, alone.us_most) ||
+                        is_far(mark.error, alone.error_least, alone.error_most))) {
+                leave_out(line, &mark);
+                continue;
+            }
+            line->marks[p]++;
+            chart->floored += mark.floored;
+            widen(chart, &mark);
+            panel->marks[kept++] = mark;
+        }
+        panel->count = kept;
+    }
 }
 
 /* Adds a scene's closed-loop rows. Rows of a method that lost the scene are only counted. */
@@ -141,6 +179,7 @@ static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, 
     }
     if (room) {
         add_rows(chart, table, scene, rows, on_front);
+        fit_axes(chart);
         for (int p = 0; p < CHART_PANELS; p++)
             qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
     }

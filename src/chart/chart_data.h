@@ -21,13 +21,17 @@ typedef struct ChartLine {
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
+    bool competes;                     /* or unknown; baselines and the reference do not */
+    int beyond;                        /* number of marks left out because they are far from all that compete, and */
+    double beyond_us[2], beyond_error[2]; /* their ranges, from least to most */
     ChartStyle style;
 } ChartLine;
 
 typedef struct ChartMark {
     int line;
     double us, us_q1, us_q3; /* solver time per step: median and quartiles, microseconds */
-    double error;            /* mean velocity error, m/s */
+    double error;            /* mean velocity error, m/s; at least PARETO_RESOLUTION */
+    bool floored;            /* it was less */
     bool on_front;
     bool shipped;                /* the setting that the method's description calls shipped */
     char label[CHART_TEXT_SIZE]; /* numeric settings ("k=20"); or empty */
@@ -50,7 +54,8 @@ typedef struct Chart {
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?', so that gnuplot cannot interpret them.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h) are drawn
-   there. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+   there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
+   them are left out, and counted in their line. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 

@@ -29,6 +29,12 @@ static bool has_no_push_out(const Chart *chart) {
     return any;
 }
 
+static bool has_beyond(const Chart *chart) {
+    bool any = false;
+    for (int i = 0; i < chart->line_count; i++) any |= chart->lines[i].beyond > 0;
+    return any;
+}
+
 void chart_lay_out_legend(ChartLayout *layout) {
     size_t longest = strlen(front_name);
     int entries = 1;
@@ -45,13 +51,20 @@ void chart_lay_out_legend(ChartLayout *layout) {
     /* The fewest columns for this number of rows: the legend fills its width. */
     layout->columns = (entries + layout->rows - 1) / layout->rows;
     layout->column_width = room / layout->columns;
-    layout->foot_rows = has_counts(layout->chart) + has_no_push_out(layout->chart);
+    layout->foot_rows = has_counts(layout->chart) + has_no_push_out(layout->chart) + has_beyond(layout->chart);
 }
 
-/* A sample from `left`, then the text. */
+static double entry_left(const ChartLayout *layout, int entry) {
+    return LEFT_MARGIN + (entry % layout->columns) * layout->column_width;
+}
+
+static double entry_middle(const ChartLayout *layout, int entry) {
+    return layout->legend_top - LEGEND_ROW * (entry / layout->columns);
+}
+
+/* A sample from the left, then the text. */
 static void write_entry(const ChartLayout *layout, int entry, const char *text) {
-    double left = LEFT_MARGIN + (entry % layout->columns) * layout->column_width;
-    double y = layout->legend_top - LEGEND_ROW * (entry / layout->columns);
+    const double left = entry_left(layout, entry), y = entry_middle(layout, entry);
     FILE *script = layout->script;
     fprintf(script, "set label '%s' at first %.3f,%.3f left font ',7.5'\n", text, left + text_from, y);
     fprintf(script, "$l%d << END\n%.3f %.3f\n%.3f %.3f\nEND\n", entry, left, y, left + sample, y);
@@ -87,6 +100,29 @@ static void end_note(const ChartLayout *layout, int row) {
             LABEL_POINTS);
 }
 
+/* "0.14 to 0.28 m/s"; one number if both are equal. */
+static void write_range(FILE *script, const double range[2], const char *unit) {
+    fprintf(script, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
+    if (range[1] > range[0]) fprintf(script, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
+    fprintf(script, " %s", unit);
+}
+
+static void write_beyond(const ChartLayout *layout, int row) {
+    const char *separator = "Beyond the axes: ";
+    begin_note(layout);
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        const ChartLine *line = &layout->chart->lines[i];
+        if (line->beyond == 0) continue;
+        fprintf(layout->script, "%s%s (", separator, line->name);
+        write_range(layout->script, line->beyond_us, "µs,");
+        fputc(' ', layout->script);
+        if (line->beyond_error[1] <= PARETO_RESOLUTION) fprintf(layout->script, "below ");
+        write_range(layout->script, line->beyond_error, "m/s)");
+        separator = ", ";
+    }
+    end_note(layout, row);
+}
+
 static void write_notes(const ChartLayout *layout) {
     const Chart *chart = layout->chart;
     int row = 0;
@@ -109,6 +145,7 @@ static void write_notes(const ChartLayout *layout) {
                 ": error against the solution without the velocity that pushes overlapping boxes apart.");
         end_note(layout, row++);
     }
+    if (has_beyond(chart)) write_beyond(layout, row++);
 }
 
 /* A third plot over the whole page, with axes in mm. */
@@ -125,7 +162,11 @@ void chart_write_legend(const ChartLayout *layout) {
     }
     write_entry(layout, entry, front_name);
     write_notes(layout);
-    fprintf(script, "plot $l%d with lines lc rgb '%s' lw 6", entry, PARETO_COLOUR);
+    /* A box, as gnuplot 5.4 draws thick lines with a pointed start. */
+    const double left = entry_left(layout, entry), y = entry_middle(layout, entry), half = 0.5;
+    fprintf(script, "$front << END\n%.3f %.3f %.3f %.3f %.3f %.3f\nEND\n", left, y, left, left + sample, y - half,
+            y + half);
+    fprintf(script, "plot $front with boxxyerror fs solid noborder lc rgb '%s'", PARETO_COLOUR);
     for (int i = 0; i < entry; i++) {
         const ChartStyle style = layout->chart->lines[styles[i]].style;
         if (layout->chart->lines[styles[i]].marks[0] > 1 || layout->chart->lines[styles[i]].marks[1] > 1)

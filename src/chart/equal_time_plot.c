@@ -63,6 +63,16 @@ static void name_colour(char colour[8], double ratio) {
     snprintf(colour, 8, "#%02X%02X%02X", (unsigned)parts[0], (unsigned)parts[1], (unsigned)parts[2]);
 }
 
+static double linear(unsigned channel) { return pow(channel / 255.0, 2.2); }
+
+/* White where it has a contrast of at least 3.5 (WCAG 2), else black. */
+static const char *ink_on(const char colour[8]) {
+    const double lightest = 1.05 / 3.5 - 0.05;
+    const unsigned rgb = (unsigned)strtoul(colour + 1, NULL, 16);
+    const double luminance = 0.2126 * linear(rgb >> 16) + 0.7152 * linear(rgb >> 8 & 255) + 0.0722 * linear(rgb & 255);
+    return luminance < lightest ? "white" : "black";
+}
+
 static void draw_box(GnuplotPage *page, GnuplotBox box, const char *colour) {
     const GnuplotLook look = {"", {.colour = colour}, 0, false, 1, false};
     gnuplot_series_begin(page);
@@ -99,9 +109,8 @@ static void draw_cell(const Layout *layout, int row, int column) {
         strcpy(text, "–");
     else
         name_ratio(text, cell->ratio);
-    const bool dark = !none && fabs(strength(cell->ratio)) > 0.55;
     gnuplot_text_in(layout->page, x + layout->cell / 2, y + cell_height / 2, "center", 7.5, text,
-                    (GnuplotInk){dark ? "white" : "black", 0});
+                    (GnuplotInk){ink_on(colour), 0});
 }
 
 static void draw_names(const Layout *layout) {

@@ -13,7 +13,7 @@ typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
     int input_count;
     FigureSpec figure;
-    bool transparent;
+    bool transparent, outlines;
     const char *view_from; /* RUN.npz, or NULL */
 } Options;
 
@@ -39,6 +39,8 @@ static const Option option_table[] = {
     {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
      OPTION_DOUBLE(Options, figure.points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX)},
     {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
+    {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
+     OPTION_FLAG(Options, outlines)},
     {0}};
 enum { HELP_SIZE = 4096 };
 
@@ -126,6 +128,8 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
     if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
+    if (options->outlines && format != SKETCH_SVG)
+        return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
     if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
     if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
     if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
@@ -137,9 +141,9 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
 }
 
 static bool draw(const FigureKind *kind, const Options *options, Error *error) {
-    const SketchOutput output = {options->figure.dpi, options->transparent};
+    const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
     Sketch sketch = {0};
-    bool ok = kind->draw(&sketch, &options->figure, error) &&
+    bool ok = figure_draw(kind, &sketch, &options->figure, error) &&
               sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
               sketch_write(&sketch, options->output, &output, error);
     if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);

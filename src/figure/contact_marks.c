@@ -12,6 +12,8 @@
 #define NORMAL_RINGS 3.1 /* length of a normal on either side / radius of the point's mark */
 
 static const double min_arrow = 1;     /* mm */
+static const double long_arrow = 3;    /* mm; the number is at its tip, else at its point */
+static const double crowd = 5;         /* mm; numbers of points nearer than this to each other stand apart from them */
 static const double large_share = 0.3; /* impulses above this share of the largest always get a number */
 
 enum { MAX_NUMBERS = 600 };
@@ -103,23 +105,50 @@ static void format_number(char text[32], double value) {
     snprintf(text, 32, "%.*f", decimals, value);
 }
 
-/* Beside the arrow's tip or the point; false if neither has room. */
-static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
-    const double points = CONTACT_TYPE * look->points;
-    const Point tip = arrow_tip(look, contact), places[] = {tip, contact->at};
-    char text[32];
+/* Finds a place beside the arrow's tip, or beside the point, with a line to it if it is not near. */
+static bool place_number(const ContactLook *look, const ShownContact *contact, LabelField *field, LabelWish wish,
+                         PageBox *box, Segment *leader, bool *led) {
+    const Point tip = arrow_tip(look, contact);
     const bool must = contact->size >= large_share * look->largest;
+    const bool arrow = contact->size * look->arrow_scale >= long_arrow;
+    *led = false;
+    if (arrow && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, box)) return true;
+    if (label_place_led(field, &wish, box, leader, led)) return true;
+    wish.nearest = 0;
+    if (label_place_led(field, &wish, box, leader, led)) return true;
+    return must && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, true, box);
+}
+
+/* Numbers stand outside the pile of contacts, whose middle is at `middle`. */
+static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
+                        double middle, bool crowded) {
+    const double points = CONTACT_TYPE * look->points, em = points * MM_PER_POINT, farthest = 12;
+    char text[32];
     PageBox box;
+    Segment leader;
+    bool led;
     format_number(text, contact->size);
-    const double em = points * MM_PER_POINT, width = type_width(text, points) + 0.25 * em, height = em;
-    for (int i = 0; i < 2; i++) {
-        double away = i == 0 && contact->size * look->arrow_scale >= min_arrow ? 0.7 : look->ring + 0.5;
-        if (!label_place(field, places[i].x, places[i].y, away, width, height, must, &box)) continue;
-        sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
-                    &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
-        return true;
-    }
+    const LabelWish wish = {contact->at.x, contact->at.y, look->ring, crowded ? crowd : 0, farthest, type_width(text, points) + 0.25 * em, em,
+                            contact->at.x < middle};
+    if (!place_number(look, contact, field, wish, &box, &leader, &led)) return false;
+    const Pen thin = pen_line(ACCENT, 0.8, NULL);
+    if (led) sketch_line(sketch, (Point){leader.x0, leader.y0}, (Point){leader.x1, leader.y1}, &thin);
+    sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
+                &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
+    return true;
+}
+
+/* Another contact is so near that a number between them could belong to either. */
+static bool is_crowded(const ShownContact *contacts, int count, int contact) {
+    for (int i = 0; i < count; i++)
+        if (i != contact && hypot(contacts[i].at.x - contacts[contact].at.x, contacts[i].at.y - contacts[contact].at.y) < crowd) return true;
     return false;
+}
+
+static double middle_of(const ShownContact *contacts, int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += contacts[i].at.x;
+    return sum / fmax(count, 1);
 }
 
 bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
@@ -131,7 +160,9 @@ bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, co
     if (done) {
         field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
         for (int i = *count - 1; i >= 0; i--) draw_contact(look, sketch, &contacts[i], field);
-        for (int i = 0; i < *count && i < MAX_NUMBERS; i++) *numbered += draw_number(look, sketch, &contacts[i], field);
+        const double middle = middle_of(contacts, *count);
+        for (int i = 0; i < *count && i < MAX_NUMBERS; i++)
+            *numbered += draw_number(look, sketch, &contacts[i], field, middle, is_crowded(contacts, *count, i));
     }
     free(contacts);
     free(field);

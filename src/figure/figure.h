@@ -47,5 +47,8 @@ typedef struct FigureKind {
 /* All kinds; ends with NULL. */
 const FigureKind *const *figure_kinds(void);
 
+/* Draws a kind with the title of its files: "strip of stack: engine, momentum:k=20". As FigureKind.draw. */
+bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error);
+
 /* NULL with error set, which lists the kinds, if there is no such kind. */
 const FigureKind *figure_kind(const char *name, Error *error);

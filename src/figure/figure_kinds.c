@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/figure_kinds.h"
 
+#include "common/file.h"
 #include "common/names.h"
+#include "figure/run_view.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,6 +12,23 @@ static const FigureKind *const kinds[] = {
     &figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, &figure_pair, NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
+
+/* Truncated at its end. */
+static void append(char title[SKETCH_TEXT_SIZE], const char *before, const char *part) {
+    const size_t used = strlen(title);
+    snprintf(title + used, SKETCH_TEXT_SIZE - used, "%s%s", before, part);
+}
+
+bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
+    if (!kind->draw(sketch, spec, error)) return false;
+    append(sketch->title, "", kind->name);
+    if (spec->network != NULL)
+        append(sketch->title, " of ", spec->network + file_folder_length(spec->network));
+    else
+        append(sketch->title, " of ", spec->runs[0]->scene);
+    for (int i = 0; i < spec->run_count; i++) append(sketch->title, i == 0 ? ": " : ", ", run_name(spec->runs[i]).text);
+    return true;
+}
 
 const FigureKind *figure_kind(const char *name, Error *error) {
     NameList known = {0};

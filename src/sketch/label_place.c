@@ -80,3 +80,70 @@ bool label_place(LabelField *field, double x, double y, double distance, double 
     if (fewest >= 0) label_add_box(field, *place);
     return fewest >= 0;
 }
+
+/* From one side to the other around the mark: 16 directions, the sides first. */
+static double angle_of(int direction, bool left) {
+    static const int order[] = {0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8};
+    const double angle = order[direction] * M_PI / 8;
+    return left ? M_PI - angle : angle;
+}
+
+static double turn(double ax, double ay, double bx, double by, double cx, double cy) {
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+}
+
+static bool segments_cross(const Segment *a, const Segment *b) {
+    return turn(a->x0, a->y0, a->x1, a->y1, b->x0, b->y0) * turn(a->x0, a->y0, a->x1, a->y1, b->x1, b->y1) < 0 &&
+           turn(b->x0, b->y0, b->x1, b->y1, a->x0, a->y0) * turn(b->x0, b->y0, b->x1, b->y1, a->x1, a->y1) < 0;
+}
+
+static double distance_to(const Segment *line, double x, double y) {
+    const double dx = line->x1 - line->x0, dy = line->y1 - line->y0, square = dx * dx + dy * dy;
+    const double share = square > 0 ? fmin(fmax(((x - line->x0) * dx + (y - line->y0) * dy) / square, 0), 1) : 0;
+    return hypot(x - line->x0 - share * dx, y - line->y0 - share * dy);
+}
+
+/* Crossing, or ending on it: a line along another would hide it. */
+static bool segments_meet(const Segment *a, const Segment *b) {
+    return segments_cross(a, b) || distance_to(a, b->x0, b->y0) < clearance || distance_to(a, b->x1, b->y1) < clearance;
+}
+
+/* The mark's own box contains the start of its leader. */
+static bool line_is_free(const LabelField *field, const Segment *line, const LabelWish *wish) {
+    const double reach = hypot(line->x1 - wish->x, line->y1 - wish->y);
+    for (int i = 0; i < field->segment_count; i++)
+        if (segments_meet(line, &field->segments[i])) return false;
+    for (int i = 0; i < field->box_count; i++) {
+        const PageBox *box = &field->boxes[i];
+        const bool own = wish->x >= box->left && wish->x <= box->right && wish->y >= box->bottom && wish->y <= box->top;
+        if (!own && reach > 0 && crosses(line, box)) return false;
+    }
+    return true;
+}
+
+static PageBox box_towards(const LabelWish *wish, double angle, double distance) {
+    const double x = wish->x + distance * cos(angle) + wish->width / 2 * cos(angle);
+    const double y = wish->y + distance * sin(angle) + wish->height / 2 * sin(angle);
+    return (PageBox){x - wish->width / 2, y - wish->height / 2, x + wish->width / 2, y + wish->height / 2};
+}
+
+static Segment leader_to(const LabelWish *wish, const PageBox *box) {
+    const double x = fmin(fmax(wish->x, box->left), box->right), y = fmin(fmax(wish->y, box->bottom), box->top);
+    const double length = hypot(x - wish->x, y - wish->y), share = length > 0 ? fmin(1, wish->clear / length) : 1;
+    return (Segment){wish->x + share * (x - wish->x), wish->y + share * (y - wish->y), x, y};
+}
+
+bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led) {
+    const double step = 0.6, shortest = 0.9, gap = 0.4;
+    for (double distance = fmax(wish->clear + gap, wish->nearest); distance <= wish->farthest; distance += step)
+        for (int direction = 0; direction < 16; direction++) {
+            *place = box_towards(wish, angle_of(direction, wish->left), distance);
+            *leader = leader_to(wish, place);
+            if (!is_free(field, place) || crossed(field, place) > 0 || !line_is_free(field, leader, wish)) continue;
+            *led = hypot(leader->x1 - leader->x0, leader->y1 - leader->y0) > shortest;
+            label_add_box(field, *place);
+            if (*led) label_add_segment(field, *leader);
+            return true;
+        }
+    return false;
+}

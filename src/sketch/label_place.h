@@ -30,3 +30,16 @@ void label_add_segment(LabelField *field, Segment segment);
    field. */
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place);
+
+/* A label of this size for the mark at (x, y), whose radius is `clear`. */
+typedef struct LabelWish {
+    double x, y, clear;
+    double nearest, farthest; /* mm, from the mark to the label */
+    double width, height;
+    bool left; /* try the left before the right */
+} LabelWish;
+
+/* Finds the nearest free place for a label, to which a straight line from its mark crosses nothing that is drawn; *leader is
+   that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label and line to the
+   field. False if there is no place. */
+bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sketch/pdf_objects.h"
 
+#include "common/utf8.h"
 #include "sketch/plot_font.h"
 #include "sketch/type.h"
 
@@ -28,6 +29,18 @@ bool pdf_write_stream(Pdf *pdf, int number, const char *keys, const void *data, 
     }
     free(packed);
     return done;
+}
+
+void pdf_put_text(FILE *file, const char *text) {
+    fprintf(file, "<FEFF");
+    while (*text != '\0') {
+        const unsigned code = utf8_next(&text);
+        if (code < 0x10000)
+            fprintf(file, "%04X", code);
+        else
+            fprintf(file, "%04X%04X", 0xD800 + ((code - 0x10000) >> 10), 0xDC00 + ((code - 0x10000) & 0x3FF));
+    }
+    fputc('>', file);
 }
 
 static unsigned read_big_endian(const unsigned char *bytes, int count) {

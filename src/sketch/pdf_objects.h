@@ -4,7 +4,7 @@
 #include "sketch/sketch.h"
 
 /* Object numbers. Pictures follow, each with its alpha after it. */
-enum { CATALOG = 1, PAGES, PAGE, CONTENT, FONT, CID_FONT, DESCRIPTOR, FONT_FILE, TO_UNICODE, FIRST_IMAGE };
+enum { CATALOG = 1, PAGES, PAGE, CONTENT, FONT, CID_FONT, DESCRIPTOR, FONT_FILE, TO_UNICODE, INFO, FIRST_IMAGE };
 
 typedef struct Pdf {
     FILE *file;
@@ -17,6 +17,9 @@ void pdf_begin_object(Pdf *pdf, int number);
 
 /* A compressed stream; `keys`: dictionary entries besides length and filter. False if out of memory. */
 bool pdf_write_stream(Pdf *pdf, int number, const char *keys, const void *data, size_t size);
+
+/* A text string in UTF-16, "<FEFF...>": titles, and texts that replace others. */
+void pdf_put_text(FILE *file, const char *text);
 
 /* Writes the objects FONT to TO_UNICODE. False if out of memory. */
 bool pdf_write_font(Pdf *pdf);

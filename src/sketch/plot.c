@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static const double tic = 1;                                   /* mm */
-static const double exponent_size = 0.75, exponent_rise = 0.4; /* relative to the text's em */
+static const double tic = 1; /* mm */
 
 static double em(double points) { return points * MM_PER_POINT; }
 
@@ -50,27 +49,19 @@ static void draw_linear_axis(const Plot *plot, Sketch *sketch, const char *name)
                 name);
 }
 
-/* 10 with a superscript exponent, right-aligned at (right, y). */
-static void draw_power_of_ten(const Plot *plot, Sketch *sketch, double right, double y, int power) {
-    const double small = exponent_size * plot->points;
-    const TextStyle base = {plot->points, TEXT_RIGHT, INK, 0, false}, exponent = {small, TEXT_RIGHT, INK, 0, false};
-    const ShownDecimals shown = show_decimals(power, 0);
-    sketch_text(sketch, (Point){right, y + exponent_rise * em(plot->points)}, &exponent, "%s", shown.text);
-    sketch_text(sketch, (Point){right - type_width(shown.text, small) - 0.05 * em(plot->points), y}, &base, "10");
-}
-
 static void draw_log_axis(const Plot *plot, Sketch *sketch, const char *name) {
     const LogAxis *axis = &plot->axis;
     const int first = (int)ceil(log10(axis->low) - 1e-9), last = (int)floor(log10(axis->high) + 1e-9);
     const double decade = (axis->to - axis->from) / log10(axis->high / axis->low);
     const int step = (int)fmax(ceil(1.6 * em(plot->points) / decade), 1);
     const Pen pen = pen_line(INK, 1.2, NULL), guide = pen_line(GRID_STRONG, 0.9, NULL);
+    const TextStyle numbers = {plot->points, TEXT_RIGHT, INK, 0, false};
     for (int power = first; power <= last; power++) {
         const double y = log_axis_place(axis, pow(10, power));
         if (power % step != 0) continue;
         sketch_line(sketch, (Point){plot->low.x, y}, (Point){plot->high.x, y}, &guide);
         sketch_line(sketch, (Point){plot->low.x - tic, y}, (Point){plot->low.x, y}, &pen);
-        draw_power_of_ten(plot, sketch, plot->low.x - tic - 0.4, y, power);
+        sketch_power_of_ten(sketch, (Point){plot->low.x - tic - 0.4, y}, &numbers, power);
     }
     const double x = plot->low.x - plot_left_margin(plot->points) + 0.6 * em(plot->points);
     sketch_text(sketch, (Point){x, (plot->low.y + plot->high.y) / 2},

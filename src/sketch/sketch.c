@@ -148,6 +148,18 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
     sketch_shape(sketch, corners, count, pen);
 }
 
+/* Copies a text to the sketch's texts; returns its offset. */
+static size_t add_text(Sketch *sketch, const char *text) {
+    const size_t size = strlen(text) + 1, at = sketch->text_size;
+    if (!array_reserve((void **)&sketch->texts, &sketch->text_capacity, at + size, 1)) {
+        sketch->failed = true;
+        return 0;
+    }
+    memcpy(sketch->texts + at, text, size);
+    sketch->text_size += size;
+    return at;
+}
+
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) {
     if (!is_near_page(at)) return;
     char text[SKETCH_TEXT_SIZE];
@@ -155,15 +167,37 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    size_t size = strlen(text) + 1;
-    if (!array_reserve((void **)&sketch->texts, &sketch->text_capacity, sketch->text_size + size, 1)) {
-        sketch->failed = true;
-        return;
+    SketchMark mark = {LAYER_TEXTS, MARK_TEXT, .at = at, .style = *style};
+    mark.text = add_text(sketch, text);
+    if (!sketch->failed) add_mark(sketch, &mark);
+}
+
+/* "10⁻³" */
+static void format_power(char text[32], int power) {
+    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    char digits[16];
+    snprintf(digits, sizeof digits, "%d", abs(power));
+    int used = snprintf(text, 32, "10%s", power < 0 ? "⁻" : "");
+    for (const char *c = digits; *c != '\0' && used < 28; c++)
+        used += snprintf(text + used, (size_t)(32 - used), "%s", raised[*c - '0']);
+}
+
+void sketch_power_of_ten(Sketch *sketch, Point right, const TextStyle *style, int power) {
+    const double exponent_size = 0.75, exponent_rise = 0.4, em = style->points * MM_PER_POINT; /* / em */
+    TextStyle base = *style, exponent = *style;
+    const ShownDecimals shown = show_decimals(power, 0);
+    char reads[32];
+    base.align = exponent.align = TEXT_RIGHT;
+    exponent.points *= exponent_size;
+    format_power(reads, power);
+    const size_t before = sketch->mark_count;
+    sketch_text(sketch, (Point){right.x - type_width(shown.text, exponent.points) - 0.05 * em, right.y}, &base, "10");
+    sketch_text(sketch, (Point){right.x, right.y + exponent_rise * em}, &exponent, "%s", shown.text);
+    if (sketch->failed || sketch->mark_count != before + 2) return;
+    for (size_t i = before; i < sketch->mark_count; i++) {
+        sketch->marks[i].has_reads = true;
+        sketch->marks[i].reads = add_text(sketch, i == before ? reads : "");
     }
-    const SketchMark mark = {LAYER_TEXTS, MARK_TEXT, .at = at, .style = *style, .text = sketch->text_size};
-    memcpy(sketch->texts + sketch->text_size, text, size);
-    sketch->text_size += size;
-    add_mark(sketch, &mark);
 }
 
 ShownDecimals show_decimals(double value, int decimals) {

@@ -79,11 +79,14 @@ typedef struct SketchMark {
     bool closed;
     size_t first, count; /* of a path: range in the sketch's points */
     TextStyle style;
-    size_t text; /* offset in the sketch's texts */
+    size_t text;    /* offset in the sketch's texts */
+    bool has_reads; /* what readers of a PDF's text get instead is at `reads` in the sketch's texts */
+    size_t reads;
 } SketchMark;
 
 typedef struct Sketch {
-    double width, height; /* mm */
+    double width, height;         /* mm */
+    char title[SKETCH_TEXT_SIZE]; /* of SVG and PDF files; "": none */
     SketchMark *marks;
     Point *points;
     char *texts;
@@ -91,7 +94,7 @@ typedef struct Sketch {
     bool failed; /* out of memory: the sketch is incomplete */
 } Sketch;
 
-/* Starts a sketch; free it with sketch_free(). */
+/* Starts a sketch; free it with sketch_free(). The title stays empty. */
 void sketch_begin(Sketch *sketch, double width, double height);
 void sketch_free(Sketch *sketch);
 
@@ -114,6 +117,9 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
 
 /* One line of text, truncated to SKETCH_TEXT_SIZE - 1 bytes, vertically centred on `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
+
+/* 10 to a power, right-aligned. Extracted from a PDF it reads "10⁻³". */
+void sketch_power_of_ten(Sketch *sketch, Point right, const TextStyle *style, int power);
 
 /* A number as text with this many decimals: with a minus sign (U+2212), and without it for -0. */
 typedef struct ShownDecimals {

@@ -43,7 +43,7 @@ bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *ou
 }
 
 bool sketch_draw(const Sketch *sketch, const char *stem, Error *error) {
-    const SketchOutput output = {SKETCH_DPI, false};
+    const SketchOutput output = {.dpi = SKETCH_DPI};
     for (int i = SKETCH_PNG; i <= SKETCH_SVG; i++) {
         char path[PATH_MAX];
         if (!file_path(path, sizeof path, error, "%s%s", stem, formats[i].ending)) return false;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes a sketch to a file. The same sketch gives the same bytes, independent of machine, time and path. SVG and
-   PDF are vector graphics, except for pictures; the text of a PDF is text. */
+   PDF are vector graphics, except for pictures; their text is text. */
 #pragma once
 #include "sketch/sketch.h"
 
@@ -12,6 +12,7 @@ enum { SKETCH_MAX_PIXELS = 40000000 }; /* of a PNG; 160 MB in memory */
 typedef struct SketchOutput {
     double dpi;       /* dots per inch of a PNG */
     bool transparent; /* without a white page */
+    bool outlines;    /* SVG: text as outlines instead of text */
 } SketchOutput;
 
 typedef enum SketchFormat { SKETCH_PNG, SKETCH_SVG, SKETCH_PDF, SKETCH_FORMATS } SketchFormat;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font, without date and document ID. Text can be
-   searched and copied. */
+/* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font and its title, without date and document ID. Text can
+   be searched and copied. */
 #include "sketch/pdf_objects.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
@@ -44,25 +44,46 @@ static void write_path(FILE *content, const Sketch *sketch, const SketchMark *ma
     fprintf(content, "%s%s Q\n", mark->closed ? "h " : "", paints[is_filled(mark)][line]);
 }
 
+/* As a path: a second text in the same place would be extracted, too. In font units. */
+static void write_halo(FILE *content, const TextPlace *place, const char *text) {
+    static const char operators[] = {[OUTLINE_MOVE] = 'm', [OUTLINE_LINE] = 'l', [OUTLINE_CURVE] = 'c'};
+    const double unit = place->em / type_units;
+    fprintf(content, "q %.8f %.8f %.8f %.8f %.3f %.3f cm\n", unit * place->cosine, unit * place->sine,
+            -unit * place->sine, unit * place->cosine, place->from.x, place->from.y);
+    write_colour(content, 0xFFFFFF, true);
+    fprintf(content, "%.0f w 1 J 1 j\n", 2 * HALO_SHARE * type_units);
+    for (int x = 0; *text != '\0';) {
+        const Glyph *glyph = type_next(&text);
+        for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
+            const OutlineStep *step = &type_steps[i];
+            const int points = step->kind == OUTLINE_CURVE ? 3 : 1;
+            if (step->kind == OUTLINE_MOVE && i > glyph->first) fprintf(content, "h\n");
+            for (int k = 0; k < points; k++) fprintf(content, "%d %d ", x + step[k].x, step[k].y);
+            fprintf(content, "%c\n", operators[step->kind]);
+            i += points - 1;
+        }
+        if (glyph->steps > 0) fprintf(content, "h\n");
+        x += glyph->advance;
+    }
+    fprintf(content, "S Q\n");
+}
+
 static void write_text(FILE *content, const Sketch *sketch, const SketchMark *mark) {
     const TextPlace place = text_place(sketch, mark);
+    const char *text = sketch->texts + mark->text;
+    if (mark->style.halo) write_halo(content, &place, text);
+    if (mark->has_reads) {
+        fprintf(content, "/Span<</ActualText");
+        pdf_put_text(content, sketch->texts + mark->reads);
+        fprintf(content, ">>BDC\n");
+    }
     fprintf(content, "BT /F %.4f Tf %.5f %.5f %.5f %.5f %.3f %.3f Tm\n", place.em, place.cosine, place.sine,
             -place.sine, place.cosine, place.from.x, place.from.y);
-    for (int halo = mark->style.halo; halo >= 0; halo--) {
-        if (halo == 1) {
-            write_colour(content, 0xFFFFFF, true);
-            fprintf(content, "%.3f w 1 J 1 j 1 Tr\n", 2 * HALO_SHARE * place.em);
-        } else {
-            write_colour(content, mark->style.colour, false);
-            fprintf(content, "0 J 0 Tr\n%.5f %.5f %.5f %.5f %.3f %.3f Tm\n", place.cosine, place.sine, -place.sine,
-                    place.cosine, place.from.x, place.from.y);
-        }
-        fputc('<', content);
-        for (const char *text = sketch->texts + mark->text; *text != '\0';)
-            fprintf(content, "%04X", type_next(&text)->index);
-        fprintf(content, "> Tj\n");
-    }
-    fprintf(content, "ET\n");
+    write_colour(content, mark->style.colour, false);
+    fputc('<', content);
+    while (*text != '\0') fprintf(content, "%04X", type_next(&text)->index);
+    fprintf(content, "> Tj\nET\n");
+    if (mark->has_reads) fprintf(content, "EMC\n");
 }
 
 static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput *output, const size_t *order) {
@@ -129,7 +150,8 @@ static void write_page(Pdf *pdf, int images) {
     const double points = 1 / MM_PER_POINT;
     FILE *file = pdf->file;
     pdf_begin_object(pdf, CATALOG);
-    fprintf(file, "<</Type/Catalog/Pages %d 0 R>>\nendobj\n", PAGES);
+    fprintf(file, "<</Type/Catalog/Pages %d 0 R/Lang(en)/ViewerPreferences<</DisplayDocTitle true>>>>\nendobj\n",
+            PAGES);
     pdf_begin_object(pdf, PAGES);
     fprintf(file, "<</Type/Pages/Kids[%d 0 R]/Count 1>>\nendobj\n", PAGE);
     pdf_begin_object(pdf, PAGE);
@@ -155,7 +177,19 @@ static void write_trailer(Pdf *pdf) {
     size_t start = (size_t)ftell(pdf->file);
     fprintf(pdf->file, "xref\n0 %d\n0000000000 65535 f \n", pdf->count);
     for (int i = 1; i < pdf->count; i++) fprintf(pdf->file, "%010zu 00000 n \n", pdf->offsets[i]);
-    fprintf(pdf->file, "trailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%zu\n%%%%EOF\n", pdf->count, CATALOG, start);
+    fprintf(pdf->file, "trailer\n<</Size %d/Root %d 0 R/Info %d 0 R>>\nstartxref\n%zu\n%%%%EOF\n", pdf->count, CATALOG,
+            INFO, start);
+}
+
+/* Its title: a date or a program's version would change the bytes. */
+static void write_info(Pdf *pdf) {
+    pdf_begin_object(pdf, INFO);
+    fprintf(pdf->file, "<<");
+    if (pdf->sketch->title[0] != '\0') {
+        fprintf(pdf->file, "/Title");
+        pdf_put_text(pdf->file, pdf->sketch->title);
+    }
+    fprintf(pdf->file, ">>\nendobj\n");
 }
 
 static bool write_document(Pdf *pdf, const SketchOutput *output, int images) {
@@ -164,6 +198,7 @@ static bool write_document(Pdf *pdf, const SketchOutput *output, int images) {
     fprintf(pdf->file, "%%PDF-1.5\n%%\xE2\xE3\xCF\xD3\n");
     if (whole) {
         write_page(pdf, images);
+        write_info(pdf);
         whole = write_content(pdf, output, order) && pdf_write_font(pdf) && write_images(pdf, order);
     }
     if (whole) write_trailer(pdf);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as SVG 1.1, in mm. Text is drawn as outlines, so that it looks the same without the font; aria-label
+/* A sketch as SVG 1.1, in mm. Text is text: it can be searched and edited. The font is embedded; programs that ignore it
+   take the next of its family, and alignment holds with any. As outlines text looks the same everywhere; then aria-label
    holds its content. */
 #include "common/base64.h"
 #include "common/utf8.h"
+#include "sketch/plot_font.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static void write_glyph(FILE *file, const Glyph *glyph) {
@@ -57,7 +60,27 @@ static void write_escaped(FILE *file, const char *text) {
     }
 }
 
+static void write_halo(FILE *file, double width) {
+    fprintf(file, " stroke=\"#FFFFFF\" stroke-width=\"%.4g\" stroke-linejoin=\"round\" paint-order=\"stroke\"", width);
+}
+
+/* The point of a text's baseline at its anchor, and its turn. */
 static void write_text(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+    static const char *const anchors[] = {"start", "middle", "end"};
+    const TextStyle *style = &mark->style;
+    const double em = style->points * MM_PER_POINT, down = TYPE_MIDDLE * em, angle = style->degrees * M_PI / 180;
+    fprintf(file, "<text transform=\"translate(%.3f %.3f)", mark->at.x + down * sin(angle),
+            sketch->height - mark->at.y + down * cos(angle));
+    if (style->degrees != 0) fprintf(file, " rotate(%g)", -style->degrees);
+    fprintf(file, "\" font-size=\"%.4f\" fill=\"#%06X\"", em, style->colour);
+    if (style->align != TEXT_LEFT) fprintf(file, " text-anchor=\"%s\"", anchors[style->align]);
+    if (style->halo) write_halo(file, 2 * HALO_SHARE * em);
+    fputs(">", file);
+    write_escaped(file, sketch->texts + mark->text);
+    fputs("</text>\n", file);
+}
+
+static void write_outlines(FILE *file, const Sketch *sketch, const SketchMark *mark) {
     const char *text = sketch->texts + mark->text;
     const TextPlace place = text_place(sketch, mark);
     const double unit = place.em / type_units;
@@ -66,9 +89,7 @@ static void write_text(FILE *file, const Sketch *sketch, const SketchMark *mark)
     fprintf(file, "\" transform=\"matrix(%.6f %.6f %.6f %.6f %.3f %.3f)\" fill=\"#%06X\"", unit * place.cosine,
             -unit * place.sine, -unit * place.sine, -unit * place.cosine, place.from.x, sketch->height - place.from.y,
             mark->style.colour);
-    if (mark->style.halo)
-        fprintf(file, " stroke=\"#FFFFFF\" stroke-width=\"%.0f\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
-                2 * HALO_SHARE * type_units);
+    if (mark->style.halo) write_halo(file, 2 * HALO_SHARE * type_units);
     fputs(">", file);
     for (int x = 0; *text != '\0';) {
         const Glyph *glyph = type_next(&text);
@@ -115,20 +136,40 @@ static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark
     return true;
 }
 
-static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput *output, Error *error) {
-    size_t *order = sketch_order(sketch);
+/* For texts; and the font, so that browsers show the same letters on every machine. */
+void svg_write_font(FILE *file) {
+    fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
+    base64_put(file, (const char *)font_inter_regular_subset_otf, font_inter_regular_subset_otf_size);
+    fprintf(file, ")}</style>\n");
+}
+
+static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *output) {
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" "
-            "width=\"%.3fmm\" height=\"%.3fmm\" viewBox=\"0 0 %.3f %.3f\">\n",
+            "width=\"%.3fmm\" height=\"%.3fmm\" viewBox=\"0 0 %.3f %.3f\"",
             sketch->width, sketch->height, sketch->width, sketch->height);
-    bool whole = (order != NULL && write_glyphs(file, sketch)) || error_memory(error, "figure");
+    if (!output->outlines) fprintf(file, " font-family=\"" SVG_FONTS "\"");
+    fprintf(file, ">\n");
+    if (sketch->title[0] != '\0') {
+        fprintf(file, "<title>");
+        write_escaped(file, sketch->title);
+        fprintf(file, "</title>\n");
+    }
+    if (output->outlines) return write_glyphs(file, sketch);
+    svg_write_font(file);
+    return true;
+}
+
+static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput *output, Error *error) {
+    size_t *order = sketch_order(sketch);
+    bool whole = (order != NULL && write_head(file, sketch, output)) || error_memory(error, "figure");
     if (!output->transparent) fprintf(file, "<rect width=\"100%%\" height=\"100%%\" fill=\"#FFFFFF\"/>\n");
     for (size_t i = 0; whole && i < sketch->mark_count; i++) {
         const SketchMark *mark = &sketch->marks[order[i]];
         switch (mark->kind) {
         case MARK_IMAGE: whole = write_image(file, sketch, mark, error); break;
         case MARK_PATH: write_path(file, sketch, mark); break;
-        case MARK_TEXT: write_text(file, sketch, mark); break;
+        case MARK_TEXT: (output->outlines ? write_outlines : write_text)(file, sketch, mark); break;
         }
     }
     fprintf(file, "</svg>\n");

@@ -6,6 +6,7 @@
 
 #include "common/file.h"
 #include "chart/chart_data.h"
+#include "simulate/method.h"
 
 #include <math.h>
 
@@ -50,7 +51,8 @@ static void three_files_are_drawn(void **state) {
         "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
         "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine:warm=off',\n"
         "               'momentum-schedule', 'playback', 'pair-net', 'Pareto front of solvers', 'k=100', 'm/s',\n"
-        "               'pyramid_settled, 40 launches', 'Errors below 0.0001 m/s are drawn there'):\n"
+        "               'pyramid_settled, 40 launches', 'Beyond the axes: reference (2232 to 2400 µs, below 0.0001 "
+        "m/s)'):\n"
         "    assert wanted in texts, (wanted, texts)\n",
         drawn_file("pyramid_settled", "svg"));
 }
@@ -241,6 +243,57 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     chart_csv_free(&table);
 }
 
+/* A baseline a thousand times faster would push the methods that compete into a corner. */
+static void the_axes_show_what_competes(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows("stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
+                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
+                                  "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
+                                  "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
+                                  "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                  "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    chart_csv_free(&table);
+    assert_true(chart.us_least == 4 && chart.us_most == 210); /* the constant is near */
+    assert_true(chart.error_least == 0.1 && chart.error_most == 3);
+    assert_int_equal(chart.panels[0].count, 3);
+    assert_int_equal(chart.panels[1].count, 0);
+    assert_int_equal(chart.floored, 0);
+    const ChartLine *playback = &chart.lines[1];
+    assert_int_equal(playback->beyond, 2);
+    assert_true(playback->beyond_us[0] == 0.2 && playback->beyond_us[1] == 0.4);
+    assert_true(playback->beyond_error[0] == 0.01 && playback->beyond_error[1] == 0.05);
+    chart_free(&chart);
+    assert_ok(chart_plot(path, "stack", folder(), &error), error);
+    size_t size;
+    char *svg = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(svg, "Beyond the axes: playback (0.2 to 0.4 µs, 0.01 to 0.05 m/s), "
+                                "reference (400 µs, below 0.0001 m/s)"));
+    free(svg);
+}
+
+/* Methods keep their colour, whichever others are in the chart; all lines differ. */
+static void a_method_has_one_style_in_all_charts(void **state) {
+    (void)state;
+    const MethodDescription *engine = method_describe("engine"), *momentum = method_describe("momentum");
+    ChartStyle one[2], other[CHART_MAX_LINES];
+    chart_method_styles((const MethodDescription *[]){momentum, engine}, 2, one);
+    const MethodDescription *many[CHART_MAX_LINES] = {engine, NULL, momentum, momentum};
+    chart_method_styles(many, CHART_MAX_LINES, other);
+    assert_string_equal(one[0].colour, chart_method_colour(METHOD_GREEN));
+    assert_string_equal(one[0].colour, other[2].colour);
+    assert_int_equal(one[0].symbol, other[2].symbol);
+    assert_string_equal(other[3].colour, other[2].colour); /* a second line of one method: its symbol, open */
+    assert_int_equal(other[3].symbol, other[2].symbol - 1);
+    for (int i = 0; i < CHART_MAX_LINES; i++)
+        for (int k = 0; k < i; k++)
+            assert_true(other[i].symbol != other[k].symbol || strcmp(other[i].colour, other[k].colour) != 0);
+}
+
 /* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
 static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     (void)state;
@@ -312,6 +365,8 @@ int main(void) {
         cmocka_unit_test(names_cannot_become_commands),
         cmocka_unit_test(texts_become_plain),
         cmocka_unit_test(marks_are_gathered_by_line_and_time),
+        cmocka_unit_test(the_axes_show_what_competes),
+        cmocka_unit_test(a_method_has_one_style_in_all_charts),
         cmocka_unit_test(runs_with_a_stopping_rule_are_a_line_of_their_own),
         cmocka_unit_test(truncated_names_stay_distinct),
         cmocka_unit_test(a_missing_gnuplot_is_named),

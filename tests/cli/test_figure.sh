@@ -49,13 +49,14 @@ cmp -s "$sources/golden/figures/README.md" page/README.md || fail "golden/figure
 
 /usr/bin/python3 - <<'PYTHON' || fail "an SVG is not XML"
 import xml.dom.minidom
+words = {}
 for name in "strip annotated divergence strobe network narrow-phase".split():
     svg = xml.dom.minidom.parse(f"page/layout/{name}.svg").documentElement
     assert svg.getAttribute("width") in ("85.000mm", "174.000mm"), svg.getAttribute("width")
-    words = [g.getAttribute("aria-label") for g in svg.getElementsByTagName("g")]
-    used = {use.getAttribute("xlink:href")[1:] for use in svg.getElementsByTagName("use")}
-    defined = {path.getAttribute("id") for path in svg.getElementsByTagName("path")}
-    assert len(words) > 5 and used <= defined, (words, used - defined)
+    words[name] = [text.firstChild.data for text in svg.getElementsByTagName("text")]
+    assert len(words[name]) > 5 and not svg.getElementsByTagName("use"), words[name]
+    assert svg.getElementsByTagName("title")[0].firstChild.data.startswith(name + " of "), name
+assert {"engine", "pair-net", "momentum:k=20", "0.50 s"} <= set(words["strip"]), words["strip"]
 PYTHON
 
 cd one || exit 1
@@ -63,6 +64,11 @@ run 0 figure strip engine.npz -o clear.png --transparent --dpi 100
 pngcheck clear.png | grep -q 'RGB+alpha' || fail "$(pngcheck clear.png)"
 run 0 figure strip engine.npz -o large.png --font-size 12 --width 120.5 --dpi 150
 pngcheck large.png | grep -q '(712x' || fail "$(pngcheck large.png)"
+run 0 figure strip engine.npz -o outlines.svg --outlines
+grep -q '<text\|font-f' outlines.svg && fail "outlines with a font"
+grep -q 'aria-label="engine"' outlines.svg || fail "outlines without names"
+equal "title of a PDF" "$(pdfinfo annotated.pdf | sed -n 's/^Title: *//p')" "annotated of stack: engine, momentum:k=20"
+equal "words of a PDF" "$(pdftotext -layout annotated.pdf - | grep -c 'impulses in N s')" 1
 run 0 figure strip engine.npz --at 0.5 -o wide.png --camera 0,5,16,4 --dpi 100
 run 0 figure strip engine.npz --at 0.5 -o high.png --camera 0,5,4,16 --dpi 100
 cmp -s wide.png high.png && fail "--camera changes nothing"
@@ -92,6 +98,7 @@ refused "network needs 1 network (.npz), not 0" network -o a.png
 refused "only 7 arguments can be given" strip 1 2 3 4 5 6 7 -o a.png
 refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
 refused "--width: error: '39'" strip engine.npz -o a.png --width 39
+refused "--outlines: error: is for SVG, not for a.pdf" strip engine.npz -o a.pdf --outlines
 refused "--dpi: error: '1201'" strip engine.npz -o a.png --dpi 1201
 refused "--font-size: error: '0'" strip engine.npz -o a.png --font-size 0
 refused "dots per inch are" strip engine.npz -o a.png --width 400 --dpi 1200

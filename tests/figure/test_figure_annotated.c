@@ -3,6 +3,8 @@
 
 #include "figure/run_figure.h"
 #include "render/mesa.h"
+#include "sketch/label_place.h"
+#include "sketch/type.h"
 
 #include <math.h>
 
@@ -87,6 +89,80 @@ static void a_moment_without_impulses_has_points(void **state) {
     trajectory_destroy(run);
 }
 
+/* The middle of the i-th ring: they are drawn in the order of their impulses, the smallest first. */
+static Point ring_at(const Sketch *sketch, int n) {
+    for (size_t i = 0; i < sketch->mark_count; i++) {
+        const SketchMark *mark = &sketch->marks[i];
+        if (mark->kind != MARK_PATH || mark->count != 36 || n-- > 0) continue;
+        const Point a = sketch->points[mark->first], b = sketch->points[mark->first + 18];
+        return (Point){(a.x + b.x) / 2, (a.y + b.y) / 2};
+    }
+    fail_msg("no such ring");
+    return (Point){0, 0};
+}
+
+static PageBox number_box(const Sketch *sketch, const char *words) {
+    for (size_t i = 0; i < sketch->mark_count; i++) {
+        const SketchMark *mark = &sketch->marks[i];
+        if (mark->kind != MARK_TEXT || strcmp(sketch->texts + mark->text, words) != 0) continue;
+        const double half = type_width(words, mark->style.points) / 2, up = 0.36 * mark->style.points * MM_PER_POINT;
+        return (PageBox){mark->at.x - half, mark->at.y - up, mark->at.x + half, mark->at.y + up};
+    }
+    fail_msg("no number %s", words);
+    return (PageBox){0};
+}
+
+static double distance_to_box(Point p, const PageBox *box) {
+    return hypot(fmax(fmax(box->left - p.x, p.x - box->right), 0), fmax(fmax(box->bottom - p.y, p.y - box->top), 0));
+}
+
+/* A thin line leads from this point's ring to the box. */
+static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
+    for (size_t i = 0; i < sketch->mark_count; i++) {
+        const SketchMark *mark = &sketch->marks[i];
+        if (mark->kind != MARK_PATH || mark->count != 2 || mark->pen.width != 0.8) continue;
+        const Point from = sketch->points[mark->first], to = sketch->points[mark->first + 1];
+        if (hypot(from.x - point.x, from.y - point.y) < 0.6 && distance_to_box(to, box) < 0.5) return true;
+    }
+    return false;
+}
+
+/* Six contacts within a few millimetres, as where a bomb strikes: every number is there, apart from all others and from all
+   rings, and at the end of a line from its contact, or clearly nearest to it. */
+static void crowded_numbers_lead_to_their_contacts(void **state) {
+    (void)state;
+    enum { CONTACTS = 6 };
+    Trajectory *run = run_make("engine", 2);
+    for (int i = 0; i < CONTACTS; i++)
+        add(run, 1, SECOND_BOX, BOMB_BODY, vec2(1.5f + 0.08f * (float)(i * i % 5), 0.2f + 0.13f * (float)i),
+            0.11f * (float)(i + 1), 0);
+    add(run, 1, GROUND_BODY, FIRST_BOX, vec2(-2.5f, 0), 30, 0);
+    trajectory_end_contacts(run);
+    for (int column = 0; column < 2; column++) {
+        FigureSpec spec = spec_of(&run, 1);
+        if (column) spec.width = FIGURE_COLUMN_WIDTH;
+        Sketch sketch;
+        PageBox boxes[CONTACTS];
+        draw_kind(&sketch, "annotated", &spec);
+        for (int i = 0; i < CONTACTS; i++) {
+            char words[16];
+            snprintf(words, sizeof words, "%.2f", 0.11 * (i + 1));
+            boxes[i] = number_box(&sketch, words);
+            const double own = distance_to_box(ring_at(&sketch, i), &boxes[i]);
+            const bool led = is_led(&sketch, ring_at(&sketch, i), &boxes[i]);
+            for (int k = 0; k < CONTACTS; k++) {
+                const double other = distance_to_box(ring_at(&sketch, k), &boxes[i]);
+                assert_true(other > 0.3 && (led || k == i || other > own + 1));
+            }
+            for (int k = 0; k < i; k++)
+                assert_true(boxes[i].right <= boxes[k].left || boxes[k].right <= boxes[i].left ||
+                            boxes[i].top <= boxes[k].bottom || boxes[k].top <= boxes[i].bottom);
+        }
+        sketch_free(&sketch);
+    }
+    trajectory_destroy(run);
+}
+
 /* A hundred points in one place: some numbers are left out, and the title states it. */
 static void numbers_without_room_are_left_out(void **state) {
     (void)state;
@@ -133,6 +209,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrows_are_the_impulses_of_the_step_that_follows),
         cmocka_unit_test(a_moment_without_impulses_has_points),
+        cmocka_unit_test(crowded_numbers_lead_to_their_contacts),
         cmocka_unit_test(numbers_without_room_are_left_out),
         cmocka_unit_test(what_cannot_be_shown_is_refused),
     };

@@ -4,6 +4,7 @@
 
 #include "common/file.h"
 #include "common/hash.h"
+#include "common/process.h"
 #include "sketch/sketch_formats.h"
 #include "sketch/type.h"
 
@@ -12,7 +13,7 @@
 #include <stdlib.h>
 
 /* Ten pixels per mm. */
-static const SketchOutput white = {254, false}, clear = {254, true};
+static const SketchOutput white = {254, false, false}, clear = {254, true, false}, outlines = {254, false, true};
 
 static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
     Error error = {0};
@@ -160,6 +161,7 @@ static void draw_something(Sketch *sketch) {
     Image *picture = image_create(3, 2, &error);
     for (int i = 0; i < 3 * 2 * 4; i++) picture->pixels[i] = (uint8_t)(i * 37);
     sketch_begin(sketch, 30, 20);
+    strcpy(sketch->title, "Something <new>");
     sketch_image(sketch, picture, (Point){1, 1}, 5);
     sketch_text(sketch, (Point){15, 10}, &(TextStyle){8, TEXT_CENTER, 0x123456, 30, true}, "a < b & \"c\" \xFF\x01 ±");
     sketch_rectangle(sketch, (Point){1, 1}, (Point){9, 9}, &(Pen){0x336699, 0.25, 0, 1, "(3,2)"});
@@ -175,8 +177,8 @@ static void a_sketch_has_the_same_bytes_everywhere(void **state) {
         uint64_t on_white, transparent;
     } expected[SKETCH_FORMATS] = {
         {"a.png", 0x8a77ea908c9f6bbf, 0x49862607f299fc58},
-        {"a.svg", 0x67e82dda9cc15403, 0xd8175a74d25a91c4},
-        {"a.pdf", 0xd7b0317c43ca25a6, 0x1db00c4bae33c1b4},
+        {"a.svg", 0x77c28023e196dc9c, 0x59a07ad45902c0cd},
+        {"a.pdf", 0x1ec4adee1acfa27e, 0x04ccdd4df6961d22},
     };
     Error error = {0};
     Sketch sketch;
@@ -197,7 +199,8 @@ static void a_sketch_has_the_same_bytes_everywhere(void **state) {
     sketch_free(&sketch);
 }
 
-static void an_svg_says_its_words(void **state) {
+/* Text is text, in a font that the file brings; or outlines, without the font. */
+static void an_svg_has_its_words(void **state) {
     (void)state;
     Error error = {0};
     Sketch sketch;
@@ -205,12 +208,76 @@ static void an_svg_says_its_words(void **state) {
     draw_something(&sketch);
     char *svg = sketch_as_svg(&sketch, &white, &size, &error);
     assert_ok(svg != NULL, error);
+    assert_non_null(strstr(svg, ">a &lt; b &amp; &quot;c&quot; ?? ±</text>"));
+    assert_non_null(strstr(svg, "<title>Something &lt;new></title>"));
+    assert_non_null(strstr(svg, "@font-face{font-family:Inter;src:url(data:font/otf;base64,T1RUTwA"));
+    assert_non_null(
+        strstr(svg, "font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\""));
+    /* centred at (15, 10), capitals' middle 0.3635 em above the baseline, turned by 30 degrees */
+    char text[160];
+    const double em = 8 * MM_PER_POINT;
+    snprintf(text, sizeof text,
+             "<text transform=\"translate(%.3f %.3f) rotate(-30)\" font-size=\"%.4f\" fill=\"#123456\" "
+             "text-anchor=\"middle\" stroke=\"#FFFFFF\"",
+             15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
+    assert_non_null(strstr(svg, text));
+    assert_null(strstr(svg, "aria-label"));
+    free(svg);
+    sketch_free(&sketch);
+}
+
+/* The program prints this text, without blank lines, first. */
+static void expect_printed(const char *program, const char *path, const char *wanted) {
+    Error error = {0};
+    Process process;
+    char text[2000];
+    const char *const out = temporary_path("printed.txt");
+    char command[1000];
+    snprintf(command, sizeof command, "%s %s %s | grep . >%s", program, path,
+             strcmp(program, "pdftotext") == 0 ? "-" : "", out);
+    assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
+    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    size_t size;
+    char *printed = file_read(out, 1 << 16, &size, &error);
+    assert_ok(printed != NULL, error);
+    if (strncmp(printed, wanted, strlen(wanted)) != 0) fail_msg("%s prints '%s', not '%s'", program, printed, wanted);
+    free(printed);
+}
+
+static void an_svg_of_outlines_needs_no_font(void **state) {
+    (void)state;
+    Error error = {0};
+    Sketch sketch;
+    size_t size;
+    draw_something(&sketch);
+    char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
+    assert_ok(svg != NULL, error);
+    assert_null(strstr(svg, "<text"));
+    assert_null(strstr(svg, "font"));
     assert_non_null(strstr(svg, "aria-label=\"a &lt; b &amp; &quot;c&quot; ?? ±\""));
     assert_non_null(strstr(svg, "width=\"30.000mm\" height=\"20.000mm\" viewBox=\"0 0 30.000 20.000\""));
     assert_non_null(strstr(svg, "M1.000 19.000L9.000 19.000L9.000 11.000L1.000 11.000Z\" fill=\"#336699\" "
                                 "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
     free(svg);
     sketch_free(&sketch);
+}
+
+/* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
+static void a_pdf_is_read_as_it_is_seen(void **state) {
+    (void)state;
+    Error error = {0};
+    Sketch sketch;
+    sketch_begin(&sketch, 100, 40);
+    strcpy(sketch.title, "Distances, 1 µm to ∞");
+    const TextStyle style = {8, TEXT_LEFT, 0, 0, true};
+    sketch_text(&sketch, (Point){5, 30}, &style, "momentum:k=20, 0.55 s");
+    sketch_power_of_ten(&sketch, (Point){20, 20}, &style, -7);
+    sketch_power_of_ten(&sketch, (Point){20, 10}, &style, 12);
+    const char *path = temporary_path("read.pdf");
+    assert_ok(sketch_write(&sketch, path, &white, &error), error);
+    sketch_free(&sketch);
+    expect_printed("pdftotext", path, "momentum:k=20, 0.55 s\n10⁻⁷\n10¹²\n");
+    expect_printed("pdfinfo", path, "Title:           Distances, 1 µm to ∞\n");
 }
 
 /* Every entry of the table points to its object, and the file contains no date or path. */
@@ -230,15 +297,15 @@ static void a_pdf_has_a_valid_object_table(void **state) {
     const char *table = pdf + atol(start + 10);
     int count = 0, used = 0;
     assert_int_equal(sscanf(table, "xref\n0 %d\n%n", &count, &used), 1);
-    assert_int_equal(count, 12); /* nine, a picture and its alpha, and number 0 */
+    assert_int_equal(count, 13); /* ten, a picture and its alpha, and number 0 */
     for (int i = 1; i < count; i++) {
         char begin[32];
         long offset = atol(table + used + 20 * i);
         snprintf(begin, sizeof begin, "%d 0 obj\n", i);
         assert_memory_equal(pdf + offset, begin, strlen(begin));
     }
-    assert_non_null(strstr(table, "trailer\n<</Size 12/Root 1 0 R>>"));
-    static const char *const untold[] = {"CreationDate", "ModDate", "/ID", "/Info", "/Producer"};
+    assert_non_null(strstr(table, "trailer\n<</Size 13/Root 1 0 R/Info 10 0 R>>"));
+    static const char *const untold[] = {"CreationDate", "ModDate", "/ID", "/Creator", "/Producer"};
     for (size_t k = 0; k < sizeof untold / sizeof *untold; k++)
         for (size_t i = 0; i + strlen(untold[k]) < size; i++)
             assert_memory_not_equal(pdf + i, untold[k], strlen(untold[k]));
@@ -249,7 +316,7 @@ static void expect_refused(const char *path, double width, double dpi, const cha
     Error error = {0};
     Sketch sketch;
     sketch_begin(&sketch, width, width);
-    assert_false(sketch_write(&sketch, path, &(SketchOutput){dpi, false}, &error));
+    assert_false(sketch_write(&sketch, path, &(SketchOutput){.dpi = dpi}, &error));
     if (strstr(error.message, message) == NULL) fail_msg("'%s' lacks '%s'", error.message, message);
     sketch_free(&sketch);
 }
@@ -289,7 +356,9 @@ int main(void) {
         cmocka_unit_test(a_picture_of_its_places_size_keeps_its_pixels),
         cmocka_unit_test(words_are_as_wide_as_they_say),
         cmocka_unit_test(a_sketch_has_the_same_bytes_everywhere),
-        cmocka_unit_test(an_svg_says_its_words),
+        cmocka_unit_test(an_svg_has_its_words),
+        cmocka_unit_test(an_svg_of_outlines_needs_no_font),
+        cmocka_unit_test(a_pdf_is_read_as_it_is_seen),
         cmocka_unit_test(a_pdf_has_a_valid_object_table),
         cmocka_unit_test(what_cannot_be_written_is_refused),
         cmocka_unit_test(invalid_coordinates_draw_nothing),
