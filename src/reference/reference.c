@@ -14,7 +14,7 @@ static const ReferenceKernels *kernels(const Reference *r) {
 
 /* m/s. Impulses over effective masses reach 6e3 on the way to solutions of piles, walls and pyramids. Where there is no
    solution, they grow without limit, mostly beyond this within ten factorizations. */
-static const double jammed = 1e5;
+static const double jammed = 2e4;
 
 static bool solve(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
     if (!reference_load(r, problem)) return error_memory(error, "reference");
