@@ -16,6 +16,8 @@ static void write_counts(FILE *file, const Regression *regression) {
     fputs("<ul class=\"counts\" aria-label=\"Frames by verdict\">\n", file);
     write_count(file, regression->renderer, "bad", "renderer changed");
     write_count(file, regression->physics, "bad", "physics changed");
+    write_count(file, regression->view, "bad", "view changed");
+    write_count(file, regression->elsewhere, "bad", "run changed");
     write_count(file, regression->unknown, "bad", "pictures differ");
     write_count(file, by[PIXELS_MISSING], "bad", "missing");
     write_count(file, by[PIXELS_EXTRA], "bad", "extra");
