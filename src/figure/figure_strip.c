@@ -47,7 +47,7 @@ static WorldWindow window_of_bodies(const Strip *strip) {
             extent_include(&all, run, strip->frames[moment], spec->bodies[i]);
         if (!run->fixed[spec->bodies[i]]) margin = fmax(margin, fmin((double)size.x, (double)size.y) / 2);
     }
-    if (extent_is_empty(&all)) return run_window(run, strip->frames, strip->count);
+    if (extent_is_empty(&all)) return run_window(spec, strip->frames, strip->count);
     return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,
                          all.top - all.bottom + 2 * margin};
 }
@@ -67,7 +67,7 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
                            "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
                            "%g mm are needed",
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
-    WorldWindow window = run_window(spec->runs[0], strip->frames, strip->count);
+    WorldWindow window = run_window(spec, strip->frames, strip->count);
     if (spec->body_count > 0) window = window_of_bodies(strip);
     if (spec->height > 0) run_window_fill(&window, width / height);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
@@ -190,6 +190,7 @@ const FigureKind figure_strip = {
     .min_runs = 1,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_times = true,
+    .takes_view = true,
     .takes_moments = true,
     .takes_height = true,
     .min_bodies = 1,

@@ -245,24 +245,25 @@ static void other_runs_beside_the_frames(void **state) {
     regression_free(&regression);
 }
 
-/* Later motion in a run moves the camera of its first frames; the renderer has not changed. */
+/* If most bodies leave where they start, their motion moves the camera of frame 0; the renderer has not changed. */
 static void a_camera_that_follows_the_run(void **state) {
     (void)state;
     run->camera_size = vec2(0, 0);
     render_into(expected);
-    run_position(run, 5, FIRST_BOX)->y += 30;
+    for (int frame = 1; frame < FRAMES; frame++)
+        for (int body = FIRST_BOX; body <= SECOND_BOX; body++) run_position(run, frame, body)->y += 30;
     render_into(actual);
     Regression regression = compared();
     assert_int_equal(regression.by_verdict[PIXELS_DIFFER], FRAMES);
     assert_verdicts(&regression, "pppppp", "physics changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
-    assert_int_equal(regression.runs[0].difference.frame, 5);
+    assert_int_equal(regression.runs[0].difference.frame, 1);
     regression_free(&regression);
     remove_runs();
     regression = compared();
     assert_verdicts(&regression, "pppppp", "physics changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
-    assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000005.png, panel 1");
+    assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000001.png, panel 1");
     regression_free(&regression);
 }
 
