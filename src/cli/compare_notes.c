@@ -24,10 +24,12 @@ static void print_metadata(const Regression *regression) {
 
 void compare_print_notes(const Regression *regression) {
     int accepted = regression->other_accepted, left_out = regression->runs_left_out;
+    int foreign = regression->runs_foreign;
     if (accepted > 0) printf("%d frame%s passed by another accepted picture\n", accepted, plural(accepted));
     print_metadata(regression);
     if (left_out > 0)
         printf("not compared: %d .npz file%s only in %s\n", left_out, plural(left_out),
                regression->sequences[EXPECTED]->folder);
+    if (foreign > 0) printf("not compared: %d .npz file%s without a trajectory\n", foreign, plural(foreign));
     print_skipped(regression);
 }

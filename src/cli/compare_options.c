@@ -27,8 +27,7 @@ static const Option option_table[] = {
      OPTION_FLAG(CompareOptions, flat)},
     {"--metadata", 0, "KIND",
      "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
-     "orientation) "
-     "are reported, or fail (default: report)",
+     "orientation) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR", "Folder for report.html, junit.xml, results.tap and results.json",
      OPTION_TEXT(CompareOptions, report)},

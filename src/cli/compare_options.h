@@ -13,10 +13,10 @@ typedef struct CompareOptions {
     int max_difference; /* of a channel */
     double max_share;   /* of the pixels */
     int max_pixels;
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
     bool watch;
-    bool flat;
-    unsigned metadata; /* CompareMetadata */
     Mask mask;
 } CompareOptions;
 

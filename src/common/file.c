@@ -17,8 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* An input error, unless the system lacks memory or file descriptors, or the disk fails. */
-static bool open_failed(const char *path, Error *error) {
+bool file_open_error(const char *path, Error *error) {
     int cause = errno;
     bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
     return machine ? error_system(error, path, "cannot open: %s", strerror(cause))
@@ -61,7 +60,7 @@ enum { OPEN_TO_READ = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC };
 
 static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
     if (file < 0) {
-        open_failed(path, error);
+        file_open_error(path, error);
         return NULL;
     }
     char *data = NULL;

@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
+   descriptors, or the disk fails. Returns false. */
+bool file_open_error(const char *path, Error *error);
+
 /* Reads a regular file of at most `limit` bytes into a malloc'ed block with a NUL behind its last byte (not counted in
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);

@@ -4,6 +4,8 @@
 
 #include "common/npy.h"
 #include "common/utf8.h"
+#include "common/file.h"
+#include "common/lfs_pointer.h"
 #include "common/zip_directory.h"
 
 #include <ctype.h>
@@ -108,13 +110,20 @@ static bool read_directory(NpzFile *file, Error *error) {
     return true;
 }
 
+static bool refuse_pointer(int descriptor, const char *path, Error *error) {
+    char start[64];
+    ssize_t size = pread(descriptor, start, sizeof start, 0);
+    return size < 0 ? error_system(error, path, "cannot read: %s", strerror(errno))
+                    : lfs_pointer_refuse(start, (size_t)size, path, error);
+}
+
 /* Opens the file and checks that it is safe to pass to libzip. */
 static int open_checked(const char *path, Error *error) {
     /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
     int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status;
     if (descriptor < 0) {
-        error_input(error, path, "cannot open: %s", strerror(errno));
+        file_open_error(path, error);
         return -1;
     }
     bool done;
@@ -125,7 +134,8 @@ static int open_checked(const char *path, Error *error) {
     else if ((uint64_t)status.st_size > NPZ_MAX_BYTES)
         done = error_input(error, path, "larger than 2 GiB");
     else
-        done = zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
+        done = refuse_pointer(descriptor, path, error) &&
+               zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
     if (done) return descriptor;
     close(descriptor);
     return -1;

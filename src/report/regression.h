@@ -82,11 +82,12 @@ typedef struct Regression {
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
-    double seconds;                           /* of the whole comparison */
     int metadata, first_metadata;             /* frames whose metadata differs, and the first of them (-1: none) */
     int metadata_failed;                      /* frames that fail for nothing else */
     int runs_left_out;                        /* .npz files that only the expected folder has */
+    int runs_foreign;                         /* .npz files that are a trajectory in neither folder */
     int other_accepted; /* frames that pass by another accepted picture than the one of their name */
+    double seconds;     /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.

@@ -130,9 +130,10 @@ bool regression_find_runs(Regression *regression, Error *error) {
         double begun = clock_seconds();
         ok = ok && judge_run(regression, &run, &foreign, error);
         run.seconds = clock_seconds() - begun;
-        if (foreign)
+        if (foreign) {
+            regression->runs_foreign++;
             free(run.name);
-        else
+        } else
             regression->runs[kept++] = run;
     }
     regression->run_count = kept;

@@ -48,10 +48,13 @@ fresh
 echo "$pointer" | tee a/run.npz >b/run.npz
 run 2 compare a b
 complains "a/run.npz: error: a Git LFS pointer"
+run 2 compare a/run.npz b/run.npz
+complains "a/run.npz: error: a Git LFS pointer"
 echo text | tee a/run.npz >b/run.npz
 run 0 compare a b
 says "equal: 2 frames"
-! grep -q trajector out || fail "text was counted as a trajectory"
+says "not compared: 1 .npz file without a trajectory"
+! grep -q "1 trajectories" out || fail "text was counted as a trajectory"
 rm b/run.npz
 run 0 compare a b
 says "not compared: 1 .npz file only in a"
