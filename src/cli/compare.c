@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "cli/compare_notes.h"
 #include "cli/compare_options.h"
 #include "cli/compare_print.h"
 #include "cli/compare_watch.h"
@@ -63,7 +62,8 @@ static void print(const CompareOptions *options, const Regression *regression) {
     bool github = options->annotations == ANNOTATE_GITHUB;
     if (github) printf("::stop-commands::%016" PRIx64 "\n", token);
     compare_print(regression);
-    compare_print_notes(regression);
+    RegressionText notes = regression_notes(regression);
+    if (notes.text[0] != '\0') printf("%s\n", notes.text);
     if (github) printf("::%016" PRIx64 "::\n", token);
 }
 

@@ -1,12 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/parallel.h"
 
+#include <omp.h>
 #include <stdatomic.h>
+
+/* Threads without work would take processor time waiting. */
+static int threads_for(int count) {
+    int most = omp_get_max_threads();
+    return count < 1 ? 1 : count < most ? count : most;
+}
 
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error) {
     atomic_int done = 0;
     atomic_bool stopped = false;
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) num_threads(threads_for(count))
     for (int i = 0; i < count; i++) {
         if (atomic_load(&stopped)) continue;
         Error failure = {0};

@@ -26,6 +26,15 @@ uint32_t utf8_next(const char **text) {
     return length > 0 ? character : 0xfffd;
 }
 
+size_t utf8_cut(const char *text, size_t limit) {
+    const char *end = text;
+    for (const char *next = text; *next != '\0'; end = next) {
+        utf8_next(&next);
+        if ((size_t)(next - text) > limit) break;
+    }
+    return (size_t)(end - text);
+}
+
 size_t utf8_encode(char *out, uint32_t character) {
     static const uint32_t above[] = {0x80, 0x800, 0x10000};
     static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};

@@ -11,5 +11,8 @@ size_t utf8_decode(const char *text, size_t size, uint32_t *character);
    not well-formed. */
 uint32_t utf8_next(const char **text);
 
+/* Length of the first whole characters of NUL-terminated text, at most `limit` bytes. */
+size_t utf8_cut(const char *text, size_t limit);
+
 /* Writes a character (not a surrogate, at most 0x10ffff) to `out`, which has room for 4 bytes; returns its length. */
 size_t utf8_encode(char *out, uint32_t character);

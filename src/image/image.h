@@ -14,6 +14,8 @@ typedef struct Image {
 
 /* All pixels are zero. NULL with error set if out of memory. */
 Image *image_create(int width, int height, Error *error);
+/* The same with pixels of any value, and room for further bytes behind them. */
+Image *image_create_unset(int width, int height, size_t further, Error *error);
 void image_destroy(Image *image);
 
 /* A tEXt/iTXt entry of a PNG. */
@@ -35,6 +37,12 @@ uint8_t *image_load_png(const char *path, size_t *size, Error *error);
 
 /* Like image_read_png(), for a file in memory and with another limit; `path` is used in messages. */
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
+
+/* Two files. If all their pixels are equal, images[1] may be images[0]. image_destroy_pair() frees them, also after a
+   failure. */
+bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
+                           int64_t max_pixels, Image *images[2], Error *error);
+void image_destroy_pair(Image *images[2]);
 
 /* Copies the value of the first text with this key before the pixels. ERROR_INPUT if there is none, or if it needs
    more than `size` bytes. */

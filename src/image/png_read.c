@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "image/image.h"
 #include "image/png_check.h"
+#include "image/png_fast.h"
 
 #include <png.h>
 #include <stdlib.h>
@@ -153,7 +154,7 @@ static bool decode(Decoder *decoder) {
     return true;
 }
 
-Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Decoder decoder;
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
@@ -162,6 +163,25 @@ Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int6
     if (ok) return decoder.image;
     image_destroy(decoder.image);
     return NULL;
+}
+
+Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    Image *image;
+    if (png_fast_decode(data, size, max_pixels, &image)) return image;
+    return png_libpng_decode(data, size, path, max_pixels, error);
+}
+
+bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
+                           int64_t max_pixels, Image *images[2], Error *error) {
+    if (png_fast_decode_pair(data, sizes, max_pixels, images)) return true;
+    for (int i = 0; i < 2; i++) {
+        images[i] = image_decode_png(data[i], sizes[i], paths[i], max_pixels, error);
+        if (images[i] == NULL) break;
+    }
+    if (images[1] != NULL) return true;
+    image_destroy(images[0]);
+    images[0] = NULL; /* so that image_destroy_pair() may follow */
+    return false;
 }
 
 Image *image_read_png(const char *path, Error *error) {

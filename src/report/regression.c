@@ -39,16 +39,16 @@ static bool judge_pixels(const RegressionOptions *options, RegressionFrame *fram
 
 static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
                              Error *error) {
-    Image *images[SIDES] = {NULL, NULL};
-    bool ok = true;
-    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
-        RegressionFile *file = &frame->files[side];
-        images[side] = image_decode_png(data[side], file->size, frame->at[side]->path, options->max_pixels, error);
-        ok = images[side] != NULL;
-        if (ok) file->width = images[side]->width, file->height = images[side]->height;
-    }
+    Image *images[SIDES];
+    RegressionFile *files = frame->files;
+    bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
+                                    (const size_t[]){files[EXPECTED].size, files[ACTUAL].size},
+                                    (const char *const[]){frame->at[EXPECTED]->path, frame->at[ACTUAL]->path},
+                                    options->max_pixels, images, error);
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
+        files[side].width = images[side]->width, files[side].height = images[side]->height;
     ok = ok && judge_pixels(options, frame, images[EXPECTED], images[ACTUAL], error);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
+    image_destroy_pair(images);
     return ok;
 }
 

@@ -107,7 +107,7 @@ const char *frame_verdict(const RegressionFrame *frame);
 
 /* One line of text: how a frame or a run differs. */
 typedef struct RegressionText {
-    char text[512];
+    char text[1024];
 } RegressionText;
 RegressionText frame_words(const RegressionFrame *frame);
 RegressionText run_words(const RegressionRun *run);
@@ -115,3 +115,6 @@ RegressionText run_words(const RegressionRun *run);
 /* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);
+
+/* What was left out, or let pass although it is not equal: a line each; empty if there is nothing. */
+RegressionText regression_notes(const Regression *regression);

@@ -79,6 +79,7 @@ void report_write_json(FILE *file, const void *context) {
     json_put_text(&json, "expected", regression->sequences[EXPECTED]->folder);
     json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
     json_put_text(&json, "verdict", regression_verdict(regression).text);
+    json_put_text(&json, "notes", regression_notes(regression).text);
     json_begin_array(&json, "fuzzy", JSON_ONE_LINE);
     json_put_int(&json, NULL, regression->options.max_difference);
     json_put_number(&json, NULL, regression->options.max_share);

@@ -69,6 +69,14 @@ static void write_head(FILE *file, const Regression *regression) {
     fputs("<a class=\"skip\" id=\"skip\" href=\"#stage\">Skip to the pictures</a>\n<main>\n", file);
 }
 
+static void write_notes(FILE *file, const Regression *regression) {
+    RegressionText notes = regression_notes(regression);
+    if (notes.text[0] == '\0') return;
+    fputs("<p class=\"begin\" id=\"notes\">", file);
+    html_put(file, notes.text);
+    fputs("</p>\n", file);
+}
+
 static void write_summary(FILE *file, const Report *report) {
     const Regression *regression = report->regression;
     fputs("<header><h1>twinbox compare</h1>\n", file);
@@ -79,6 +87,7 @@ static void write_summary(FILE *file, const Report *report) {
     fputs("<p class=\"begin\">", file);
     html_put(file, regression_begin(regression).text);
     fputs("</p>\n", file);
+    write_notes(file, regression);
     if (report->pictures->left_out > 0)
         fprintf(
             file,

@@ -65,7 +65,7 @@ png b/sub/x.png 8 8 "$white" 1 2 "0 0 0 255"
 run 1 compare a b
 says "first difference: sub/x.png: 1 pixel differs"
 run 0 compare a b --no-recursive
-says "equal: 1 frames"
+says "equal: 1 frame"
 says "not compared: 1 picture in subfolders of a (--no-recursive)"
 says "not compared: 1 picture in subfolders of b (--no-recursive)"
 mkdir b/new
@@ -141,6 +141,8 @@ run 0 compare a b --report report
 says "equal: 2 frames"
 says "metadata differs in 1 frame, first in home.png: gAMA none and 0.99999 (--metadata strict fails)"
 grep -q '"metadata": "gAMA none and 0.99999"' report/results.json || fail "results.json has no metadata"
+grep -q '"notes": "metadata differs in 1 frame, first' report/results.json || fail "results.json has no notes"
+grep -q 'id="notes">metadata differs in 1 frame, first' report/report.html || fail "the page has no notes"
 run 1 compare a b --metadata strict --report report
 says "verdict: metadata changed"
 says "first in home.png: gAMA none and 0.99999"

@@ -5,6 +5,7 @@
 #include "common/array.h"
 #include "common/hash.h"
 #include "common/names.h"
+#include "common/utf8.h"
 
 /* The step of FNV-1a, written out; the start value is the one that the reference trajectories define. */
 static void fnv_is_xor_then_multiply(void **state) {
@@ -79,6 +80,15 @@ static void known_names_are_listed_once_and_whole(void **state) {
     assert_int_equal(strlen(strrchr(known.text, ' ') + 1), strlen("number-000"));
 }
 
+static void text_is_cut_between_characters(void **state) {
+    (void)state;
+    static const char text[] = "a\xC3\xA9\xF0\x9F\x98\x80z"; /* characters of 1, 2, 4 and 1 bytes */
+    static const size_t lengths[] = {0, 1, 1, 3, 3, 3, 3, 7, 8, 8};
+    for (size_t limit = 0; limit < sizeof lengths / sizeof lengths[0]; limit++)
+        assert_int_equal(utf8_cut(text, limit), lengths[limit]);
+    assert_int_equal(utf8_cut("\x80\xFF", 1), 1); /* what is no UTF-8 counts by bytes */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fnv_is_xor_then_multiply),
@@ -86,6 +96,7 @@ int main(void) {
         cmocka_unit_test(arrays_grow_by_doubling_and_keep_their_items),
         cmocka_unit_test(the_first_error_stays),
         cmocka_unit_test(long_errors_are_cut),
+        cmocka_unit_test(text_is_cut_between_characters),
         cmocka_unit_test(known_names_are_listed_once_and_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
