@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/camera_option.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/options.h"
@@ -13,6 +14,7 @@ typedef struct Options {
     int input_count;
     FigureSpec figure;
     bool transparent, outlines;
+    const char *view_from; /* RUN.npz, or NULL */
 } Options;
 
 static OptionRead read_input, read_times, read_bodies, read_width;
@@ -24,6 +26,8 @@ static const Option option_table[] = {
      OPTION_READ(read_times, Options, figure)},
     {"--moments", 0, "N", "Number of moments instead, evenly spaced from the first to the last",
      OPTION_INT(Options, figure.moments, 1, FIGURE_MOMENTS_MAX)},
+    {"--camera", 0, "X,Y,W,H", CAMERA_OPTION_VIEW, OPTION_READ(camera_option_read, Options, figure.view)},
+    {"--view-from", 0, "RUN", "The view of this run (.npz) instead of the first's", OPTION_PATH(Options, view_from)},
     {"--scene", 0, "FILE", "divergence: scene of the first run, for the band of chaos",
      OPTION_PATH(Options, figure.scene)},
     {"--bodies", 0, "A,B", "narrow-phase: the pair (default: the bomb's first, else the first to touch)",
@@ -129,6 +133,8 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
     if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
     if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
+    if (figure->view.width > 0 && !kind->takes_view) return refuse("--camera", kind, error);
+    if (options->view_from != NULL && !kind->takes_view) return refuse("--view-from", kind, error);
     if (figure->bodies[0] != figure->bodies[1] && !kind->takes_bodies) return refuse("--bodies", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
            error_input(error, "--moments", "cannot be combined with --at");
@@ -148,7 +154,9 @@ static bool draw(const FigureKind *kind, const Options *options, Error *error) {
 static bool read_and_draw(const FigureKind *kind, Options *options, Error *error) {
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
     FigureSpec *figure = &options->figure;
-    bool ok = true;
+    Trajectory *view_from;
+    bool ok = camera_option_load(options->view_from, &figure->view, &view_from, error);
+    figure->view_from = view_from;
     if (kind->max_runs == 0) figure->network = options->inputs[0];
     for (int i = 0; ok && kind->max_runs > 0 && i < options->input_count; i++) {
         runs[i] = trajectory_read(options->inputs[i], error);
@@ -160,6 +168,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     ok = ok && draw(kind, options, error);
     progress_bar_end();
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);
+    trajectory_destroy(view_from);
     return ok;
 }
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/camera_option.h"
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
 #include "cli/options.h"
@@ -16,10 +17,11 @@ typedef struct Options {
     RenderOptions render;
     DrawVideos videos;
     SceneSettings set;
-    const char *costs; /* FILE.csv, or NULL */
+    const char *costs;     /* FILE.csv, or NULL */
+    const char *view_from; /* RUN.npz, or NULL */
 } Options;
 
-static OptionRead read_size, read_frames, read_png, read_context;
+static OptionRead read_size, read_frames, read_png, read_context, read_camera;
 
 static const Option option_table[] = {
     {"--output", 'o', "DIR", "Folder for frame_000000.png ..., manifest.json and the runs (.npz)",
@@ -55,9 +57,12 @@ static const Option option_table[] = {
      "Any of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
      "timeline (distance from the first run over time), separated by commas",
      OPTION_FLAGS(Options, render.look.show, look_show_names)},
-    {"--camera", 0, "KIND",
-     "fit: fixed (default); bomb: follows the bomb; divergence: zooms in where the distance first exceeds 1 mm",
-     OPTION_ENUM(Options, render.look.camera, look_camera_names)},
+    {"--camera", 0, "KIND|X,Y,W,H",
+     "fit: fixed, on what stands and what strikes it (default); bomb: follows the bomb; divergence: zooms in where the "
+     "distance first exceeds 1 mm; " CAMERA_OPTION_VIEW " (both may be given)",
+     OPTION_READ(read_camera, Options, render.look), .names = look_camera_names},
+    {"--view-from", 0, "RUN", "The fixed view of this run (.npz) instead of the first panel's",
+     OPTION_PATH(Options, view_from)},
     {"--theme", 0, "light|dark", "Colours (default: light)", OPTION_ENUM(Options, render.look.theme, look_theme_names)},
     {"--costs", 0, "FILE.csv", "Add the time per step to the captions, from a chart.csv of 'twinbox chart'",
      OPTION_TEXT(Options, costs)},
@@ -116,6 +121,12 @@ static bool read_context(const Option *option, const char *text, void *value, Er
            error_input(error, option->name, "'%s' is neither osmesa nor egl", text);
 }
 
+static bool read_camera(const Option *option, const char *text, void *value, Error *error) {
+    RenderLook *look = value;
+    return strchr(text, ',') != NULL ? camera_option_read(option, text, &look->view, error)
+                                     : option_enum(option, text, &look->camera, error);
+}
+
 static bool read_png(const Option *option, const char *text, void *value, Error *error) {
     const bool small = *(bool *)value = strcmp(text, "small") == 0;
     return small || strcmp(text, "fast") == 0 ||
@@ -157,9 +168,14 @@ bool command_render(int argc, char **argv, Error *error) {
     options.render.title_card = options.render.title != NULL;
     options.render.end_card = options.render.look.end != NULL;
     Panels panels = {0};
-    bool ok = draw_videos_check(&options.videos, options.render.width, options.render.height, error) &&
-              panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
-              render_panels(&options, &panels, error);
+    RenderLook *look = &options.render.look;
+    Trajectory *view_from;
+    bool ok = camera_option_load(options.view_from, &look->view, &view_from, error);
+    look->view_from = view_from;
+    ok = ok && draw_videos_check(&options.videos, options.render.width, options.render.height, error) &&
+         panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
+         render_panels(&options, &panels, error);
     panels_free(&panels);
+    trajectory_destroy(view_from);
     return ok;
 }

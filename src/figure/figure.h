@@ -28,6 +28,8 @@ typedef struct FigureSpec {
     const char *scene;                  /* divergence: scene of the first run, for the band of chaotic divergence;
                                            NULL: no band */
     const char *network;                /* network: the file */
+    CameraView view;                    /* the part of the world to show; width 0: that of `view_from` */
+    const Trajectory *view_from;        /* the run whose bodies set the view; NULL: the first */
     int bodies[2];                      /* narrow-phase: the pair; if equal, the kind chooses */
     const Progress *progress;           /* of simulations run for the figure, or NULL */
 } FigureSpec;
@@ -36,7 +38,7 @@ typedef struct FigureKind {
     const char *name, *summary;
     const char *example;    /* arguments after `twinbox figure` */
     int min_runs, max_runs; /* 0, 0: takes a network's file instead */
-    bool takes_times, takes_moments, takes_scene, takes_bodies;
+    bool takes_times, takes_moments, takes_scene, takes_bodies, takes_view;
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);

@@ -79,7 +79,7 @@ static bool lay_out(Annotated *figure, Error *error) {
     figure->top = 2.2 * line, figure->foot = 2.2 * line;
     const double width = (spec->width - 2 * edge - (spec->run_count - 1) * gap) / spec->run_count;
     const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - figure->foot, max_aspect * width);
-    WorldWindow window = run_window(spec->runs[0], &figure->frame, 1);
+    WorldWindow window = run_window(spec, &figure->frame, 1);
     run_window_widen(&window, width / height);
     if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
     figure->start = (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * gap) / 2;
@@ -167,5 +167,6 @@ const FigureKind figure_annotated = {
     .min_runs = 1,
     .max_runs = MAX_PANELS,
     .takes_times = true,
+    .takes_view = true,
     .draw = draw,
 };

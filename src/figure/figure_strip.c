@@ -40,7 +40,7 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
                            "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
                            "%g mm are needed",
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
-    const WorldWindow window = run_window(spec->runs[0], strip->frames, strip->count);
+    const WorldWindow window = run_window(spec, strip->frames, strip->count);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
     const double used = strip->left + edge + strip->count * strip->cells.width + (strip->count - 1) * gap;
@@ -151,6 +151,7 @@ const FigureKind figure_strip = {
     .min_runs = 1,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_times = true,
+    .takes_view = true,
     .takes_moments = true,
     .draw = draw,
 };

@@ -132,7 +132,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     const double height = fmin(max_height, max_aspect * width);
     run_colours(spec, &strobe.colour);
     if (!run_frames(spec, DEFAULT_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
-    WorldWindow window = run_window(strobe.run, strobe.frames, strobe.count);
+    WorldWindow window = run_window(strobe.spec, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
     if (done) {
@@ -157,6 +157,7 @@ const FigureKind figure_strobe = {
     .min_runs = 1,
     .max_runs = 1,
     .takes_times = true,
+    .takes_view = true,
     .takes_moments = true,
     .draw = draw,
 };

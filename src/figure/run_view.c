@@ -3,7 +3,7 @@
 
 #include "common/method_look.h"
 #include "gl/font.h"
-#include "picture/extent.h"
+#include "picture/framing.h"
 #include "picture/style.h"
 #include "simulate/method.h"
 #include "sketch/type.h"
@@ -46,19 +46,19 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
-WorldWindow run_window(const Trajectory *run, const int *frames, int count) {
+static WorldWindow window_of_view(const CameraView *view) {
+    return (WorldWindow){view->x - view->width / 2, view->y - view->height / 2, view->width, view->height};
+}
+
+WorldWindow run_window(const FigureSpec *spec, const int *frames, int count) {
     const double margin_share = 0.04, least_margin = 0.4; /* m */
-    Vec2 size = run->camera_size, center = run->camera_center;
-    if (camera_is_set(run))
-        return (WorldWindow){(double)(center.x - size.x / 2), (double)(center.y - size.y / 2), (double)size.x,
-                             (double)size.y};
-    Extent all = extent_empty;
-    for (int fixed = 0; fixed < 2 && extent_is_empty(&all); fixed++)
-        for (int i = 0; i < count; i++)
-            for (int body = 0; body < run->bodies; body++)
-                if ((run->fixed[body] != 0) == fixed) extent_include(&all, run, frames[i], body);
+    const Trajectory *run = spec->view_from != NULL ? spec->view_from : spec->runs[0];
+    CameraView set;
+    if (spec->view.width > 0) return window_of_view(&spec->view);
+    if (camera_view_of(run, &set)) return window_of_view(&set);
+    const Extent all = framing_in_frames(run, frames, count);
     if (extent_is_empty(&all)) return (WorldWindow){-1, -1, 2, 2};
-    double margin = fmax(margin_share * fmax(all.right - all.left, all.top - all.bottom), least_margin);
+    double margin = fmax(margin_share * extent_side(&all), least_margin);
     return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,
                          all.top - all.bottom + 2 * margin};
 }

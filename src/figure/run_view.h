@@ -16,8 +16,9 @@ typedef struct WorldWindow {
     double left, bottom, width, height;
 } WorldWindow;
 
-/* The scene's view, or the bounds of the dynamic bodies in these frames, with a margin. */
-WorldWindow run_window(const Trajectory *run, const int *frames, int count);
+/* The spec's view. Without one, that of the run that the spec takes it from, or of the first: the view that its scene
+   sets, or framing_in_frames() with a margin. */
+WorldWindow run_window(const FigureSpec *spec, const int *frames, int count);
 
 /* Widens the window on both sides to this aspect ratio (width / height), if it is narrower. */
 void run_window_widen(WorldWindow *window, double shape);

@@ -3,10 +3,12 @@
 
 #include <math.h>
 
-static const double HEAD = 4.2;          /* length of an arrow's head / thickness */
-static const double MIN_HEAD = 3;        /* the same for short arrows */
-static const double MIN_LENGTH = 2;      /* of an arrow / thickness */
-static const double HALO = 1.0;          /* pixels on each side; at least a third of the thickness */
+static const double HEAD = 4.2;      /* length of an arrow's head / thickness */
+static const double MIN_HEAD = 3;    /* the same for short arrows */
+static const double MIN_LENGTH = 2;  /* of an arrow / thickness */
+static const double HALO = 1.0;      /* pixels on each side; at least a third of the thickness */
+static const double NO_HALO = 1.0;   /* pixels; lines up to this thickness have no halo, which would be all to see */
+static const double HALO_RISE = 2.5; /* of the halo, pixels per pixel of thickness from there */
 static const double HEAD_SPACING = 0.85; /* between two heads / their length */
 static const double HEAD_SINE = 0.5;     /* of half the angle between the head's sides, 30 degrees */
 static const double HEAD_COSINE = 0.8660254037844386;
@@ -92,11 +94,15 @@ static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool
     }
 }
 
+static double halo_width(double thickness) {
+    return fmax(fmin(HALO, HALO_RISE * (thickness - NO_HALO)), thickness > 3 * HALO ? thickness / 3 : 0);
+}
+
 void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const ArrowStyle *style, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), t = style->thickness;
     if (!(length >= MIN_LENGTH * t) || !isfinite(length)) return; /* nothing but head */
     double head = fmin(HEAD * t, fmax(MIN_HEAD * t, 0.6 * length));
-    draw_arrow(drawing, from, to, head, truncated, t + 2 * fmax(HALO, t / 3), style->halo, clip);
+    if (halo_width(t) > 0) draw_arrow(drawing, from, to, head, truncated, t + 2 * halo_width(t), style->halo, clip);
     draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
 }
 

@@ -1,40 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture/camera.h"
 
-#include "picture/extent.h"
+#include "picture/framing.h"
 
 #include <math.h>
 
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
 static const double MIN_SIDE = 2.0;      /* m */
-static const double MIN_VIEW = 1e-3;     /* m; the smallest view that a scene may set */
+static const double MIN_VIEW = 1e-3;     /* m; the smallest view that can be set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
-
-/* The dynamic bodies in all frames. */
-static Extent dynamic_extent(const Trajectory *trajectory) {
-    Extent all = extent_empty;
-    for (int frame = 0; frame < trajectory->frames; frame++)
-        for (int body = 0; body < trajectory->bodies; body++)
-            if (!trajectory->fixed[body]) extent_include(&all, trajectory, frame, body);
-    return all;
-}
-
-static Extent fixed_extent(const Trajectory *trajectory) {
-    Extent all = extent_empty;
-    for (int body = 0; body < trajectory->bodies; body++)
-        if (trajectory->fixed[body]) extent_include(&all, trajectory, 0, body);
-    return all;
-}
-
-/* The dynamic bodies and a margin; a narrow one below, where a strip of their ground is enough. */
-static Extent fitted_extent(const Trajectory *trajectory) {
-    Extent all = dynamic_extent(trajectory);
-    if (extent_is_empty(&all)) all = fixed_extent(trajectory);
-    if (extent_is_empty(&all)) all = (Extent){0, 0, 0, 0};
-    double margin = MARGIN * fmax(fmax(all.right - all.left, all.top - all.bottom), MIN_SIDE);
-    return (Extent){all.left - margin, all.right + margin, all.bottom - margin / 3, all.top + margin};
-}
 
 static double nice_scale(double scale) {
     if (scale >= WHOLE_SCALE) return floor(scale);
@@ -45,22 +20,36 @@ static Camera look_at(double x, double y, double scale, int width, int height) {
     return (Camera){scale, rint(width / 2.0 - scale * x), rint(height / 2.0 + scale * y)};
 }
 
-bool camera_is_set(const Trajectory *trajectory) {
-    Vec2 size = trajectory->camera_size, center = trajectory->camera_center;
-    return size.x >= MIN_VIEW && size.y >= MIN_VIEW && size.x < EXTENT_FARTHEST && size.y < EXTENT_FARTHEST &&
-           fabsf(center.x) < EXTENT_FARTHEST && fabsf(center.y) < EXTENT_FARTHEST;
+bool camera_view_is_usable(const CameraView *view) {
+    return view->width >= MIN_VIEW && view->height >= MIN_VIEW && view->width < EXTENT_FARTHEST &&
+           view->height < EXTENT_FARTHEST && fabs(view->x) < EXTENT_FARTHEST && fabs(view->y) < EXTENT_FARTHEST;
 }
 
-Camera camera_fit(const Trajectory *trajectory, int width, int height) {
-    if (camera_is_set(trajectory)) {
-        Vec2 set = trajectory->camera_size;
-        double scale = nice_scale(fmin(width / (double)set.x, height / (double)set.y));
-        return look_at(trajectory->camera_center.x, trajectory->camera_center.y, scale, width, height);
-    }
-    Extent b = fitted_extent(trajectory);
+bool camera_view_of(const Trajectory *run, CameraView *view) {
+    const Vec2 size = run->camera_size, center = run->camera_center;
+    *view = (CameraView){(double)center.x, (double)center.y, (double)size.x, (double)size.y};
+    return camera_view_is_usable(view);
+}
+
+Camera camera_show(const CameraView *view, int width, int height) {
+    return look_at(view->x, view->y, nice_scale(fmin(width / view->width, height / view->height)), width, height);
+}
+
+/* With a margin; a narrow one below, where a strip of the ground is enough. */
+static Extent add_margin(const Extent *b) {
+    double margin = MARGIN * fmax(extent_side(b), MIN_SIDE);
+    return (Extent){b->left - margin, b->right + margin, b->bottom - margin / 3, b->top + margin};
+}
+
+Camera camera_fit(const Trajectory *run, int width, int height) {
+    CameraView set;
+    if (camera_view_of(run, &set)) return camera_show(&set, width, height);
+    const Framing framing = framing_of(run);
+    const Extent b = add_margin(&framing.extent);
     double scale = nice_scale(fmin(width / (b.right - b.left), height / (b.top - b.bottom)));
-    /* Spare height goes above: sky distracts less than ground. */
+    /* Spare width goes to both sides of what stands, spare height above: sky distracts less than ground. */
+    double half = width / scale / 2, x = fmin(fmax(framing.middle, b.right - half), b.left + half);
     double spare = height / scale - (b.top - b.bottom);
     double below = fmin(spare / 2, GROUND_SHARE * height / scale);
-    return look_at((b.left + b.right) / 2, b.bottom - below + height / scale / 2, scale, width, height);
+    return look_at(x, b.bottom - below + height / scale / 2, scale, width, height);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The camera, from metres to pixels: the same for all panels, fixed over the whole run. */
+/* The camera, from metres to pixels: the same for all panels. */
 #pragma once
 #include "trajectory/trajectory.h"
 
@@ -10,9 +10,19 @@ typedef struct Camera {
     double left, top;
 } Camera;
 
-/* True if the trajectory sets a view of a usable size. */
-bool camera_is_set(const Trajectory *trajectory);
+/* A part of the world, in metres: its centre and its size. */
+typedef struct CameraView {
+    double x, y, width, height; /* width 0: none */
+} CameraView;
 
-/* Shows the view that the trajectory sets; otherwise all that its dynamic bodies reach over the whole run (its
-   static ones if it has no others). Width and height of the panel in pixels. */
-Camera camera_fit(const Trajectory *trajectory, int width, int height);
+/* True if the view has a size that can be drawn. */
+bool camera_view_is_usable(const CameraView *view);
+
+/* The view that the run's scene sets; false if it sets none that is usable. */
+bool camera_view_of(const Trajectory *run, CameraView *view);
+
+/* Shows a usable view in the middle of a panel; width and height in pixels. */
+Camera camera_show(const CameraView *view, int width, int height);
+
+/* Shows the view that the run's scene sets, otherwise what stands and what strikes it (framing.h). */
+Camera camera_fit(const Trajectory *run, int width, int height);

@@ -6,10 +6,23 @@
 /* The scene and the slow motion; at the right the frame, the simulated time and, for two panels, their distance. */
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing);
 
-/* Above a panel, its method and, if there are more than two runs, its distance from the first run. */
+/* Above a panel, its method and, if there are more than two runs, its distance from the first run. What does not fit is
+   shortened or left out in this order: the description, the label of the distance, the number of bodies out of view, the
+   distance, the end of the name. */
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
 enum { CAPTION_SIZE = 256 };
+
+/* Two panels side by side: the header shows their distance, the only one. */
+bool caption_is_pair(const Picture *picture);
+
+/* Draws a name in at most `room` pixels: in the font if it fits, otherwise in the small one, there cut if need be. Returns
+   the x where it ends. */
+int caption_name_draw(const Picture *picture, const Font *font, const char *name, int x, int baseline, int room,
+                      Drawing *drawing);
+
+/* Shares room between texts of these widths: the largest width that none has to exceed for all to fit. */
+int caption_fair_width(const int *widths, int count, int room);
 
 /* "pyramid_settled" -> "Pyramid settled": the options' title, or the scene's name. */
 void caption_title(const Picture *picture, char title[CAPTION_SIZE]);
@@ -21,5 +34,5 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_SIZE], ch
 /* Text after the name: the options' note, the cost and what the method is. */
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size);
 
-/* Formats a distance for captions: "0.35", ">1000", or a dash for NaN. */
+/* Formats a distance for captions with at most four characters: "0.35", "35.2", "352", ">999", or a dash for NaN. */
 void caption_distance(char *text, size_t size, double metres);

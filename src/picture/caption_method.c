@@ -25,3 +25,21 @@ void caption_notes(const Picture *picture, int run, const char *note, char *text
     join(text, size, picture->look.costs[run]);
     join(text, size, note);
 }
+
+int caption_name_draw(const Picture *picture, const Font *font, const char *name, int x, int baseline, int room,
+                      Drawing *drawing) {
+    const Font *fitting = font_width(font, name) <= room ? font : &picture->layout.axis;
+    return font_add_fitting(drawing, fitting, name, x, baseline, room, picture->theme->ink);
+}
+
+static int sum_up_to(const int *widths, int count, int most) {
+    int sum = 0;
+    for (int i = 0; i < count; i++) sum += widths[i] < most ? widths[i] : most;
+    return sum;
+}
+
+int caption_fair_width(const int *widths, int count, int room) {
+    int most = room;
+    while (most > 0 && sum_up_to(widths, count, most) > room) most--;
+    return most;
+}

@@ -14,5 +14,17 @@ extern const Extent extent_empty;
 
 bool extent_is_empty(const Extent *extent);
 
+/* The larger side. */
+double extent_side(const Extent *extent);
+
+/* Wider by this on each side. */
+Extent extent_widened(const Extent *extent, double by);
+
 /* Widens the extent by a body's bounding box in this frame, unless it has no pose there or reaches too far. */
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
+
+/* Widens it down to the first static body straight below the body's centre, if there is one. */
+void extent_include_ground(Extent *extent, const Trajectory *run, int frame, int body);
+
+/* Whether the body's centre is inside; false for a body without a pose. */
+bool extent_holds(const Extent *extent, const Trajectory *run, int frame, int body);

@@ -8,7 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double DECADE = 3; /* ems, width of a decade on the colour scale */
+static const double DECADE = 3;              /* ems, width of a decade on the colour scale */
+static const double DOT = 0.18, LINE = 0.11; /* ems: samples are at least this large, or they could not be made out */
 /* Position of the next entry. */
 typedef struct Row {
     const Picture *picture;
@@ -76,7 +77,7 @@ static void add_trail(Row *row) {
 }
 
 static void add_dot(Row *row) {
-    double radius = marks_dot_radius(row->picture);
+    double radius = fmax(marks_dot_radius(row->picture), DOT * row->font->pixels);
     stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
                row->picture->theme->impulse, &row->clip);
     row->x += (int)ceil(2 * radius) + row->font->pixels / 2;
@@ -87,6 +88,7 @@ static void add_dot(Row *row) {
 static void add_arrow(Row *row, double pixels, uint32_t color, double value, const char *unit) {
     ArrowStyle style = marks_arrow_style(row->picture, color);
     char text[64];
+    style.thickness = fmax(style.thickness, LINE * row->font->pixels);
     style.halo = row->picture->theme->page;
     stroke_arrow(row->drawing, (Point){row->x + 1, row->middle}, (Point){row->x + 1 + pixels, row->middle}, false,
                  &style, &row->clip);

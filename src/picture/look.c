@@ -22,6 +22,9 @@ static const char *compares(const RenderLook *look) {
 bool look_check(const RenderLook *look, const Trajectory *const *runs, int count, Error *error) {
     const char *what = compares(look);
     char difference[256];
+    if (look->view.width != 0 && !camera_view_is_usable(&look->view))
+        return error_input(error, "render", "the view %g x %g m at (%g, %g) cannot be drawn", look->view.width,
+                           look->view.height, look->view.x, look->view.y);
     if (look->camera == LOOK_BOMB && runs[0]->bomb < 0)
         return error_input(error, "render", "the camera cannot follow the bomb: the first run has none");
     if (what == NULL) return true;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a sequence shows besides the bodies, and how. All zero: panels side by side, light theme. */
 #pragma once
+#include "picture/camera.h"
 
 enum { LOOK_RUNS_MAX = 6 };
 
@@ -11,7 +12,7 @@ typedef enum LookCompare {
 } LookCompare;
 
 typedef enum LookCamera {
-    LOOK_FIT,       /* fixed, on the whole run */
+    LOOK_FIT,       /* fixed */
     LOOK_BOMB,      /* follows the first run's bomb */
     LOOK_DIVERGENCE /* moves close to the first divergence and back */
 } LookCamera;
@@ -32,6 +33,8 @@ enum {
 typedef struct RenderLook {
     LookCompare compare;
     LookCamera camera;
+    CameraView view;             /* the fixed view, where a moving camera begins; width 0: that of `view_from` */
+    const Trajectory *view_from; /* the run that camera_fit() shows; NULL: the first */
     LookTheme theme;
     unsigned show;                    /* LOOK_GHOSTS | ... */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */

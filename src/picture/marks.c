@@ -4,18 +4,25 @@
 #include "picture/panel.h"
 #include "picture/pose.h"
 
-static const double DOT = 0.0052, LINE = 0.0034;   /* relative to shorter side of the panel */
-static const double MIN_DOT = 2.2, MIN_LINE = 1.4; /* pixels */
-static const double TRAIL_DURATION = 2.0;          /* s, duration of a trail */
-static const double MIN_TRAIL = 0.5;               /* m; a body that moved less in this time has no trail */
-static const double OLDEST_OPACITY = 0.15;         /* opacity of a trail's oldest end */
+static const double DOT = 0.0052, LINE = 0.0034; /* relative to shorter side of the panel */
+static const double MIN_DOT = 2.2,
+                    MIN_LINE = 1.4; /* pixels; smaller where boxes are so small that these would cover them */
+static const double DOT_BOX = 0.13, LINE_BOX = 0.085; /* relative to the median box, at most */
+static const double FINEST = 0.6;                     /* pixels; the smallest dot and the thinnest line */
+static const double TRAIL_DURATION = 2.0;             /* s, duration of a trail */
+static const double MIN_TRAIL = 0.5;                  /* m; a body that moved less in this time has no trail */
+static const double OLDEST_OPACITY = 0.15;            /* opacity of a trail's oldest end */
 static const double MIN_SPEED = 0.05; /* m/s; slower bodies have no arrow, or every resting body would show one */
 static const double TOLERANCE = 0.4;  /* pixels; largest deviation of a segment from the trail */
 enum { TRAIL_FRAMES_MAX = 600, TRAIL_EVERY = 2, SEGMENT_FRAMES = 8 };
 
-double marks_dot_radius(const Picture *picture) { return fmax(DOT * panel_side(picture), MIN_DOT); }
+static double mark_size(const Picture *picture, double share, double least, double box_share) {
+    return fmax(fmin(fmax(share * panel_side(picture), least), box_share * picture->scales.box), FINEST);
+}
 
-double marks_line_thickness(const Picture *picture) { return fmax(LINE * panel_side(picture), MIN_LINE); }
+double marks_dot_radius(const Picture *picture) { return mark_size(picture, DOT, MIN_DOT, DOT_BOX); }
+
+double marks_line_thickness(const Picture *picture) { return mark_size(picture, LINE, MIN_LINE, LINE_BOX); }
 
 ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color) {
     return (ArrowStyle){marks_line_thickness(picture), color, picture->theme->panel};

@@ -19,7 +19,7 @@ static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
 /* Labels at an end of an axis reach beyond it by half their size. The left axis is beside the first column only. */
 static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
     const Rect *rect = &layout->panels[panel];
-    const int baseline = rect->top - layout->title_rise, line = layout->hairline, half = below(&layout->axis);
+    const int baseline = rect->top - layout->title_rise, line = layout->hairline, half = layout->axis.pixels / 2;
     count = add(parts, count, PART_CAPTION, panel,
                 (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
     count = add(parts, count, PART_AXIS, panel,

@@ -45,13 +45,20 @@ static int panels_of(LookCompare compare, int count) {
     return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
 }
 
-/* Sets the panels and a camera that fits them. */
+/* The camera of the first run, unless the look has another. */
+static Camera fixed_camera(const Picture *picture, int width, int height) {
+    const RenderLook *look = &picture->look;
+    if (look->view.width > 0) return camera_show(&look->view, width, height);
+    return camera_fit(look->view_from != NULL ? look->view_from : picture->runs[0], width, height);
+}
+
+/* Sets the panels and their camera. */
 static void arrange(Picture *picture, int width, int height, int legend) {
     picture->panel_count = panels_of(picture->look.compare, picture->count);
     LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
     picture->layout = layout_make(width, height, picture->panel_count, rows);
     Rect first = picture->layout.panels[0];
-    picture->camera = camera_fit(picture->runs[0], first.right - first.left, first.bottom - first.top);
+    picture->camera = fixed_camera(picture, first.right - first.left, first.bottom - first.top);
     picture->grid_scale = picture->camera.scale;
 }
 
@@ -86,7 +93,8 @@ static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *
     int needed = 0;
     for (int rows = 0; rows <= needed; rows++) {
         arrange(picture, options->width, options->height, rows);
-        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->largest_distance, error))
+        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->camera.scale,
+                           picture->largest_distance, error))
             return false;
         needed = legend_rows(picture);
     }

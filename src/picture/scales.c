@@ -9,8 +9,10 @@ static const double MAX_ARROW = 0.28;
 static const double FASTEST_ARROW = 0.20; /* the arrow of the first run's fastest body */
 static const double COMMON_ARROW = 0.10;  /* the arrow of the 90th percentile of impulses */
 static const double LEGEND_ARROW = 0.07;  /* an arrow in the legend, at most */
-static const double MAX_SPEED = 1e4;      /* m/s; faster bodies, of an exploding run, do not count */
-enum { MAX_DECADE = 1 };                  /* 10 m, the end of the colour scale */
+/* The same in boxes; the smaller counts. */
+static const double MAX_ARROW_BOXES = 4, FASTEST_ARROW_BOXES = 3, COMMON_ARROW_BOXES = 1.2, LEGEND_ARROW_BOXES = 3.5;
+static const double MAX_SPEED = 1e4; /* m/s; faster bodies, of an exploding run, do not count */
+enum { MAX_DECADE = 1 };             /* 10 m, the end of the colour scale */
 
 static double fastest(const Trajectory *run) {
     double square = 0;
@@ -24,6 +26,19 @@ static double fastest(const Trajectory *run) {
 static int compare_floats(const void *a, const void *b) {
     float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
+}
+
+/* m: the median of the shorter sides of the dynamic bodies without the bomb; 1 without any. */
+static bool median_box(const Trajectory *run, double *side, Error *error) {
+    float *sides = malloc(((size_t)run->bodies + 1) * sizeof *sides);
+    size_t count = 0;
+    if (sides == NULL) return error_memory(error, "render");
+    for (int body = 0; body < run->bodies; body++)
+        if (!run->fixed[body] && body != run->bomb) sides[count++] = fminf(run->size[body].x, run->size[body].y);
+    qsort(sides, count, sizeof *sides, compare_floats);
+    *side = count > 0 ? (double)sides[count / 2] : 1;
+    free(sides);
+    return true;
 }
 
 /* Finds the 90th percentile of the positive impulses; 0 if there are none. */
@@ -55,13 +70,17 @@ static void choose(double *scale, double *legend, double value, double pixels, d
     *legend = round_number(max_legend / *scale);
 }
 
-bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double largest_distance, Error *error) {
+bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double scale, double largest_distance,
+                   Error *error) {
     Rect panel = layout->panels[0];
-    double side = fmin(panel.right - panel.left, panel.bottom - panel.top), impulse = 0;
-    if (!common_impulse(run, &impulse, error)) return false;
-    scales->max_arrow = MAX_ARROW * side;
-    choose(&scales->impulse, &scales->legend_impulse, impulse, COMMON_ARROW * side, LEGEND_ARROW * side);
-    choose(&scales->velocity, &scales->legend_velocity, fastest(run), FASTEST_ARROW * side, LEGEND_ARROW * side);
+    double side = fmin(panel.right - panel.left, panel.bottom - panel.top), impulse = 0, metres = 1;
+    if (!common_impulse(run, &impulse, error) || !median_box(run, &metres, error)) return false;
+    const double box = scales->box = scale * metres, legend = fmin(LEGEND_ARROW * side, LEGEND_ARROW_BOXES * box);
+    scales->max_arrow = fmin(MAX_ARROW * side, MAX_ARROW_BOXES * box);
+    choose(&scales->impulse, &scales->legend_impulse, impulse, fmin(COMMON_ARROW * side, COMMON_ARROW_BOXES * box),
+           legend);
+    choose(&scales->velocity, &scales->legend_velocity, fastest(run),
+           fmin(FASTEST_ARROW * side, FASTEST_ARROW_BOXES * box), legend);
     double power = 1;
     for (scales->last_decade = 0; power < largest_distance && scales->last_decade < MAX_DECADE; power *= 10)
         scales->last_decade++;

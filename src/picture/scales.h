@@ -6,6 +6,7 @@
 #include "trajectory/trajectory.h"
 
 typedef struct Scales {
+    double box;                             /* pixels, shorter side of the median box of the first run */
     double impulse, velocity;               /* pixels per N s and per m/s */
     double legend_impulse, legend_velocity; /* the values of the legend's arrows, round numbers */
     double max_arrow;                       /* pixels; a longer arrow is truncated to this length and has two heads */
@@ -15,8 +16,10 @@ typedef struct Scales {
 
 enum { SCALE_FIRST_DECADE = -3 }; /* the colour scale begins at 1 mm */
 
-/* From the first run; `largest_distance` in m. False with error set if out of memory. */
-bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double largest_distance, Error *error);
+/* From the first run; `scale` in pixels per metre, `largest_distance` in m. Arrows are in proportion to the panel, but to
+   its boxes where these are small, or they would cover them. False with error set if out of memory. */
+bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double scale, double largest_distance,
+                   Error *error);
 
 /* Position of a distance (m) on the logarithmic colour scale, 0 to 1. */
 double scales_share(const Scales *scales, double distance);

@@ -170,26 +170,57 @@ static void draw_events(const Picture *picture, Drawing *drawing) {
         draw_event(picture, divergence, "distance > 1 mm", divergence <= impact ? x_impact : end, drawing);
 }
 
-/* The title of the curves, and a sample line for each run. */
+/* Lengths in the key of a sample line and of the spaces after it and after its name. */
+typedef struct KeySpacing {
+    int sample, before, gap;
+} KeySpacing;
+
+/* All of the key but the names. */
+static int key_lines(const KeySpacing *spacing, int count) {
+    return count * (spacing->sample + spacing->before) + (count - 1) * spacing->gap;
+}
+
+/* The first of these titles that leaves `needed` pixels of the row; its width with the space after it. */
+static int title_curves(const Picture *picture, char title[2 * CAPTION_SIZE], int needed) {
+    static const char *const formats[] = {"Largest distance from %s", "Distance from %s"};
+    const Layout *layout = &picture->layout;
+    char name[CAPTION_SIZE], note[CAPTION_SIZE];
+    caption_method(picture, 0, name, note);
+    for (int i = 0; i < 2; i++) {
+        snprintf(title, 2 * CAPTION_SIZE, formats[i], name);
+        const int width = font_width(&layout->method, title) + 2 * layout->method.pixels;
+        if (width + needed <= layout->right - layout->timeline.left) return width;
+    }
+    title[0] = '\0';
+    return 0;
+}
+
+/* The title of the curves if there is room, and a sample line with the name of each run. */
 static void draw_key(const Picture *picture, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Font *font = &layout->method;
     const Rect clip = {0, 0, layout->width, layout->height};
-    char text[2 * CAPTION_SIZE], title[CAPTION_SIZE], note[CAPTION_SIZE];
+    const int em = font->pixels, count = picture->count - 1, baseline = layout->key_baseline;
+    KeySpacing spacing = {em * 5 / 2, em / 2, em * 3 / 2};
+    char names[RENDER_PANELS_MAX][CAPTION_SIZE], note[CAPTION_SIZE], title[2 * CAPTION_SIZE];
+    int widths[RENDER_PANELS_MAX], sum = 0, x = layout->timeline.left, room = layout->right - x;
     if (font->glyphs == NULL) return;
-    caption_method(picture, 0, title, note);
-    snprintf(text, sizeof text, "Largest distance from %s", title);
-    int x = layout->timeline.left, baseline = layout->key_baseline, right = layout->right;
-    x = font_add_fitting(drawing, font, text, x, baseline, right - x, picture->theme->ink_soft) + 2 * font->pixels;
-    for (int run = 1; run < picture->count; run++) {
-        DashedLine line = {thickness(picture), 0, picture_body_colors(picture, run)->fill, dashes[run]};
-        double y = baseline - font->pixels * 0.36;
-        int end = x + font->pixels * 5 / 2;
-        if (end + 4 * font->pixels > right) return;
-        stroke_dashed(drawing, (Point){x, y}, (Point){end, y}, &line, &clip);
-        caption_method(picture, run, title, note);
-        x = end + font->pixels / 2;
-        x = font_add_fitting(drawing, font, title, x, baseline, right - x, picture->theme->ink) + font->pixels * 3 / 2;
+    for (int i = 0; i < count; i++) {
+        caption_method(picture, i + 1, names[i], note);
+        sum += widths[i] = font_width(font, names[i]);
+    }
+    const int start = x + title_curves(picture, title, sum + key_lines(&spacing, count));
+    if (sum + key_lines(&spacing, count) > room) spacing = (KeySpacing){em * 3 / 2, em / 3, em * 2 / 3};
+    const int most = caption_fair_width(widths, count, layout->right - start - key_lines(&spacing, count));
+    font_add(drawing, font, title, x, baseline, picture->theme->ink_soft);
+    x = start;
+    for (int i = 0; i < count; i++) {
+        DashedLine line = {thickness(picture), 0, picture_body_colors(picture, i + 1)->fill, dashes[i + 1]};
+        const double y = baseline - em * 0.36;
+        stroke_dashed(drawing, (Point){x, y}, (Point){x + spacing.sample, y}, &line, &clip);
+        x += spacing.sample + spacing.before;
+        x = caption_name_draw(picture, font, names[i], x, baseline, widths[i] < most ? widths[i] : most, drawing);
+        x += spacing.gap;
     }
 }
 

@@ -76,5 +76,11 @@ void report_write_junit(FILE *file, const void *context) {
         const RegressionCase made = regression_case(regression, i);
         write_case(file, &made);
     }
+    const RegressionText notes = regression_notes(regression);
+    if (notes.text[0] != '\0') {
+        fputs("  <system-out>", file);
+        html_put(file, notes.text);
+        fputs("</system-out>\n", file);
+    }
     fputs("</testsuite>\n", file);
 }

@@ -59,6 +59,16 @@ rm b/run.npz
 run 0 compare a b
 says "not compared: 1 .npz file only in a"
 
+# A comparison with itself tells nothing.
+fresh
+ln -s a same
+run 0 compare a same
+says "expected and actual are the same folder"
+run 0 compare a/home.png a/../same/home.png
+says "expected and actual are the same file"
+run 0 compare a b
+! grep -q "the same" out || fail "two folders are taken for one"
+
 # Subfolders.
 fresh
 png b/sub/x.png 8 8 "$white" 1 2 "0 0 0 255"

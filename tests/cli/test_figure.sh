@@ -69,6 +69,12 @@ grep -q '<text\|font-f' outlines.svg && fail "outlines with a font"
 grep -q 'aria-label="engine"' outlines.svg || fail "outlines without names"
 equal "title of a PDF" "$(pdfinfo annotated.pdf | sed -n 's/^Title: *//p')" "annotated of stack: engine, momentum:k=20"
 equal "words of a PDF" "$(pdftotext -layout annotated.pdf - | grep -c 'impulses in N s')" 1
+run 0 figure strip engine.npz --at 0.5 -o wide.png --camera 0,5,16,4 --dpi 100
+run 0 figure strip engine.npz --at 0.5 -o high.png --camera 0,5,4,16 --dpi 100
+cmp -s wide.png high.png && fail "--camera changes nothing"
+run 0 figure strip momentum.npz --at 0.5 -o own.png --dpi 100
+run 0 figure strip momentum.npz --at 0.5 -o borrowed.png --view-from momentum.npz --dpi 100
+cmp -s own.png borrowed.png || fail "a run's own view is another"
 rm ./*.png ./*.svg ./*.pdf
 
 # refused MESSAGE ARGUMENT...
@@ -83,6 +89,9 @@ refused "'stripes' is not a kind of figure; known: strip, annotated, divergence,
 refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: the name of a figure must end in" strip engine.npz -o ./png
 refused "needed" strip engine.npz
+refused "--camera: error: does not apply to the kind divergence" divergence engine.npz momentum.npz --camera 0,0,1,1 -o a.png
+refused "--view-from: error: does not apply to the kind network" network engine.npz --view-from engine.npz -o a.png
+refused "cannot be combined with --camera" strip engine.npz --camera 0,0,1,1 --view-from engine.npz -o a.png
 refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
 refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
 refused "network needs 1 network (.npz), not 0" network -o a.png

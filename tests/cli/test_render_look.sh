@@ -29,6 +29,43 @@ draw -o three $everything --jobs 3 --context egl
 draw -o single $everything --jobs 1 --context osmesa
 run 0 compare three single
 
+# A box flies off in frame 80: no pixel of the frames before changes, of one run or of several side by side.
+run 0 simulate "$scenes/stack.yaml" --frames 90 -o calm.npz
+/usr/bin/python3 -c "
+import numpy
+run = dict(numpy.load('calm.npz', allow_pickle=False))
+for frame in range(80, 91):
+    run['position'][frame, 7] = (9 + 60 * (frame - 79), 30 * (frame - 79))
+numpy.savez('wild.npz', **run)"
+frames() { run 0 render "$@" --size 640x360 --frames 0:90; }
+frames calm.npz -o calm
+frames wild.npz -o wild
+equal "frames that a body flying off later changes" \
+    "$(for f in calm/*.png; do cmp -s "$f" "wild/${f#*/}" || echo "$f"; done | head -1)" calm/frame_000080.png
+frames calm.npz calm.npz -o pair
+frames calm.npz wild.npz -o apart
+equal "frames of a pair that a body flying off later changes" \
+    "$(for f in pair/*.png; do cmp -s "$f" "apart/${f#*/}" || echo "$f"; done | head -1)" pair/frame_000080.png
+
+# A view from the command line, and that of another run.
+camera() { sed -n 's/.*\("scale": [^}]*\)}.*/\1/p' "$1/manifest.json" | head -1; }
+look() { run 0 render calm.npz --size 640x360 --frames 3 "$@"; }
+look -o fitted
+look -o set --camera 0,5,16,9
+equal "pixels per metre of 596 x 297 pixels" "$(camera set | cut -d, -f1)" '"scale": 33'
+run 1 compare fitted set
+/usr/bin/python3 -c "
+import numpy
+run = dict(numpy.load('calm.npz', allow_pickle=False))
+run['camera'] = numpy.array([[0, 5], [16, 9]], dtype=numpy.float32)
+numpy.savez('seen.npz', **run)"
+look -o borrowed --view-from seen.npz
+run 0 compare set borrowed
+look -o moving --camera bomb --camera 0,5,16,9
+run 1 compare set moving
+look -o near --camera bomb --view-from seen.npz
+run 0 compare moving near
+
 # Costs are those that a chart of the scene holds.
 run 0 chart "$scenes/single.yaml" --quick --methods engine:k=10,momentum:k=20 -o chart
 draw -o free --size 640x360 --jobs 1
@@ -46,6 +83,18 @@ run 2 render "$engine" -o x --compare both
 complains "--compare: error: 'both' is not a valid value; known: split, overlay, difference"
 run 2 render "$engine" -o x --camera ''
 complains "--camera: error: '' is not a valid value; known: fit, bomb, divergence"
+for view in 1,2,3 1,2,3,4,5 1,2,,4 a,b,c,d 1,2,3,4x ,,,; do
+    run 2 render "$engine" -o x --camera "$view"
+    complains "--camera: error: '$view' is not X,Y,W,H, the centre and the size of the view in metres"
+done
+for view in 0,0,0,9 0,0,-1,9 0,0,16,1e6 1e9,0,16,9; do
+    run 2 render "$engine" -o x --camera "$view"
+    complains "--camera: error: '$view': the size must be from 0.001"
+done
+run 2 render "$engine" -o x --camera 0,5,16,9 --view-from "$network"
+complains "--view-from: error: cannot be combined with --camera X,Y,W,H"
+run 2 render "$engine" -o x --view-from nowhere.npz
+complains "nowhere.npz: error"
 run 2 render "$engine" -o x --theme grey
 complains "'grey' is not a valid value; known: light, dark"
 run 2 render "$engine" -o x --show trails,ghost

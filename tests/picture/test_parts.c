@@ -5,7 +5,7 @@
 #include "picture/parts.h"
 #include "render/look_runs.h"
 
-static const int sizes[][2] = {{640, 360}, {1280, 720}, {720, 1280}, {2000, 400}, {100, 80}, {3840, 2160}};
+static const int sizes[][2] = {{420, 300}, {640, 360}, {1280, 720}, {720, 1280}, {2000, 400}, {100, 80}, {3840, 2160}};
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 typedef struct Places {

@@ -118,8 +118,10 @@ static void cameras_ease(void **state) {
     for (int run = 0; run < RUNS; run++) trajectory_destroy(runs[run]);
     for (int run = 0; run < RUNS; run++) panels[run] = runs[run] = run_make("engine", 400);
     for (int frame = 200; frame < 400; frame++) run_position(runs[1], frame, SECOND_BOX)->x += 1;
-    for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
-        *run_position(runs[0], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
+    for (int run = 0; run < RUNS; run++) run_position(runs[run], 0, FIRST_BOX)->x = -30; /* a wide view to zoom from */
+    for (int run = 0; run < RUNS; run++)
+        for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
+            *run_position(runs[run], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
     for (int camera = LOOK_BOMB; camera <= LOOK_DIVERGENCE; camera++) {
         Picture picture = picture_with_look(2, &(RenderLook){.camera = (LookCamera)camera});
         const Rect panel = picture.layout.panels[0];
@@ -174,7 +176,7 @@ static void distances_have_their_place_on_the_scale(void **state) {
     Scales scales;
     Error error = {0};
     Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
-    assert_ok(scales_choose(&scales, runs[0], &picture.layout, 0.5, &error), error);
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
     assert_false(scales.exceeded);
     assert_near(scales_share(&scales, 0), 0, 0);
@@ -182,7 +184,7 @@ static void distances_have_their_place_on_the_scale(void **state) {
     assert_near(scales_share(&scales, 0.001), 0, 1e-12);
     assert_near(scales_share(&scales, 0.1), 2.0 / 3, 1e-12);
     assert_near(scales_share(&scales, 5), 1, 0);
-    assert_ok(scales_choose(&scales, runs[0], &picture.layout, 5000, &error), error);
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 5000, &error), error);
     assert_true(scales.exceeded && scales.last_decade == 1);
     picture_free(&picture);
 }
