@@ -27,6 +27,7 @@ static void print_difference(const Regression *regression) {
     for (int i = 0; different > 0 && i < regression->count; i++)
         if (frames[i].pixels == PIXELS_DIFFER || frames[i].pixels == PIXELS_RESIZED) {
             printf("first difference: %s: %s\n", frame_name(&frames[i]), frame_words(&frames[i]).text);
+            printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frames[i].flip, frames[i].flip_p99);
             break;
         }
     if (different > 0) printf("%d of %d frames differ\n", different, compared);

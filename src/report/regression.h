@@ -8,12 +8,13 @@
 #include "image/mask.h"
 #include "image/png_display.h"
 #include "image/sequence.h"
+#include "report/rules.h"
 #include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
-    int max_difference; /* of a channel, 0..255 */
-    double max_share;   /* of the unmasked pixels, 0..1; a frame passes if it is within both limits */
-    const Mask *mask;
+    Tolerance tolerance;  /* replaces what the rules give */
+    const char *rules;    /* a file (report/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
     int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
     bool flat;            /* without subfolders */
     bool strict_metadata; /* files that display differently fail (image/png_display.h) */
@@ -25,7 +26,7 @@ typedef enum PixelVerdict {
     PIXELS_EQUAL,
     PIXELS_WITHIN, /* within tolerance */
     PIXELS_DIFFER,
-    PIXELS_RESIZED,
+    PIXELS_RESIZED, /* the difference is that of the overlap */
     PIXELS_MISSING, /* no actual picture */
     PIXELS_EXTRA    /* no expected picture */
 } PixelVerdict;
@@ -53,11 +54,11 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip;      /* image/flip.h, measured by the report; else NaN */
-    bool run_differs; /* a trajectory of its scene differs in any frame */
-    bool shown;       /* in the report */
-    double seconds;   /* that its comparison took, wall time */
-    char *read_error; /* why a picture could not be read; makes regression_run() fail */
+    double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
+    bool run_differs;      /* a trajectory of its scene differs in any frame */
+    bool shown;            /* in the report */
+    double seconds;        /* that its comparison took, wall time */
+    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
 /* A trajectory that is in both folders. */
@@ -74,6 +75,7 @@ typedef struct RegressionRun {
 typedef struct Regression {
     RegressionOptions options;
     ImageSequence *sequences[SIDES];
+    Rules *rules; /* or NULL */
     int count, run_count;
     RegressionFrame *frames;                  /* by stem, then number */
     RegressionRun *runs;                      /* by name */

@@ -48,10 +48,13 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_bool(json, "shown", frame->shown);
     json_put_text(json, "words", frame_words(frame).text);
     json_put_int(json, "differing", frame->difference.pixels);
+    json_put_int(json, "beyond", frame->difference.beyond);
+    json_put_int(json, "edges", frame->difference.moved);
     json_put_int(json, "counted", frame->difference.counted);
     json_put_int(json, "largest", frame->difference.largest);
     write_box(json, &frame->difference);
     json_put_number(json, "flip", rounded(frame->flip));
+    json_put_number(json, "flip_p99", rounded(frame->flip_p99));
     json_put_text(json, "metadata", frame->metadata.text[0] != '\0' ? frame->metadata.text : NULL);
     write_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
     write_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
@@ -70,6 +73,11 @@ static void write_run(JsonWriter *json, const RegressionRun *run) {
     json_end(json);
 }
 
+static void write_limits(JsonWriter *json, const Regression *regression) {
+    json_put_text(json, "tolerance", tolerance_words(&regression->options.tolerance).text);
+    json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
+}
+
 void report_write_json(FILE *file, const void *context) {
     const Report *report = context;
     const Regression *regression = report->regression;
@@ -80,10 +88,7 @@ void report_write_json(FILE *file, const void *context) {
     json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
     json_put_text(&json, "verdict", regression_verdict(regression).text);
     json_put_text(&json, "notes", regression_notes(regression).text);
-    json_begin_array(&json, "fuzzy", JSON_ONE_LINE);
-    json_put_int(&json, NULL, regression->options.max_difference);
-    json_put_number(&json, NULL, regression->options.max_share);
-    json_end(&json);
+    write_limits(&json, regression);
     json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
     json_begin_array(&json, "frames", JSON_LINES);
     for (int i = 0; i < regression->count; i++) write_frame(&json, &regression->frames[i]);

@@ -39,6 +39,19 @@ static void add(RegressionText *text, const char *between, const char *format, .
     va_end(arguments);
 }
 
+static void add_difference(RegressionText *words, const ImageDifference *difference) {
+    if (difference->pixels == 0)
+        add(words, "", "equal pixels");
+    else
+        add(words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
+            difference->pixels == 1 ? "pixel differs" : "pixels differ",
+            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
+            difference->first_y);
+    if (difference->moved > 0)
+        add(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
+            difference->moved == 1 ? "pixel" : "pixels");
+}
+
 RegressionText frame_words(const RegressionFrame *frame) {
     RegressionText words = {""};
     const ImageDifference *difference = &frame->difference;
@@ -47,15 +60,13 @@ RegressionText frame_words(const RegressionFrame *frame) {
     case PIXELS_MISSING: add(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: add(&words, "", "no expected picture"); break;
     case PIXELS_RESIZED:
-        add(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        add(&words, "", "sizes differ: %d x %d and %d x %d pixels; overlap: ", a->width, a->height, b->width,
+            b->height);
+        add_difference(&words, difference);
         break;
     case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
-    case PIXELS_DIFFER:
-        add(&words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
-            difference->pixels == 1 ? "pixel differs" : "pixels differ",
-            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
-            difference->first_y);
+    case PIXELS_DIFFER: add_difference(&words, difference);
     }
     if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
