@@ -44,6 +44,9 @@ static Window window_of(const Block *block, int channel) {
     return window;
 }
 
+/* Levels, of 255. Less is the gradient of an area: there, a change by one or two levels looks like a movement. */
+enum { LEAST_CONTRAST = 16 };
+
 /* Differences up to this look equal beside a contrast: renderers round, and areas have gradients. */
 static int slack(int contrast) { return 2 + contrast / 16; }
 
@@ -59,15 +62,18 @@ typedef struct Change {
 
 static Change examine(const Block *a, const Block *b) {
     Change change = {true, {0}};
+    int largest = 0;
     for (int c = 0; c < CHANNELS; c++) {
         Window p = window_of(a, c), q = window_of(b, c);
         int most = p.most > q.most ? p.most : q.most, least = p.least < q.least ? p.least : q.least;
         int contrast = most - least, more = change.slacks[c] = slack(contrast);
+        if (contrast > largest) largest = contrast;
         int difference = abs(p.middle - q.middle), sums = abs(p.sum - q.sum);
         bool edge = is_within(p.middle, &q, more) && is_within(q.middle, &p, more);
         bool line = 20 * sums <= 9 * contrast + 60; /* sums / 3 <= 0.15 contrast + 1 */
         change.explained = change.explained && 10 * difference <= 6 * contrast + 10 && (edge || line);
     }
+    change.explained = change.explained && largest >= LEAST_CONTRAST;
     return change;
 }
 

@@ -12,11 +12,14 @@
    contrast c of both windows together:
 
    1. The pixel changes by at most 0.6 c: its coverage by the shape changes by at most 0.6. Half a pixel is what separates
-      a sampled from an exact edge; an edge that moves by a whole pixel is a difference.
+      a sampled from an exact edge; an edge that moves by a whole pixel is a difference. In one channel c is at least 16
+      of 255: gradients of areas are no edges.
    2. Either each value lies within the range of the other window: an edge between two colours that both pictures show.
       Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength.
    3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
       the edge. In textures, such as photos, nothing is an edge.
+
+   Values within 2 + c / 16 of each other count as equal.
 
    Fails: a line of less than two pixels that fades by less than 15% looks like a line that became narrower, and passes; so
    does a faint mark along an edge of higher contrast. Rings less than two pixels apart have no flat side and count. */

@@ -5,6 +5,8 @@
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "image/png_check.h"
+#include "report/regression_causes.h"
+#include "report/regression_changes.h"
 #include "report/regression_limits.h"
 #include "report/regression_states.h"
 
@@ -13,8 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool judge_pixels(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
-                         Error *error) {
+static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                         Image *const images[SIDES], Error *error) {
+    Image *expected = images[EXPECTED], *actual = images[ACTUAL];
     uint8_t *masked;
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
     regression_compare(regression, frame, expected, actual, masked);
@@ -22,12 +25,14 @@ static bool judge_pixels(const Regression *regression, RegressionFrame *frame, I
     bool ok = hidden
                   ? error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared")
                   : regression_decide(regression, frame, expected, actual, masked, error);
+    if (ok && frame->difference.pixels > 0)
+        ok = regression_find_changes(regression, frame, data, (const Image *const[SIDES]){expected, actual}, masked,
+                                     error);
     free(masked);
     return ok;
 }
 
-static bool decode_and_judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     Image *images[SIDES];
     RegressionFile *files = frame->files;
     bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
@@ -36,7 +41,7 @@ static bool decode_and_judge(const Regression *regression, RegressionFrame *fram
                                     regression->options.max_pixels, images, error);
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
         files[side].width = images[side]->width, files[side].height = images[side]->height;
-    ok = ok && judge_pixels(regression, frame, images[EXPECTED], images[ACTUAL], error);
+    ok = ok && judge_pixels(regression, frame, data, images, error);
     image_destroy_pair(images);
     return ok;
 }
@@ -55,8 +60,7 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
 }
 
 /* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
-static bool judge_same_bytes(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     if (!png_check(data[EXPECTED], a->size, frame->at[EXPECTED]->path, &a->width, &a->height, error)) return false;
     b->width = a->width, b->height = a->height;
@@ -67,7 +71,7 @@ static bool judge_same_bytes(const Regression *regression, RegressionFrame *fram
     return true;
 }
 
-static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
+static bool judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     const RegressionOptions *options = &regression->options;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
@@ -80,7 +84,7 @@ static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t 
     return decode_and_judge(regression, frame, data, error);
 }
 
-static bool compare_files(const Regression *regression, RegressionFrame *frame, Error *error) {
+static bool compare_files(Regression *regression, RegressionFrame *frame, Error *error) {
     uint8_t *data[SIDES] = {NULL, NULL};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
@@ -102,21 +106,23 @@ static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
 }
 
 /* Where several pictures are accepted, the first that passes counts, or else the closest. */
-static bool compare_accepted(const Regression *regression, RegressionFrame *frame, Error *error) {
+static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
     const RegressionFrame fresh = *frame;
     if (!compare_files(regression, frame, error)) return false;
     for (const SequenceFrame *other = frame->base->next; other != NULL && frame_failed(frame); other = other->next) {
         RegressionFrame attempt = fresh;
         attempt.at[EXPECTED] = other;
-        if (!compare_files(regression, &attempt, error)) return false;
-        if (is_closer(&attempt, frame)) *frame = attempt;
+        bool ok = compare_files(regression, &attempt, error), closer = ok && is_closer(&attempt, frame);
+        free(closer ? frame->changes : attempt.changes);
+        if (closer) *frame = attempt;
+        if (!ok) return false;
     }
     return true;
 }
 
 /* If a frame cannot be read, the others are still compared: the reported error must not depend on the threads. */
 static bool compare_frame(void *context, int i, Error *error) {
-    const Regression *regression = context;
+    Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
     const double begun = clock_seconds();
     Error read_error = {0};
@@ -156,9 +162,12 @@ static void count_frame(Regression *regression, int i) {
     regression->by_verdict[frame->pixels]++;
     if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
     if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
-    regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
-    if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
-    regression->unknown += pictures && frame->states == STATES_UNKNOWN;
+    bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
+    regression->view += view;
+    regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
+    if (pictures && !view && frame->states == STATES_EQUAL)
+        count_first(&regression->renderer, &regression->first_renderer, i);
+    regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
     if (frame->metadata.text[0] != '\0') count_first(&regression->metadata, &regression->first_metadata, i);
     regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
     regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
@@ -247,7 +256,7 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
               parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok) count(regression);
-    ok = ok && regression_measure_first(regression, error);
+    ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;
     if (!ok) regression_free(regression);
     return ok;
@@ -258,9 +267,14 @@ void regression_free(Regression *regression) {
         free(regression->runs[i].name);
         free(regression->runs[i].differs);
     }
-    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].read_error);
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++) {
+        free(regression->frames[i].read_error);
+        free(regression->frames[i].changes);
+    }
     free(regression->frames);
     free(regression->runs);
+    free(regression->causes);
+    shown_free(&regression->shown);
     rules_destroy(regression->rules);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};

@@ -121,6 +121,18 @@ if command -v prove >/dev/null; then
     grep -q "Failed 14/14 subtests" proved || fail "prove: $(cat proved)"
 fi
 
+# What a comparison leaves out is in all of them.
+mkdir sub.a sub.b sub.a/inner sub.b/inner
+cp few/a/f_0.png sub.a/ && cp few/a/f_0.png sub.b/
+cp few/a/f_0.png sub.a/inner/ && cp few/a/f_1.png sub.b/inner/
+GITHUB_STEP_SUMMARY=$folder/sub.md run 0 compare sub.a sub.b --no-recursive --annotations github --report report
+grep -q '^# not compared: 1 picture in subfolders of sub.a' report/results.tap || fail "no note in results.tap"
+grep -q '^- not compared.*1 picture in subfolders of sub.a' sub.md || fail "no note in the summary: $(cat sub.md)"
+/usr/bin/python3 - <<'PYTHON' || fail "no note in junit.xml"
+import xml.etree.ElementTree
+assert "not compared: 1 picture in subfolders of sub.a" in xml.etree.ElementTree.parse("report/junit.xml").find("system-out").text
+PYTHON
+
 # A summary of which GitHub would refuse all is cut, and what was there before counts.
 rm summary.md
 run 1 compare crowd/a crowd/b --annotations github

@@ -137,6 +137,8 @@ run 1 compare a b --report report
 says "overlap: 10 pixels differ (1.25%) by at most 2, first at (3, 3)"
 run 1 compare a b --tolerance 255
 run 1 compare a b --flip 1
+run 1 compare a b --mask 12,3,38,1
+says "overlap: 9 pixels differ"
 run 1 compare a b --mask 0,0,50,4
 says "overlap: equal pixels"
 /usr/bin/python3 - <<'PYTHON' || fail "the report's pictures of different size"

@@ -30,7 +30,7 @@ watch() {
 
 watch expected actual --report report
 seen 1 "watching expected and actual; Ctrl-C ends"
-seen 1 "equal: 3 frames, 1 trajectories"
+seen 1 "equal: 3 frames, 1 trajectory"
 grep -q '"verdict": "equal"' report/results.json || fail "no report of equal pictures"
 cp changed/* actual/
 seen 2 "watching"

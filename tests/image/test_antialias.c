@@ -249,12 +249,31 @@ static void textures_have_no_edges(void **state) {
     uint32_t random = 1;
     for (int i = 0; i < 4 * SIDE * SIDE; i++) {
         random = random * 1664525 + 1013904223;
-        a->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(60 + (random >> 24) / 2);
-        b->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(a->pixels[i] * 21 / 20);
+        bool alpha = i % 4 == 3;
+        a->pixels[i] = (uint8_t)(alpha ? 255 : 60 + (random >> 24) / 2);
+        b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] * 21 / 20);
     }
     assert_true(difference_of(a, b).moved < SIDE * SIDE / 25);
     image_destroy(a);
     image_destroy(b);
+}
+
+/* By one level, or two. */
+static void areas_that_become_lighter_differ(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int slope = 0; slope <= 2; slope++)
+        for (int more = 1; more <= 2; more++) {
+            Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+            for (int i = 0; i < 4 * SIDE * SIDE; i++) {
+                bool alpha = i % 4 == 3;
+                a->pixels[i] = (uint8_t)(alpha ? 255 : 20 + slope * (i / 4 % SIDE + i / 4 / SIDE));
+                b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] + more);
+            }
+            assert_int_equal(difference_of(a, b).pixels, SIDE * SIDE);
+            image_destroy(a);
+            image_destroy(b);
+        }
 }
 
 /* Pictures smaller than the windows. */
@@ -297,6 +316,7 @@ int main(void) {
         cmocka_unit_test(an_edge_that_moves_by_a_pixel_differs),
         cmocka_unit_test(transparent_edges_are_edges),
         cmocka_unit_test(textures_have_no_edges),
+        cmocka_unit_test(areas_that_become_lighter_differ),
         cmocka_unit_test(small_pictures_are_compared),
         cmocka_unit_test(masked_pixels_stay_masked),
     };

@@ -105,7 +105,7 @@ cat >probe.html <<'PROBE'
     };
     get("all").click();
     await wait();
-    note("metadata", document.querySelector(".counts").textContent.includes("1 metadata differs"),
+    note("metadata", get("notes").textContent.includes("metadata differs in 1 frame"),
       ...[...get("rows").lastChild.children].map(part => part.className + " " + part.textContent));
     note("looks", ...["good", "odd", "bad"].map(look => document.querySelectorAll("#rows ." + look).length > 0));
     for (const hidden of document.querySelectorAll("main [hidden]")) hidden.hidden = false;
