@@ -63,37 +63,67 @@ static int draw_name(const Picture *picture, int run, int x, int baseline, int r
     return caption_name_draw(picture, &layout->title, name, x + swatch, baseline, room - swatch, drawing);
 }
 
+static void notes_of(const Picture *picture, int run, char text[4 * CAPTION_SIZE]) {
+    char name[CAPTION_SIZE], note[CAPTION_SIZE];
+    caption_method(picture, run, name, note);
+    caption_notes(picture, run, note, text, 4 * CAPTION_SIZE);
+}
+
 static void draw_notes(const Picture *picture, int run, int left, int right, int baseline, Drawing *drawing) {
     const Font *font = &picture->layout.method;
-    char name[CAPTION_SIZE], note[CAPTION_SIZE], text[4 * CAPTION_SIZE];
-    caption_method(picture, run, name, note);
-    caption_notes(picture, run, note, text, sizeof text);
+    char text[4 * CAPTION_SIZE];
+    notes_of(picture, run, text);
     if (right - left >= NOTE_EMS * font->pixels || font_width(font, text) <= right - left)
         font_add_fitting(drawing, font, text, left, baseline, right - left, picture->theme->ink_soft);
 }
 
-/* All runs of an overlay on one line. Their distances are left out if the names need the room. */
-static void draw_overlay(const Picture *picture, Moment moment, int left, int right, int baseline, Drawing *drawing) {
+/* How the runs of an overlay share the line above it, in pixels. */
+typedef struct Shares {
+    int names[RENDER_PANELS_MAX], notes[RENDER_PANELS_MAX]; /* of each run, with the space before */
+    int distance;                                           /* of each run but the first; 0: no room for them */
+    int spare;                                              /* what is left for each run */
+} Shares;
+
+/* Shares room by need: widths that are too large are cut to the same one. Returns what is left. */
+static int share(int *widths, int count, int room) {
+    const int most = caption_fair_width(widths, count, room > 0 ? room : 0);
+    for (int i = 0; i < count; i++) room -= widths[i] = widths[i] < most ? widths[i] : most;
+    return room > 0 ? room : 0;
+}
+
+/* Names first, then distances, all or none, then descriptions. */
+static Shares share_line(const Picture *picture, int room) {
     const Font *font = &picture->layout.method;
-    const int gap = picture->layout.title.pixels, count = picture->count;
-    int names[RENDER_PANELS_MAX], room = right - left - (count - 1) * gap, used = 0;
     const CaptionItem any = caption_distance_item("", 0);
-    const int item = caption_item_width(font, &any) + gap / 2;
-    for (int run = 0; run < count; run++) used += names[run] = name_width(picture, run);
-    const bool distances = used + (count - 1) * item <= room;
-    const int most = caption_fair_width(names, count, room);
-    const int spare = distances ? (room - used - (count - 1) * item) / count : used < room ? (room - used) / count : 0;
-    for (int run = 0, x = left; run < count; run++) {
-        const int width = names[run] < most ? names[run] : most;
-        int end = draw_name(picture, run, x, baseline, width, drawing) + gap / 2;
-        const CaptionItem distance = caption_distance_item("", picture_run_distance(picture, run, moment));
-        if (distances && run > 0) {
-            caption_item_draw(picture, font, &distance, end, baseline, drawing);
-            end += item;
+    const int count = picture->count, gap = picture->layout.title.pixels / 2;
+    Shares shares = {.distance = caption_item_width(font, &any) + gap};
+    for (int run = 0; run < count; run++) {
+        char text[4 * CAPTION_SIZE];
+        notes_of(picture, run, text);
+        shares.names[run] = name_width(picture, run);
+        shares.notes[run] = text[0] != '\0' ? font_width(font, text) + gap : 0;
+    }
+    int left = share(shares.names, count, room);
+    if (left < (count - 1) * shares.distance) shares.distance = 0;
+    left = share(shares.notes, count, left - (count - 1) * shares.distance);
+    shares.spare = left / count;
+    return shares;
+}
+
+/* All runs of an overlay on one line. */
+static void draw_overlay(const Picture *picture, Moment moment, int left, int right, int baseline, Drawing *drawing) {
+    const int between = picture->layout.title.pixels, gap = between / 2;
+    const Shares shares = share_line(picture, right - left - (picture->count - 1) * between);
+    for (int run = 0, x = left; run < picture->count; run++) {
+        draw_name(picture, run, x, baseline, shares.names[run], drawing);
+        x += shares.names[run];
+        if (run > 0 && shares.distance > 0) {
+            const CaptionItem distance = caption_distance_item("", picture_run_distance(picture, run, moment));
+            caption_item_draw(picture, &picture->layout.method, &distance, x + gap, baseline, drawing);
+            x += shares.distance;
         }
-        x += width + (distances && run > 0 ? item : 0) + spare;
-        draw_notes(picture, run, end, x, baseline, drawing);
-        x += gap;
+        draw_notes(picture, run, x + gap, x + shares.notes[run], baseline, drawing);
+        x += shares.notes[run] + shares.spare + between;
     }
 }
 
