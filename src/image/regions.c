@@ -132,10 +132,10 @@ bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, c
     *regions = (ImageRegions){.count = 0};
     if (difference->pixels == 0) return true;
     scan.capacity = 3 * a->width;
-    scan.nodes = malloc((size_t)scan.capacity * sizeof *scan.nodes);
+    scan.nodes = calloc((size_t)scan.capacity, sizeof *scan.nodes);
     scan.kept = malloc((size_t)scan.capacity * sizeof *scan.kept);
     scan.moved = calloc((size_t)scan.capacity, sizeof *scan.moved);
-    scan.column_node = malloc(width * sizeof *scan.column_node);
+    scan.column_node = calloc(width, sizeof *scan.column_node);
     scan.column_row = calloc(width, sizeof *scan.column_row);
     scan.differs = malloc(width * sizeof *scan.differs);
     bool ok = (scan.nodes != NULL && scan.kept != NULL && scan.moved != NULL && scan.column_node != NULL &&
