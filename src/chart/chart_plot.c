@@ -10,16 +10,18 @@
 #include <string.h>
 
 static bool draw(const Chart *chart, const char *scene, const char *stem, Error *error) {
-    char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
+    char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE], file_title[3 * CHART_TEXT_SIZE];
     chart_plain(name, scene);
     snprintf(title, sizeof title, "%s, %d launches", name, chart->launches);
+    snprintf(file_title, sizeof file_title, "Speed and accuracy: %s", title);
     char *text = NULL;
     size_t size = 0;
     FILE *script = open_memstream(&text, &size);
     if (script == NULL) return error_memory(error, stem);
     bool whole = chart_script(chart, title, script) && !ferror(script);
     whole = fclose(script) == 0 && whole;
-    const GnuplotDrawing drawing = {.width = CHART_WIDTH, .height = CHART_HEIGHT, .script = text, .script_size = size};
+    const GnuplotDrawing drawing = {
+        .width = CHART_WIDTH, .height = CHART_HEIGHT, .script = text, .script_size = size, .title = file_title};
     bool drawn = whole ? gnuplot_draw(&drawing, stem, error) : error_memory(error, stem);
     free(text);
     return drawn;

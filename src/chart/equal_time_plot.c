@@ -169,7 +169,11 @@ static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
     draw_grid(grid, &page);
     bool whole = !ferror(page.script);
     whole = fclose(page.script) == 0 && whole && !page.no_memory;
-    const GnuplotDrawing drawing = {.width = page.width, .height = page.height, .script = text, .script_size = size};
+    const GnuplotDrawing drawing = {.width = page.width,
+                                    .height = page.height,
+                                    .script = text,
+                                    .script_size = size,
+                                    .title = "Error at the impact in equal time / that of the best rival"};
     const bool drawn = whole ? gnuplot_draw(&drawing, stem, error) : error_memory(error, stem);
     free(text);
     return drawn;

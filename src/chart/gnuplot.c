@@ -3,8 +3,10 @@
 #include "chart/gnuplot.h"
 
 #include "common/file.h"
+#include "chart/pdf_title.h"
 #include "common/process.h"
 #include "sketch/plot_font.h"
+#include "sketch/sketch_formats.h"
 
 #include <errno.h>
 #include <ftw.h>
@@ -114,6 +116,37 @@ static bool insert_overlay(char **svg, size_t *size, const char *overlay) {
     return true;
 }
 
+static void put_replaced(FILE *out, const char *text, const char *from, const char *to) {
+    for (const char *found; (found = strstr(text, from)) != NULL; text = found + strlen(from))
+        fprintf(out, "%.*s%s", (int)(found - text), text, to);
+    fputs(text, out);
+}
+
+/* Its title, and the fonts of other figures: gnuplot names only one. */
+static bool dress_svg(char **svg, size_t *size, const char *title) {
+    static const char no_title[] = "<title>Gnuplot</title>";
+    char *head = strstr(*svg, no_title), *text = NULL;
+    FILE *out = head != NULL ? open_memstream(&text, size) : NULL;
+    if (out == NULL) return false;
+    fprintf(out, "%.*s<title>%s</title>\n", (int)(head - *svg), *svg, title);
+    svg_write_font(out);
+    put_replaced(out, head + strlen(no_title), "font-family=\"sans-serif\"", "font-family=\"" SVG_FONTS "\"");
+    const bool whole = !ferror(out);
+    if (fclose(out) != 0 || !whole) {
+        free(text);
+        return false;
+    }
+    free(*svg);
+    *svg = text;
+    return true;
+}
+
+static bool dress(const GnuplotDrawing *drawing, char **data, size_t *size, Error *error) {
+    return (dress_svg(&data[1], &size[1], drawing->title) &&
+            (drawing->without_pdf || pdf_set_title(&data[2], &size[2], drawing->title))) ||
+           error_system(error, "gnuplot", "produced an SVG or PDF file of an unknown form");
+}
+
 static bool collect(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
     const int formats = format_count(drawing);
     char *data[FORMATS] = {NULL}, path[PATH_MAX];
@@ -124,6 +157,7 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, const cha
         data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
         done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]);
     }
+    done = done && dress(drawing, data, size, error);
     if (done && drawing->overlay != NULL && !insert_overlay(&data[1], &size[1], drawing->overlay))
         done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {

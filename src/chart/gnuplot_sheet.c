@@ -35,9 +35,13 @@ bool gnuplot_sheet_draw(const GnuplotSheet *sheet, const char *folder, const cha
     if (sheet->page.width <= 0) return true;
     if (!file_path(stem, sizeof stem, error, "%s/%s%s", folder, prefix, name)) return false;
     snprintf(caption, sizeof caption, "%s.txt", stem);
-    const GnuplotDrawing drawing = {sheet->page.width,   sheet->page.height,
-                                    sheet->script,       sheet->script_size,
-                                    .without_pdf = true, .overlay = sheet->links_size > 0 ? sheet->links : NULL};
+    const GnuplotDrawing drawing = {sheet->page.width,
+                                    sheet->page.height,
+                                    sheet->script,
+                                    sheet->script_size,
+                                    .without_pdf = true,
+                                    .title = name,
+                                    .overlay = sheet->links_size > 0 ? sheet->links : NULL};
     return gnuplot_draw(&drawing, stem, error) && file_write(caption, sheet->caption, sheet->caption_size, error);
 }
 

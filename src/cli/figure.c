@@ -30,10 +30,14 @@ static const Option option_table[] = {
     {"--view-from", 0, "RUN", "The view of this run (.npz) instead of the first's", OPTION_PATH(Options, view_from)},
     {"--scene", 0, "FILE", "divergence: scene of the first run, for the band of chaos",
      OPTION_PATH(Options, figure.scene)},
-    {"--bodies", 0, "A,B", "narrow-phase: the pair (default: the bomb's first, else the first to touch)",
-     OPTION_READ(read_bodies, Options, figure.bodies)},
+    {"--bodies", 0, "A,B,...",
+     "narrow-phase: the pair (default: the bomb's first, else the first to touch); strip: show the part of the world "
+     "with these bodies",
+     OPTION_READ(read_bodies, Options, figure)},
     {"--width", 0, "column|page|MM", "Width: 85 mm, 174 mm (default) or 40 to 400 mm",
      OPTION_READ(read_width, Options, figure.width), .least = FIGURE_WIDTH_MIN, .most = FIGURE_WIDTH_MAX, .group = 1},
+    {"--height", 0, "MM", "strip: height of the page, 20 to 240 mm (default: as high as its cells)",
+     OPTION_DOUBLE(Options, figure.height, FIGURE_HEIGHT_MIN, FIGURE_HEIGHT_MAX)},
     {"--dpi", 0, "N", "Dots per inch of scenes and of PNG (default: 300; 50 to 1200)",
      OPTION_DOUBLE(Options, figure.dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX)},
     {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
@@ -96,18 +100,29 @@ static bool read_times(const Option *option, const char *text, void *value, Erro
     }
 }
 
+static bool has_body(const FigureSpec *spec, int64_t body) {
+    for (int i = 0; i < spec->body_count; i++)
+        if (spec->bodies[i] == body) return true;
+    return false;
+}
+
 /* "3,11" */
 static bool read_bodies(const Option *option, const char *text, void *value, Error *error) {
-    const char *comma = strchr(text, ',');
-    char first[16] = "";
-    int64_t a, b;
-    if (comma != NULL && comma - text < (int)sizeof first) memcpy(first, text, (size_t)(comma - text));
-    if (!parse_int(first, 0, INT32_MAX, &a) || !parse_int(comma + 1, 0, INT32_MAX, &b) || a == b)
-        return error_input(error, option->name, "'%s' is not a pair of bodies such as 3,11", text);
-    int *bodies = value;
-    bodies[0] = (int)a;
-    bodies[1] = (int)b;
-    return true;
+    FigureSpec *spec = value;
+    spec->body_count = 0;
+    for (const char *rest = text;; rest++) {
+        const size_t length = strcspn(rest, ",");
+        char number[16] = "";
+        int64_t body;
+        if (length < sizeof number) memcpy(number, rest, length);
+        if (!parse_int(number, 0, INT32_MAX, &body) || has_body(spec, body))
+            return error_input(error, option->name, "'%s' is not a list of different bodies such as 3,11", text);
+        if (spec->body_count == FIGURE_BODIES_MAX)
+            return error_input(error, option->name, "more than %d bodies", FIGURE_BODIES_MAX);
+        spec->bodies[spec->body_count++] = (int)body;
+        rest += length;
+        if (*rest == '\0') return true;
+    }
 }
 
 static bool refuse(const char *option, const FigureKind *kind, Error *error) {
@@ -133,9 +148,15 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
     if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
     if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
+    if (figure->height > 0 && !kind->takes_height) return refuse("--height", kind, error);
+    if (figure->body_count > 0 && figure->view.width > 0)
+        return error_input(error, "--bodies", "cannot be combined with --camera");
+    if (figure->body_count > 0 && kind->max_bodies == 0) return refuse("--bodies", kind, error);
+    if (figure->body_count > 0 && (figure->body_count < kind->min_bodies || figure->body_count > kind->max_bodies))
+        return error_input(error, "--bodies", "%s takes %d to %d bodies (got %d)", kind->name, kind->min_bodies,
+                           kind->max_bodies, figure->body_count);
     if (figure->view.width > 0 && !kind->takes_view) return refuse("--camera", kind, error);
     if (options->view_from != NULL && !kind->takes_view) return refuse("--view-from", kind, error);
-    if (figure->bodies[0] != figure->bodies[1] && !kind->takes_bodies) return refuse("--bodies", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
            error_input(error, "--moments", "cannot be combined with --at");
 }

@@ -128,7 +128,13 @@ static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownCont
     Segment leader;
     bool led;
     format_number(text, contact->size);
-    const LabelWish wish = {contact->at.x, contact->at.y, look->ring, crowded ? crowd : 0, farthest, type_width(text, points) + 0.25 * em, em,
+    const LabelWish wish = {contact->at.x,
+                            contact->at.y,
+                            look->ring,
+                            crowded ? crowd : 0,
+                            farthest,
+                            type_width(text, points) + 0.25 * em,
+                            em,
                             contact->at.x < middle};
     if (!place_number(look, contact, field, wish, &box, &leader, &led)) return false;
     const Pen thin = pen_line(ACCENT, 0.8, NULL);
@@ -141,7 +147,9 @@ static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownCont
 /* Another contact is so near that a number between them could belong to either. */
 static bool is_crowded(const ShownContact *contacts, int count, int contact) {
     for (int i = 0; i < count; i++)
-        if (i != contact && hypot(contacts[i].at.x - contacts[contact].at.x, contacts[i].at.y - contacts[contact].at.y) < crowd) return true;
+        if (i != contact &&
+            hypot(contacts[i].at.x - contacts[contact].at.x, contacts[i].at.y - contacts[contact].at.y) < crowd)
+            return true;
     return false;
 }
 

@@ -7,10 +7,11 @@
 #include "sketch/sketch_files.h"
 #include "trajectory/trajectory.h"
 
-enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60 };
+enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60, FIGURE_BODIES_MAX = 64 };
 
 #define FIGURE_WIDTH_MIN 40.0
 #define FIGURE_WIDTH_MAX 400.0
+#define FIGURE_HEIGHT_MIN 20.0
 #define FIGURE_HEIGHT_MAX 240.0 /* mm; higher figures are scaled down or refused */
 #define FIGURE_POINTS 8.0       /* font size */
 #define FIGURE_POINTS_MIN 5.0
@@ -19,6 +20,7 @@ enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60 };
 /* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
 typedef struct FigureSpec {
     double width, points, dpi; /* mm; font size; resolution of pictures */
+    double height;             /* mm; 0: the kind chooses */
     int run_count;
     const Trajectory *runs[FIGURE_RUNS_MAX];
     const char *paths[FIGURE_RUNS_MAX]; /* file names of the runs, for messages */
@@ -30,7 +32,8 @@ typedef struct FigureSpec {
     const char *network;                /* network: the file */
     CameraView view;                    /* the part of the world to show; width 0: that of `view_from` */
     const Trajectory *view_from;        /* the run whose bodies set the view; NULL: the first */
-    int bodies[2];                      /* narrow-phase: the pair; if equal, the kind chooses */
+    int body_count;                     /* 0: the kind chooses */
+    int bodies[FIGURE_BODIES_MAX];      /* narrow-phase: the pair; strip: those that must be in view */
     const Progress *progress;           /* of simulations run for the figure, or NULL */
 } FigureSpec;
 
@@ -38,7 +41,8 @@ typedef struct FigureKind {
     const char *name, *summary;
     const char *example;    /* arguments after `twinbox figure` */
     int min_runs, max_runs; /* 0, 0: takes a network's file instead */
-    bool takes_times, takes_moments, takes_scene, takes_bodies, takes_view;
+    bool takes_times, takes_moments, takes_scene, takes_height, takes_view;
+    int min_bodies, max_bodies; /* 0, 0: takes none */
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);

@@ -31,7 +31,7 @@ static double tilt(const Trajectory *run, int frame, int a, int b) {
 static int rate_pair(const FigureSpec *spec, int step, int a, int b, int points) {
     const Trajectory *run = spec->runs[0];
     const int *requested = spec->bodies;
-    if (requested[0] != requested[1])
+    if (spec->body_count > 0)
         return (requested[0] == a && requested[1] == b) || (requested[0] == b && requested[1] == a) ? SHOWS_ALL
                                                                                                     : SHOWS_NOTHING;
     if (run->fixed[a] || run->fixed[b]) return SHOWS_NOTHING;
@@ -62,7 +62,7 @@ static int find_pair(const FigureSpec *spec, int first, int end, Collision *coll
 
 static bool refuse_no_pair(const FigureSpec *spec, Error *error) {
     const char *when = spec->time_count > 0 ? " in that step" : "";
-    if (spec->bodies[0] != spec->bodies[1])
+    if (spec->body_count > 0)
         return error_input(error, spec->paths[0], "bodies %d and %d do not touch%s", spec->bodies[0], spec->bodies[1],
                            when);
     return error_input(error, spec->paths[0], "no two dynamic bodies touch%s", when);
@@ -168,6 +168,7 @@ const FigureKind figure_pair = {
     .min_runs = 1,
     .max_runs = 1,
     .takes_times = true,
-    .takes_bodies = true,
+    .min_bodies = 2,
+    .max_bodies = 2,
     .draw = draw,
 };

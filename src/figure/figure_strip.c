@@ -3,6 +3,7 @@
 #include "common/method_look.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
+#include "picture/extent.h"
 #include "picture/style.h"
 #include "sketch/type.h"
 
@@ -26,21 +27,49 @@ static double strip_height(const Strip *strip) {
     return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + gap) - gap;
 }
 
+static bool check_bodies(const FigureSpec *spec, Error *error) {
+    for (int i = 0; i < spec->body_count; i++)
+        if (spec->bodies[i] >= spec->runs[0]->bodies)
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               spec->runs[0]->bodies);
+    return true;
+}
+
+/* Where the bodies in question are in the first run, at these moments, with a body's room around them. */
+static WorldWindow window_of_bodies(const Strip *strip) {
+    const FigureSpec *spec = strip->spec;
+    const Trajectory *run = spec->runs[0];
+    Extent all = extent_empty;
+    double margin = 0.2; /* m, at least */
+    for (int i = 0; i < spec->body_count; i++) {
+        const Vec2 size = run->size[spec->bodies[i]];
+        for (int moment = 0; moment < strip->count; moment++)
+            extent_include(&all, run, strip->frames[moment], spec->bodies[i]);
+        if (!run->fixed[spec->bodies[i]]) margin = fmax(margin, fmin((double)size.x, (double)size.y) / 2);
+    }
+    if (extent_is_empty(&all)) return run_window(spec, strip->frames, strip->count);
+    return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,
+                         all.top - all.bottom + 2 * margin};
+}
+
 /* Cells beside names of this many lines. */
 static bool lay_out_beside(Strip *strip, int lines, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points);
     strip->left = (lines + 0.1) * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
     const double width = (spec->width - edge - strip->left - (strip->count - 1) * gap) / strip->count;
-    const double height =
-        (FIGURE_HEIGHT_MAX - strip->top - strip->foot - (spec->run_count - 1) * gap) / spec->run_count;
+    const double height = ((spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot -
+                           (spec->run_count - 1) * gap) /
+                          spec->run_count;
     const double least = 5;
     if (width < least || height < least)
         return error_input(error, "figure",
                            "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
                            "%g mm are needed",
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
-    const WorldWindow window = run_window(spec, strip->frames, strip->count);
+    WorldWindow window = run_window(spec, strip->frames, strip->count);
+    if (spec->body_count > 0) window = window_of_bodies(strip);
+    if (spec->height > 0) run_window_fill(&window, width / height);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
     const double used = strip->left + edge + strip->count * strip->cells.width + (strip->count - 1) * gap;
@@ -67,6 +96,16 @@ static Point cell_corner(const Strip *strip, int row, int column) {
                    strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + gap)};
 }
 
+/* Of the bodies in question: that others are cut off is meant. */
+static int count_outside(const Strip *strip, const Trajectory *run, int frame) {
+    const FigureSpec *spec = strip->spec;
+    if (spec->body_count == 0) return run_count_outside(run, frame, &strip->cells.window);
+    int count = 0;
+    for (int i = 0; i < spec->body_count; i++)
+        count += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], &strip->cells.window);
+    return count;
+}
+
 /* In the upper right corner of a cell, in as many words as it has room for. */
 static void draw_outside(const Strip *strip, Sketch *sketch, Point corner, int count) {
     const double points = 0.85 * strip->spec->points, margin = 0.8;
@@ -83,7 +122,7 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     const FigureSpec *spec = strip->spec;
     const Trajectory *run = spec->runs[row];
     const Point low = cell_corner(strip, row, column), high = {low.x + cells.width, low.y + cells.height};
-    const int frame = strip->frames[column], outside = run_count_outside(run, frame, &cells.window);
+    const int frame = strip->frames[column], outside = count_outside(strip, run, frame);
     if (!run_cells_draw(&cells, sketch, low, run, frame, strip->colours[row], error)) return false;
     sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
     if (outside > 0) draw_outside(strip, sketch, high, outside);
@@ -133,7 +172,7 @@ static void draw_texts(const Strip *strip, Sketch *sketch) {
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
     run_colours(spec, strip.colours);
-    bool done = run_check_worlds(spec, error) &&
+    bool done = run_check_worlds(spec, error) && check_bodies(spec, error) &&
                 run_frames(spec, DEFAULT_MOMENTS, 0, strip.frames, &strip.count, error) && lay_out(&strip, error);
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)
@@ -153,5 +192,8 @@ const FigureKind figure_strip = {
     .takes_times = true,
     .takes_view = true,
     .takes_moments = true,
+    .takes_height = true,
+    .min_bodies = 1,
+    .max_bodies = FIGURE_BODIES_MAX,
     .draw = draw,
 };

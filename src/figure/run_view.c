@@ -69,14 +69,22 @@ void run_window_widen(WorldWindow *window, double shape) {
     window->width += more;
 }
 
+void run_window_fill(WorldWindow *window, double shape) {
+    run_window_widen(window, shape);
+    window->height = fmax(window->height, window->width / shape);
+}
+
+bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window) {
+    if (!trajectory_has(run, frame, body)) return false;
+    const Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
+    return !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
+}
+
 int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window) {
     int count = 0;
-    for (int body = 0; body < run->bodies; body++) {
-        if (run->fixed[body] || !trajectory_has(run, frame, body)) continue;
-        Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
-        double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
-        count += !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
-    }
+    for (int body = 0; body < run->bodies; body++)
+        count += !run->fixed[body] && run_is_outside(run, frame, body, window);
     return count;
 }
 

@@ -23,7 +23,11 @@ WorldWindow run_window(const FigureSpec *spec, const int *frames, int count);
 /* Widens the window on both sides to this aspect ratio (width / height), if it is narrower. */
 void run_window_widen(WorldWindow *window, double shape);
 
-/* The number of dynamic bodies with their centre outside the window. */
+/* Widens the window on both sides, or raises its top, to this aspect ratio. */
+void run_window_fill(WorldWindow *window, double shape);
+
+/* Whether a body is there with its centre outside the window; and the number of such dynamic bodies. */
+bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window);
 int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window);
 
 /* Cells of equal size on the page that show a window of the world, and their renderer. */

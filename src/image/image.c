@@ -24,20 +24,19 @@ Image *image_create(int width, int height, Error *error) {
     return wrap(width, height, calloc((size_t)width * (size_t)height, 4), error);
 }
 
-/* In whole huge pages where the system has them: to provide a large picture in small ones takes longer than to fill it. */
-static uint8_t *allocate_large(size_t size) {
-    enum { HUGE_PAGE = 1 << 21 };
-    void *memory = NULL;
-    if (size < HUGE_PAGE) return malloc(size);
-    if (posix_memalign(&memory, HUGE_PAGE, size) != 0) return NULL;
-#ifdef MADV_HUGEPAGE
-    (void)madvise(memory, size / HUGE_PAGE * HUGE_PAGE, MADV_HUGEPAGE); /* without it, only time is lost */
-#endif
-    return memory;
+Image *image_create_unset(int width, int height, size_t further, Error *error) {
+    return wrap(width, height, malloc((size_t)width * (size_t)height * 4 + further), error);
 }
 
-Image *image_create_unset(int width, int height, size_t further, Error *error) {
-    return wrap(width, height, allocate_large((size_t)width * (size_t)height * 4 + further), error);
+/* The system provides all pages at once in half the time that it needs for one after another. */
+void image_provide(Image *image) {
+#ifdef MADV_POPULATE_WRITE
+    enum { PAGE = 1 << 12 };
+    size_t size = (size_t)image->width * (size_t)image->height * 4, skipped = -(uintptr_t)image->pixels % PAGE;
+    if (size > PAGE) (void)madvise(image->pixels + skipped, (size - skipped) / PAGE * PAGE, MADV_POPULATE_WRITE);
+#else
+    (void)image;
+#endif
 }
 
 void image_destroy(Image *image) {

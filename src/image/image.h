@@ -18,6 +18,9 @@ Image *image_create(int width, int height, Error *error);
 Image *image_create_unset(int width, int height, size_t further, Error *error);
 void image_destroy(Image *image);
 
+/* Prepares memory of image_create_unset() of which all will be used; without this, it is only slower. */
+void image_provide(Image *image);
+
 /* A tEXt/iTXt entry of a PNG. */
 typedef struct ImageText {
     const char *key, *value;

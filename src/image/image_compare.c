@@ -15,8 +15,6 @@ static int channel_difference(const Image *a, const Image *b, size_t i) {
 
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
     int largest = 0;
-    bool deep = a->pixels16 != NULL || b->pixels16 != NULL;
-    if (!deep && memcmp(a->pixels + 4 * pixel, b->pixels + 4 * pixel, 4) == 0) return 0;
     for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++) {
         int difference = channel_difference(a, b, i);
         if (difference > largest) largest = difference;
@@ -42,6 +40,17 @@ static bool equal_row(const Image *a, const Image *b, size_t first) {
            memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
 }
 
+/* The next pixel of a row, from x on, that may differ; `width` if there is none. */
+static size_t next_difference(const Image *a, const Image *b, size_t first, size_t x) {
+    enum { PART = 16 };
+    const uint8_t *p = a->pixels + 4 * first, *q = b->pixels + 4 * first;
+    size_t width = (size_t)a->width;
+    if (a->pixels16 != NULL || b->pixels16 != NULL || x >= width || memcmp(p + 4 * x, q + 4 * x, 4) != 0) return x;
+    while (x + PART <= width && memcmp(p + 4 * x, q + 4 * x, (size_t)4 * PART) == 0) x += PART;
+    while (x < width && memcmp(p + 4 * x, q + 4 * x, 4) == 0) x++;
+    return x;
+}
+
 static int64_t count_masked(const uint8_t *masked, size_t pixels) {
     int64_t count = 0;
     for (size_t i = 0; masked != NULL && i < pixels; i++) count += masked[i] == IGNORED_MASK;
@@ -58,7 +67,7 @@ void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked,
     for (int y = 0; y < a->height; y++) {
         size_t first = (size_t)y * width;
         if (equal_row(a, b, first)) continue;
-        for (size_t x = 0; x < width; x++) {
+        for (size_t x = next_difference(a, b, first, 0); x < width; x = next_difference(a, b, first, x + 1)) {
             int here = image_pixel_difference(a, b, first + x);
             Ignored ignored = masked == NULL ? IGNORED_NOT : (Ignored)masked[first + x];
             if (here > 0 && ignored == IGNORED_NOT) count_pixel(difference, (int)x, y, here, tolerance);

@@ -67,7 +67,7 @@ static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t
 /* Sample x of one channel; the first is in the highest bits of a byte. */
 static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
     size_t bit = x * depth;
-    return row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
+    return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
 }
 
 static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {

@@ -59,6 +59,7 @@ static bool expand(const Side *side, int y) {
 
 static bool decode(Side *side) {
     if (!start(side)) return false;
+    image_provide(side->image);
     for (int y = 0; y < side->image->height; y++)
         if (!next(side) || !unfilter(side, y) || !expand(side, y)) return false;
     return png_rows_end(&side->rows);
@@ -84,6 +85,12 @@ static void copy_rows(const Image *from, Image *to, int y, int count) {
     memcpy(pixels_of(to, y), pixels_of(from, y), (size_t)count * (size_t)from->width * 4);
 }
 
+/* The rows above are equal. */
+static void begin_second(const Image *first, Image *second, int y) {
+    image_provide(second);
+    copy_rows(first, second, 0, y);
+}
+
 /* Equal bytes below equal rows need no unfiltering. */
 static bool decode_rows(Pair *pair, int y) {
     Side *first = &pair->sides[0], *second = &pair->sides[1];
@@ -93,7 +100,7 @@ static bool decode_rows(Pair *pair, int y) {
     if (!unfilter(first, y) || (!same && !unfilter(second, y)) || !expand(first, y)) return false;
     if (same) second->row = first->row;
     pair->equal = same || memcmp(first->row, second->row, bytes) == 0;
-    if (pair->all_equal && !pair->equal) copy_rows(first->image, second->image, 0, y);
+    if (pair->all_equal && !pair->equal) begin_second(first->image, second->image, y);
     pair->all_equal = pair->all_equal && pair->equal;
     if (!pair->equal) return expand(second, y);
     if (!pair->all_equal) copy_rows(first->image, second->image, y, 1);
@@ -103,6 +110,7 @@ static bool decode_rows(Pair *pair, int y) {
 static bool decode_both(Pair *pair) {
     Side *first = &pair->sides[0], *second = &pair->sides[1];
     if (!png_same_layout(&first->rows.layout, &second->rows.layout) || !start(first) || !start(second)) return false;
+    image_provide(first->image);
     for (int y = 0; y < first->image->height; y++)
         if (!decode_rows(pair, y)) return false;
     return png_rows_end(&first->rows) && png_rows_end(&second->rows);

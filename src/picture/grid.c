@@ -6,9 +6,11 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double MIN_SPACING = 0.010; /* between thin lines / the panel's height */
-static const double MIN_PIXELS = 6;      /* the same, in pixels */
-static const double MAX_SPACING = 0.6;   /* between strong lines / the panel's height */
+static const double MIN_SPACING = 0.010;  /* between thin lines / the panel's height */
+static const double MIN_PIXELS = 6;       /* the same, in pixels */
+static const double MAX_SPACING = 0.6;    /* between strong lines / the panel's height */
+static const double NUMBER_SPACING = 2.5; /* ems between two lines that both have a number */
+enum { MIN_TICS = 3 };
 #define MINUS "\xE2\x88\x92"
 
 /* Thin lines every `step` metres; every `strong`-th line is strong and labelled. */
@@ -62,6 +64,13 @@ static double line_place(const Lines *lines, int i) { return lines->origin + (li
 static int line_pixel(const Lines *lines, int i) { return (int)rint(line_place(lines, i)); }
 
 static bool is_strong(const Lines *lines, int i, Steps steps) { return fmod(lines->first + i, steps.strong) == 0; }
+
+/* Strong lines have a tic and a number. Where fewer than three are in view, all lines have, if there is room. */
+static bool all_have_tics(const Picture *picture, const Lines *lines, Steps steps) {
+    int strong = 0;
+    for (int i = 0; i < lines->count; i++) strong += is_strong(lines, i, steps);
+    return strong < MIN_TICS && lines->spacing > NUMBER_SPACING * picture->layout.axis.pixels;
+}
 
 /* Lines at whole pixels are crisp, but with a moving camera they would jitter: `off` restores the fraction lost by
    rounding. */
@@ -117,8 +126,9 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
     int line = layout->hairline, baseline = rect->bottom + layout->axis_drop, gap = font->pixels / 2;
     int free_from = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
     font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
+    const bool all = all_have_tics(picture, &lines, steps);
     for (int i = 0; i < lines.count; i++) {
-        if (!is_strong(&lines, i, steps)) continue;
+        if (!all && !is_strong(&lines, i, steps)) continue;
         char text[32];
         format_metres(text, sizeof text, (lines.first + i) * steps.step);
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
@@ -134,8 +144,9 @@ static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *dr
     Steps steps = choose_steps(picture);
     Lines lines = horizontal_lines(picture, steps);
     int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a digit */
+    const bool all = all_have_tics(picture, &lines, steps);
     for (int i = 0; i < lines.count; i++) {
-        if (!is_strong(&lines, i, steps)) continue;
+        if (!all && !is_strong(&lines, i, steps)) continue;
         char text[32];
         format_metres(text, sizeof text, (lines.first + i) * steps.step);
         int y = rect->top - line_pixel(&lines, i);

@@ -48,6 +48,7 @@ typedef struct Reference {
     } kept[2];          /* interior points to go back to */
     double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
     int most;           /* factorizations that a solve may use */
+    double jammed;      /* m/s: the impulse over effective mass that ends a solve, as there is no solution */
     int left;           /* that this attempt may still use */
     double stiffest;    /* a contact resists by at most this times its effective mass */
     double best;        /* residual of the best answer, m/s */
@@ -82,8 +83,9 @@ bool reference_reserve(Reference *reference, const ContactProblem *problem);
    problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
 
-/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations. `residual` is
-   then the largest change by one more visit of a contact while all others stay. */
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), after about `most` factorizations, or when
+   impulses grow as they do where there is no solution. `residual` is then the largest change by one more visit of a
+   contact while all others stay. */
 bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, int most, Error *error);
 
 /* Stores the results of the last solve, in float: rounding may take a tangent impulse out of the friction cone. */

@@ -47,6 +47,18 @@ static double centre_step(Reference *r, double mean) {
     return length;
 }
 
+/* m/s, over effective masses. */
+static double largest_impulse(const Reference *r) {
+    Vec4 most = reference_all(0);
+    for (int i = 0; i < r->group_count; i++) {
+        const ReferenceGroup *g = &r->groups[i];
+        most = reference_larger(g->weight * g->now.l * g->inverse_normal, most);
+    }
+    double largest = 0;
+    for (int k = 0; k < REFERENCE_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
+    return largest;
+}
+
 static bool follow(Reference *r, int most, bool carefully) {
     const double good = 0.8, short_step = 0.1;
     const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
@@ -57,6 +69,10 @@ static bool follow(Reference *r, int most, bool carefully) {
         const double length = centre_step(r, mean);
         mean = mean_product(r);
         if (!(mean > 0) || isinf(mean)) break;
+        if (r->jammed < INFINITY && largest_impulse(r) > r->jammed) {
+            r->most = r->factorizations; /* no further attempt */
+            break;
+        }
         if (mean < near_end) answer(r);
         if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);

@@ -11,6 +11,7 @@ static const double FINEST = 1.0 / 256;  /* pixels; the last step of a search */
 static const double BAND_SHARE = 0.13;   /* first guess of a band's thickness / shorter side */
 static const double SEEN_TURN = 0.3;     /* pixels at the corners; a smaller turn is not certain */
 static const double CLEAR = 0.05;        /* what a clear explanation may leave of the squared difference */
+static const double ROUNDING = 1;        /* squared difference of a pixel that rounding of colours explains */
 static const double COLOUR_BETTER = 0.1; /* what colours may leave of a clear explanation's rest */
 static const double STEP_GAIN = 0.995;   /* what a step of a search may leave: smaller gains are noise */
 static const double MUCH_BETTER = 0.9;   /* what a longer movement may leave of a shorter one's rest */
@@ -221,11 +222,21 @@ static double total_of(const BoxModel *box, const FitPixels *pixels) {
     return sum;
 }
 
-/* Movement and line width have fewer parameters than colours: where one of them is clear, colours must explain far more. */
-static int choose(const double left[3], double total) {
+static int count_differing(const FitPixels *pixels) {
+    int count = 0;
+    for (int i = 0; i < pixels->count; i++) {
+        const double *d = pixels->list[i].difference;
+        count += d[0] != 0 || d[1] != 0 || d[2] != 0;
+    }
+    return count;
+}
+
+/* Movement and line width have fewer parameters than colours: where one of them is clear, colours must explain far more.
+   A line of one pixel that lies on the pixels becomes thinner exactly as it becomes paler: then it is the width. */
+static int choose(const double left[3], double total, int differing) {
     int best = left[1] < left[0] ? 1 : 0;
-    double better = left[best] < CLEAR * total ? COLOUR_BETTER : 1;
-    if (left[2] < better * left[best]) best = 2;
+    bool clear = left[best] < CLEAR * total, exact = clear && left[best] <= ROUNDING * differing;
+    if (left[2] < (clear ? COLOUR_BETTER : 1) * left[best] && !exact) best = 2;
     return left[best] < (1 - ACCEPTED) * total ? best : 3;
 }
 
@@ -247,7 +258,7 @@ BodyFit body_fit(const BoxModel *box, const FitPixels *pixels, const double (*st
     search.count = 2, search.apply = apply_look;
     left[1] = search_best(&search, line, 0.5, &to);
     left[2] = colours_left_over(&from, pixels, true, changed);
-    int best = choose(left, fit.total);
+    int best = choose(left, fit.total, count_differing(pixels));
     fit.kind = kinds[best];
     if (best < 3) fit.explained = fit.total - left[best];
     if (fit.kind != CHANGE_MOVED) return fit;

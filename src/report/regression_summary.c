@@ -68,6 +68,7 @@ static void write_head(FILE *out, const Regression *regression) {
     put_code(out, regression->sequences[ACTUAL]->folder);
     fprintf(out, ": %d of %d frames failed.\n\n", regression->failed, regression->count);
     write_items(out, regression_begin(regression).text);
+    for (int i = 0; i < regression->cause_count; i++) write_items(out, cause_words(&regression->causes[i]).text);
     write_items(out, regression_notes(regression).text);
     fputc('\n', out);
 }

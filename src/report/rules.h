@@ -20,6 +20,9 @@
 
 #define RULES_NAME "compare.yaml" /* in the expected folder */
 
+/* Of one file: each name is matched with each rule, and pictures stay in memory. */
+enum { RULES_MAX = 256, RULES_MAX_PICTURES = 64 };
+
 typedef struct Rules Rules;
 
 /* ERROR_INPUT, with line and column, for anything that is not a rule: unknown keys, values out of range, masks that

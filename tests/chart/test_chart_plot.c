@@ -3,6 +3,7 @@
 #include "python.h"
 
 #include "chart/chart_plot.h"
+#include "chart/first_line.h"
 
 #include "common/file.h"
 #include "chart/chart_data.h"
@@ -44,10 +45,14 @@ static void three_files_are_drawn(void **state) {
     assert_memory_equal(pdf, "%PDF-", 5);
     assert_true(size > 5000);
     free(pdf);
+    expect_first_line("pdfinfo", drawn_file("pyramid_settled", "pdf"),
+                      "Title:           Speed and accuracy: pyramid_settled, 40 launches");
     run_python(
         "import sys, xml.etree.ElementTree as tree\n"
         "root = tree.parse(sys.argv[1]).getroot()\n"
         "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
+        "assert root[0].text == 'Speed and accuracy: pyramid_settled, 40 launches', root[0].text\n"
+        "assert 'font/otf' in root[1].text and 'Arial' in root.findall('.//*[@font-family]')[0].get('font-family')\n"
         "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
         "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine:warm=off',\n"
         "               'momentum-schedule', 'playback', 'pair-net', 'Pareto front of solvers', 'k=100', 'm/s',\n"

@@ -72,6 +72,7 @@ system 0 gitlab
 cp project/expected/frame_000000.png project/expected/frame_000003.png
 system 1 github
 says "::error file=expected/frame_000003.png,title="
+grep -q '^- frame 3' summary.md || fail "no cause in the summary: $(cat summary.md)"
 grep -q '^| ` frame_000003.png ` ' summary.md || fail "no row in the summary: $(cat summary.md)"
 system 1 gitlab
 grep -qF '[[ATTACHMENT|actual/frame_000003.png]]' project/report/junit.xml || fail "no picture in junit.xml"

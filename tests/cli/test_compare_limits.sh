@@ -146,6 +146,7 @@ import base64, json, re, struct
 page = open("report/report.html").read()
 size = lambda kind: struct.unpack(">II", base64.b64decode(re.search('id="p0%s">([^<]*)<' % kind, page).group(1))[16:24])
 assert [size(kind) for kind in "eadf"] == [(50, 20), (40, 30), (50, 30), (40, 20)]
+assert re.search('<path class="largest" d="M', page), "the plot lacks the overlap"
 frame = json.load(open("report/results.json"))["frames"][0]
 assert (frame["differing"], frame["counted"], frame["box"]) == (10, 800, [3, 3, 13, 4]) and frame["flip"] > 0
 PYTHON

@@ -44,7 +44,7 @@ for layout in "$sources"/golden/figures/layout/*.svg; do
 done
 # Bytes of every kind in every format: equal on Debian 12 and 13.
 equal "figures with other bytes" "$(diff "$sources/golden/figures/figures.sha256" page/figures.sha256)" ""
-equal "files hashed" "$(wc -l <page/figures.sha256)" 18
+equal "files hashed" "$(wc -l <page/figures.sha256)" 21
 cmp -s "$sources/golden/figures/README.md" page/README.md || fail "golden/figures/README.md is not what golden/figures/draw writes"
 
 /usr/bin/python3 - <<'PYTHON' || fail "an SVG is not XML"
@@ -64,6 +64,9 @@ run 0 figure strip engine.npz -o clear.png --transparent --dpi 100
 pngcheck clear.png | grep -q 'RGB+alpha' || fail "$(pngcheck clear.png)"
 run 0 figure strip engine.npz -o large.png --font-size 12 --width 120.5 --dpi 150
 pngcheck large.png | grep -q '(712x' || fail "$(pngcheck large.png)"
+run 0 figure strip engine.npz momentum.npz -o flat.png --at 0.5,0.6,0.9 --height 60 --bodies 1,2,3,11 --dpi 127
+says "strip, 174.0 x 60.0 mm"
+pngcheck flat.png | grep -q '(870x300,' || fail "$(pngcheck flat.png)"
 run 0 figure strip engine.npz -o outlines.svg --outlines
 grep -q '<text\|font-f' outlines.svg && fail "outlines with a font"
 grep -q 'aria-label="engine"' outlines.svg || fail "outlines without names"
@@ -112,8 +115,13 @@ refused "--moments: error: cannot be combined with --at" strip engine.npz -o a.p
 refused "engine.npz: error: has no moment at 2 s; its moments are 0 to 1 s" strip engine.npz -o a.png --at 2
 refused "--scene: error: does not apply to the kind strip" strip engine.npz -o a.png --scene "$scenes/stack.yaml"
 refused "--bodies: error: does not apply to the kind strobe" strobe engine.npz -o a.png --bodies 1,2
-refused "--bodies: error: '1' is not a pair" narrow-phase engine.npz -o a.png --bodies 1
-refused "--bodies: error: '1,1' is not a pair" narrow-phase engine.npz -o a.png --bodies 1,1
+refused "--bodies: error: narrow-phase takes 2 to 2 bodies (got 1)" narrow-phase engine.npz -o a.png --bodies 1
+refused "--bodies: error: narrow-phase takes 2 to 2 bodies (got 3)" narrow-phase engine.npz -o a.png --bodies 1,2,3
+refused "--bodies: error: '1,' is not a list of different bodies" strip engine.npz -o a.png --bodies 1,
+refused "there is no body 99" strip engine.npz -o a.png --bodies 1,99
+refused "--height: error: '19'" strip engine.npz -o a.png --height 19
+refused "--height: error: does not apply to the kind strobe" strobe engine.npz -o a.png --height 50
+refused "--bodies: error: '1,1' is not a list of different bodies" narrow-phase engine.npz -o a.png --bodies 1,1
 refused "there is no body 99" narrow-phase engine.npz -o a.png --bodies 1,99
 refused "cannot be shown beside engine.npz: bodies: 12 and 3" strip engine.npz "$sources/golden/trajectories/single-engine.npz" -o a.png
 refused "never diverges from engine.npz" divergence engine.npz engine.npz -o a.png

@@ -94,7 +94,7 @@ static void what_cannot_be_shown_is_refused(void **state) {
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");
     spec = spec_of(&run, 1);
-    spec.bodies[0] = 2, spec.bodies[1] = 3;
+    spec.body_count = 2, spec.bodies[0] = 2, spec.bodies[1] = 3;
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: bodies 2 and 3 do not touch");
     spec.bodies[1] = 44;
     expect_kind_refused("narrow-phase", &spec, "there is no body 44; the run has 4");

@@ -67,6 +67,45 @@ static void the_window_holds_what_moves(void **state) {
     trajectory_destroy(run);
 }
 
+/* A page of a given height: its cells fill it, and the window is wider than the bodies. */
+static void a_given_height_is_filled(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 3), run_make("engine", 3)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 3, spec.height = 60;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const double pixel = 25.4 / spec.dpi;
+    assert_near(sketch.height, 60, 2 * pixel);
+    const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0), *last = nth_mark(&sketch, MARK_IMAGE, 2);
+    assert_true(last->at.x + last->width > sketch.width - 1);
+    assert_true(first->image->width > first->image->height);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+/* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
+static void the_bodies_in_question_set_the_window(void **state) {
+    (void)state;
+    Trajectory *run = run_make("engine", 3);
+    *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 1; /* the last */
+    spec.body_count = 1, spec.bodies[0] = FIRST_BOX;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const SketchMark *cell = nth_mark(&sketch, MARK_IMAGE, 0);
+    const double side = (double)run->size[FIRST_BOX].x, up = (double)run->size[FIRST_BOX].y;
+    const double margin = fmin(side, up) / 2;
+    assert_near((double)cell->image->height / cell->image->width, (up + 2 * margin) / (side + 2 * margin), 0.01);
+    assert_int_equal(count_texts(&sketch, "1 out of view"), 0); /* the second box is not in question */
+    sketch_free(&sketch);
+    spec.body_count = 1, spec.bodies[0] = run->bodies;
+    expect_kind_refused("strip", &spec, "--bodies: error: there is no body");
+    trajectory_destroy(run);
+}
+
 static void who_has_left_is_counted(void **state) {
     (void)state;
     Trajectory *runs[] = {run_make("engine", 3), run_make("pair-net", 3)};
@@ -151,6 +190,8 @@ int main(void) {
         cmocka_unit_test(every_run_has_a_row_and_every_moment_a_column),
         cmocka_unit_test(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run),
         cmocka_unit_test(the_window_holds_what_moves),
+        cmocka_unit_test(a_given_height_is_filled),
+        cmocka_unit_test(the_bodies_in_question_set_the_window),
         cmocka_unit_test(who_has_left_is_counted),
         cmocka_unit_test(the_name_of_a_method_never_disappears),
         cmocka_unit_test(long_settings_are_cut_to_their_row),

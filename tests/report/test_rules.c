@@ -57,6 +57,32 @@ static void mistakes_are_refused_with_their_place(void **state) {
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) expect_refused(table[i].text, table[i].message);
 }
 
+/* Rules, and pictures of masks. */
+static void numbers_of_rules_are_limited(void **state) {
+    (void)state;
+    enum { ROOM = 64 };
+    Error error;
+    static char many[(RULES_MAX + 2) * ROOM];
+    const Image dot = {1, 1, (uint8_t[]){9, 9, 9, 255}, NULL};
+    assert_ok(image_write_png(&dot, temporary_path("dot.png"), NULL, 0, &error), error);
+    for (int over = 0; over <= 1; over++) {
+        size_t used = (size_t)sprintf(many, "rules:\n");
+        for (int i = 0; i < RULES_MAX + over; i++)
+            used += (size_t)sprintf(many + used, "- {files: a, tolerance: %d}\n", i % 256);
+        Rules *rules = over == 0 ? read_text(many, &error) : NULL;
+        if (over == 0) assert_ok(rules != NULL, error);
+        if (over == 1) expect_refused(many, ":2:1: error: at most 256 rules (got 257)");
+        rules_destroy(rules);
+        used = (size_t)sprintf(many, "rules:\n");
+        for (int i = 0; i < RULES_MAX_PICTURES + over; i++)
+            used += (size_t)sprintf(many + used, "- {files: a, masks: [{picture: dot.png}]}\n");
+        rules = over == 0 ? read_text(many, &error) : NULL;
+        if (over == 0) assert_ok(rules != NULL, error);
+        if (over == 1) expect_refused(many, ":66:32: error: a file of rules must have at most 64 pictures");
+        rules_destroy(rules);
+    }
+}
+
 static const char text[] = "rules:\n"
                            "  - {files: \"*\", tolerance: 2, beyond: 0.5, antialias: on}\n"
                            "  - files: \"sub/*\"\n"
@@ -157,6 +183,7 @@ static void limits_of_flip_are_parsed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_are_refused_with_their_place),
+        cmocka_unit_test(numbers_of_rules_are_limited),
         cmocka_unit_test(later_rules_replace_limits),
         cmocka_unit_test(all_masks_count),
         cmocka_unit_test(a_rule_without_files_is_refused),

@@ -4,7 +4,7 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const get = id => document.getElementById(id);
 const MODES = ["expected", "actual", "difference", "flip", "swipe", "blink", "onion", "side"];
 const KINDS = {expected: "e", actual: "a", difference: "d", flip: "f"};
-const MOST_ROWS = 2000, BLINK = 600, GAP = 8;
+const MOST_ROWS = 2000, BLINK = 600, GAP = 8, NUMBER = 24; /* pixels: between two pictures; for a number above a mark */
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 
 let all = false, listed = [], at = -1, mode = "swipe", wanted = "swipe", zoom = "fit", blend = 50, order = "name";
@@ -78,7 +78,7 @@ function mark({box}, i, width, height, {scale, right, down}) {
   const margin = 6, places = right + down > 0 ? [[0, 0], [right, down]] : [[0, 0]];
   for (const [x, y] of places) {
     const outline = document.createElement("div");
-    outline.className = "ring";
+    outline.className = box[1] * scale < NUMBER ? "ring low" : "ring";
     if (regions().length > 1) outline.dataset.number = i + 1;
     outline.style.left = box[0] * scale - margin + x + "px";
     outline.style.top = box[1] * scale - margin + y + "px";
