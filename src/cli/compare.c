@@ -75,8 +75,8 @@ static bool annotate(const CompareOptions *options, const Regression *regression
 }
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {
-    const RegressionOptions compared = {.max_difference = options->max_difference,
-                                        .max_share = options->max_share,
+    const RegressionOptions compared = {.tolerance = options->tolerance,
+                                        .rules = options->rules,
                                         .mask = &options->mask,
                                         .max_pixels = options->max_pixels,
                                         .flat = options->flat,
@@ -99,9 +99,10 @@ static bool compare_inputs(const CompareOptions *options, Error *error) {
     if (first != second)
         return error_input(error, options->paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is",
                            options->paths[first ? 0 : 1]);
-    if (first && (options->report != NULL || options->fuzzy || options->mask.count > 0 || options->annotations != 0))
+    bool limits = options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0;
+    if (first && (options->report != NULL || limits || options->annotations != 0))
         return error_input(error, options->paths[0],
-                           "--report, --annotations, --fuzzy and --mask apply to pictures only");
+                           "--report, --annotations, --rules, masks and tolerances apply to pictures only");
     return first ? compare_trajectories(options->paths, error) : compare_pictures(options, error);
 }
 

@@ -3,12 +3,13 @@
 
 #include "cli/options.h"
 #include "report/regression_report.h"
+#include "report/rules.h"
 
 #include <limits.h>
 #include <string.h>
 #include <strings.h>
 
-static OptionRead read_fuzzy, read_mask;
+static OptionRead read_fuzzy, read_tolerance, read_beyond, read_flip, read_antialias, read_mask;
 
 static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
 static const char *const metadata_kinds[] = {"report", "strict", NULL};
@@ -17,7 +18,19 @@ static const Option option_table[] = {
     {"--fuzzy", 0, "MAX,SHARE",
      "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
      "pixels differs",
-     .read = read_fuzzy},
+     OPTION_READ(read_fuzzy, CompareOptions, tolerance)},
+    {"--tolerance", 0, "MAX", "Ignore pixels in which no channel differs by more than MAX (0 to 255)",
+     OPTION_READ(read_tolerance, CompareOptions, tolerance)},
+    {"--beyond", 0, "SHARE", "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than that",
+     OPTION_READ(read_beyond, CompareOptions, tolerance)},
+    {"--flip", 0, "[p99=]MAX",
+     "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated)",
+     OPTION_READ(read_flip, CompareOptions, tolerance)},
+    {"--antialias", 0, NULL, "Ignore pixels along edges that moved by a part of a pixel, or were sampled otherwise",
+     OPTION_READ(read_antialias, CompareOptions, tolerance)},
+    {"--rules", 0, "FILE",
+     "Limits and masks for files of certain names (default: " RULES_NAME " in EXPECTED, if it is there)",
+     OPTION_TEXT(CompareOptions, rules)},
     {"--mask", 0, "FILE.png|X,Y,W,H",
      "Pixels to ignore: where this picture is neither black nor transparent, or a rectangle (may be repeated)",
      OPTION_READ(read_mask, CompareOptions, mask)},
@@ -83,19 +96,54 @@ static bool read_mask(const Option *option, const char *text, void *value, Error
     return error_input(error, option->name, "'%s' is neither a PNG file nor X,Y,W,H with W and H from 1", text);
 }
 
+static bool parse_share(const char *text, double *share) {
+    return parse_double(text, share) && *share >= 0 && *share <= 1;
+}
+
 static bool read_fuzzy(const Option *option, const char *text, void *value, Error *error) {
-    CompareOptions *options = value;
+    Tolerance *tolerance = value;
     const char *comma = strchr(text, ',');
     char largest[8] = "";
     int64_t difference;
     double share;
     if (comma != NULL && comma - text < (int)sizeof largest) memcpy(largest, text, (size_t)(comma - text));
-    if (!parse_int(largest, 0, 255, &difference) || !parse_double(comma + 1, &share) || share < 0 || share > 1)
+    if (!parse_int(largest, 0, 255, &difference) || !parse_share(comma + 1, &share))
         return error_input(error, option->name, "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE from 0 to 1",
                            text);
-    options->fuzzy = true;
-    options->max_difference = (int)difference;
-    options->max_share = share;
+    tolerance->given |= LIMIT_FUZZY;
+    tolerance->fuzzy = (int)difference;
+    tolerance->share = share;
+    return true;
+}
+
+static bool read_tolerance(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    int64_t difference;
+    if (!parse_int(text, 0, 255, &difference))
+        return error_input(error, option->name, "'%s' is not a whole number from 0 to 255", text);
+    tolerance->given |= LIMIT_TOLERANCE;
+    tolerance->tolerance = (int)difference;
+    return true;
+}
+
+static bool read_beyond(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    if (!parse_share(text, &tolerance->beyond))
+        return error_input(error, option->name, "'%s' is not a share from 0 to 1", text);
+    tolerance->given |= LIMIT_BEYOND;
+    return true;
+}
+
+static bool read_flip(const Option *option, const char *text, void *value, Error *error) {
+    return tolerance_parse_flip(value, text) ||
+           error_input(error, option->name, "'%s' is not MAX, mean=MAX or p99=MAX with MAX from 0 to 1", text);
+}
+
+static bool read_antialias(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    (void)option, (void)text, (void)error;
+    tolerance->given |= LIMIT_ANTIALIAS;
+    tolerance->antialias = true;
     return true;
 }
 

@@ -2,6 +2,7 @@
 /* The options of twinbox compare. */
 #pragma once
 #include "image/mask.h"
+#include "report/tolerance.h"
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
 typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
@@ -9,10 +10,9 @@ typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadat
 typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
-    bool fuzzy;         /* given, then: */
-    int max_difference; /* of a channel */
-    double max_share;   /* of the pixels */
     int max_pixels;
+    Tolerance tolerance;
+    const char *rules; /* a file; NULL: not given */
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */

@@ -7,6 +7,7 @@
 #include "common/file.h"
 #include "common/folder.h"
 #include "common/hash.h"
+#include "report/rules.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -19,7 +20,8 @@ enum { LOOK_EVERY = 250 /* ms */, STILL = 2 /* looks */ };
 
 static bool is_watched(const char *name) {
     const char *ending = strrchr(name, '.');
-    return ending != NULL && (strcasecmp(ending, ".png") == 0 || strcasecmp(ending, ".npz") == 0);
+    return ending != NULL && (strcasecmp(ending, ".png") == 0 || strcasecmp(ending, ".npz") == 0 ||
+                              strcmp(name + file_folder_length(name), RULES_NAME) == 0);
 }
 
 /* The time of the last change of the inode shows replaced files whose other times were kept. */
@@ -49,9 +51,10 @@ static uint64_t hash_folder(const char *folder) {
 }
 
 static uint64_t hash_inputs(const CompareOptions *options) {
-    uint64_t hashes[2] = {0, 0};
+    uint64_t hashes[3] = {0, 0, 0};
+    struct stat status;
+    if (options->rules != NULL && stat(options->rules, &status) == 0) hashes[2] = hash_file(options->rules, &status);
     for (int i = 0; i < 2; i++) {
-        struct stat status;
         if (stat(options->paths[i], &status) != 0) continue;
         hashes[i] =
             1 + (S_ISDIR(status.st_mode) ? hash_folder(options->paths[i]) : hash_file(options->paths[i], &status));

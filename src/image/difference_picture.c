@@ -2,6 +2,7 @@
 #include "image/difference_picture.h"
 
 #include "image/image_compare.h"
+#include "image/mask.h"
 
 #include <string.h>
 
@@ -27,13 +28,17 @@ static void add_gradient(Palette *palette, const Stop *stops, int count) {
     }
 }
 
-/* Greys in the upper fifth of the scale, the hatch, and the gradient. */
-enum { PALEST = 200, PALE = 56, HATCHED = PALE, GRADIENT, STEPS = 256 - GRADIENT, HATCH_GREY = 120, HATCH = 8 };
+/* Greys in the upper fifth of the scale, the hatch, ignored edges, the stripes beyond both pictures, and the gradient. */
+enum { PALEST = 200, PALE = 56, HATCHED = PALE, EDGE, BEYOND, GRADIENT, STEPS = 256 - GRADIENT };
+enum { HATCH_GREY = 120, HATCH = 8 };
+static const uint8_t edge_color[3] = {70, 150, 235}, beyond_color[3] = {150, 120, 175};
 
 static void make_difference_palette(Palette *palette) {
     palette->count = 0;
     for (int i = 0; i < PALE; i++) memset(palette->rgb[palette->count++], PALEST + i, 3);
     memset(palette->rgb[palette->count++], HATCH_GREY, 3);
+    memcpy(palette->rgb[palette->count++], edge_color, sizeof edge_color);
+    memcpy(palette->rgb[palette->count++], beyond_color, sizeof beyond_color);
     add_gradient(palette, differences, STEPS);
 }
 
@@ -54,7 +59,10 @@ static void draw_row(const Image *expected, const Image *actual, int y, const ui
         size_t i = first + (size_t)x;
         if (x == 0 || memcmp(p, p - 4, 4) != 0) grey = pale(p);
         row[x] = grey;
-        if (masked != NULL && masked[i] != 0) {
+        Ignored ignored = masked != NULL ? (Ignored)masked[i] : IGNORED_NOT;
+        if (ignored == IGNORED_EDGE) {
+            row[x] = EDGE;
+        } else if (ignored == IGNORED_MASK) {
             if ((x + y) % HATCH == 0) row[x] = HATCHED;
         } else if (deep || memcmp(p, q, 4) != 0) {
             int difference = image_pixel_difference(expected, actual, i);
@@ -63,15 +71,21 @@ static void draw_row(const Image *expected, const Image *actual, int y, const ui
     }
 }
 
-uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, size_t *size,
-                            Error *error) {
+static void draw_beyond(int first, int width, int y, uint8_t *row) {
+    for (int x = first; x < width; x++) row[x] = (x + y) / (HATCH / 2) % 2 == 0 ? BEYOND : PALE - 1;
+}
+
+uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, int width, int height,
+                            size_t *size, Error *error) {
     Palette palette;
     make_difference_palette(&palette);
-    IndexedPng *png = indexed_png_create(expected->width, expected->height, &palette, error);
+    IndexedPng *png = indexed_png_create(width, height, &palette, error);
     uint8_t *file = NULL;
     bool ok = png != NULL;
-    for (int y = 0; ok && y < expected->height; y++) {
-        draw_row(expected, actual, y, masked, indexed_png_row(png));
+    for (int y = 0; ok && y < height; y++) {
+        bool inside = y < expected->height;
+        if (inside) draw_row(expected, actual, y, masked, indexed_png_row(png));
+        draw_beyond(inside ? expected->width : 0, width, y, indexed_png_row(png));
         ok = indexed_png_add(png, error);
     }
     if (ok) file = indexed_png_end(png, size, error);

@@ -11,59 +11,73 @@ static bool add(Mask *mask, MaskPart part, Error *error) {
 }
 
 bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *error) {
-    return add(mask, (MaskPart){x, y, width, height, NULL, NULL}, error);
+    return add(mask, (MaskPart){.kind = MASK_RECTANGLE, .x = x, .y = y, .width = width, .height = height}, error);
 }
 
 bool mask_add_picture(Mask *mask, const char *path, Error *error) {
-    Image *picture = image_read_png(path, error);
-    if (picture == NULL) return false;
-    if (add(mask, (MaskPart){.picture = picture, .path = path}, error)) return true;
-    image_destroy(picture);
+    MaskPart part = {.kind = MASK_PICTURE, .picture = image_read_png(path, error)};
+    if (part.picture == NULL) return false;
+    part.path = strdup(path);
+    if (part.path == NULL ? error_memory(error, path) : add(mask, part, error)) return true;
+    image_destroy(part.picture);
+    free(part.path);
     return false;
 }
 
+bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error) {
+    return add(mask, (MaskPart){.kind = MASK_COLOR, .color = {color[0], color[1], color[2]}}, error);
+}
+
 void mask_free(Mask *mask) {
-    for (int i = 0; i < mask->count; i++) image_destroy(mask->parts[i].picture);
+    for (int i = 0; i < mask->count; i++) {
+        image_destroy(mask->parts[i].picture);
+        free(mask->parts[i].path);
+    }
     mask->count = 0;
 }
 
-static void mark_picture(const Image *picture, uint8_t *masked) {
-    size_t pixels = (size_t)picture->width * (size_t)picture->height;
-    for (size_t i = 0; i < pixels; i++) {
+static size_t pixel_count(const Image *image) { return (size_t)image->width * (size_t)image->height; }
+
+static void draw_picture(const Image *picture, uint8_t *masked) {
+    for (size_t i = 0; i < pixel_count(picture); i++) {
         const uint8_t *p = picture->pixels + 4 * i;
-        if (p[3] > 0 && (p[0] | p[1] | p[2]) != 0) masked[i] = 1;
+        if (p[3] > 0 && (p[0] | p[1] | p[2]) != 0) masked[i] = IGNORED_MASK;
+    }
+}
+
+static void draw_color(const uint8_t color[3], const Image *expected, uint8_t *masked) {
+    for (size_t i = 0; i < pixel_count(expected); i++) {
+        const uint8_t *p = expected->pixels + 4 * i;
+        if (p[0] == color[0] && p[1] == color[1] && p[2] == color[2] && p[3] == 255) masked[i] = IGNORED_MASK;
     }
 }
 
 static int64_t clamp(int64_t value, int64_t largest) { return value < 0 ? 0 : value > largest ? largest : value; }
 
-static void mark_rectangle(const MaskPart *part, int width, int height, uint8_t *masked) {
+static void draw_rectangle(const MaskPart *part, int width, int height, uint8_t *masked) {
     size_t left = (size_t)clamp(part->x, width), right = (size_t)clamp((int64_t)part->x + part->width, width);
     size_t top = (size_t)clamp(part->y, height), bottom = (size_t)clamp((int64_t)part->y + part->height, height);
-    for (size_t y = top; y < bottom; y++) memset(masked + y * (size_t)width + left, 1, right - left);
+    for (size_t y = top; y < bottom; y++) memset(masked + y * (size_t)width + left, IGNORED_MASK, right - left);
 }
 
-uint8_t *mask_make(const Mask *mask, int width, int height, const char *path, Error *error) {
-    uint8_t *masked = calloc((size_t)width * (size_t)height, 1);
-    if (masked == NULL) error_memory(error, path);
-    for (int i = 0; masked != NULL && i < mask->count; i++) {
+bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_t *masked, Error *error) {
+    int width = expected->width, height = expected->height;
+    for (int i = 0; i < mask->count; i++) {
         const MaskPart *part = &mask->parts[i];
-        if (part->picture == NULL)
-            mark_rectangle(part, width, height, masked);
-        else if (part->picture->width == width && part->picture->height == height)
-            mark_picture(part->picture, masked);
-        else {
-            error_input(error, part->path, "the mask has %d x %d pixels, but %s has %d x %d", part->picture->width,
-                        part->picture->height, path, width, height);
-            free(masked);
-            return NULL;
+        switch (part->kind) {
+        case MASK_RECTANGLE: draw_rectangle(part, width, height, masked); break;
+        case MASK_COLOR: draw_color(part->color, expected, masked); break;
+        case MASK_PICTURE:
+            if (part->picture->width != width || part->picture->height != height)
+                return error_input(error, part->path, "the mask has %d x %d pixels, but %s has %d x %d",
+                                   part->picture->width, part->picture->height, path, width, height);
+            draw_picture(part->picture, masked);
         }
     }
-    return masked;
+    return true;
 }
 
 void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked) {
-    size_t pixels = (size_t)expected->width * (size_t)expected->height;
-    for (size_t i = 0; masked != NULL && i < pixels; i++)
-        if (masked[i] != 0) memcpy(actual->pixels + 4 * i, expected->pixels + 4 * i, 4);
+    for (size_t i = 0; masked != NULL && i < pixel_count(expected); i++)
+        if (masked[i] != IGNORED_NOT) memcpy(actual->pixels + 4 * i, expected->pixels + 4 * i, 4);
 }

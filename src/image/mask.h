@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pixels that a comparison ignores: rectangles and pictures. A picture masks where it is neither black nor
-   transparent. */
+/* Pixels that a comparison ignores: rectangles, pictures and colours. */
 #pragma once
 #include "image/image.h"
 
 enum { MASK_PARTS = 64 };
 
+typedef enum MaskKind { MASK_RECTANGLE, MASK_PICTURE, MASK_COLOR } MaskKind;
+
 typedef struct MaskPart {
-    int x, y, width, height; /* a rectangle, which may extend beyond the edges */
-    Image *picture;          /* or NULL */
-    const char *path;        /* of the picture; not owned */
+    MaskKind kind;
+    int x, y, width, height; /* of a rectangle, which may extend beyond the edges */
+    Image *picture;          /* masks where it is neither black nor transparent */
+    char *path;              /* of the picture */
+    uint8_t color[3];        /* masks opaque pixels that have this colour in the expected picture */
 } MaskPart;
 
 typedef struct Mask {
@@ -20,11 +23,15 @@ typedef struct Mask {
 /* ERROR_INPUT for more than MASK_PARTS parts or an unreadable picture. */
 bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *error);
 bool mask_add_picture(Mask *mask, const char *path, Error *error);
+bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error);
 void mask_free(Mask *mask);
 
-/* The mask [height, width], 1 where masked; malloc'ed. ERROR_INPUT if a picture has another size; `path` names the
-   frame in the message. */
-uint8_t *mask_make(const Mask *mask, int width, int height, const char *path, Error *error);
+/* What a byte of masked[height, width] tells of its pixel. Pixels that are not IGNORED_NOT are ignored. */
+typedef enum Ignored { IGNORED_NOT, IGNORED_MASK, IGNORED_EDGE /* image/antialias.h */ } Ignored;
 
-/* Copies the masked pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */
+/* Sets the masked bytes to IGNORED_MASK. ERROR_INPUT if a picture has another size than the expected picture; `path`
+   names that one in the message. */
+bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_t *masked, Error *error);
+
+/* Copies the ignored pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */
 void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked);

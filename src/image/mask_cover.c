@@ -9,11 +9,10 @@ static double rectangle_area(const MaskPart *part, double width, double height) 
     return (right - left) * (bottom - top);
 }
 
-bool mask_may_cover(const Mask *mask, int width, int height) {
+double mask_most_hidden(const Mask *mask, int width, int height) {
     double area = 0;
-    for (int i = 0; i < mask->count; i++) {
-        if (mask->parts[i].picture != NULL) return true;
-        area += rectangle_area(&mask->parts[i], width, height);
-    }
-    return area >= (double)width * height;
+    for (int i = 0; i < mask->count; i++)
+        area += mask->parts[i].kind == MASK_RECTANGLE ? rectangle_area(&mask->parts[i], width, height)
+                                                      : (double)width * height;
+    return area;
 }

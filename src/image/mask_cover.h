@@ -3,6 +3,6 @@
 #pragma once
 #include "image/mask.h"
 
-/* Whether a mask could hide all pixels of a picture of this size, or not fit to it. An upper bound that costs no pass over
-   pixels: false is certain, true is not. */
-bool mask_may_cover(const Mask *mask, int width, int height);
+/* How many pixels of a picture of this size the mask hides at most, or all if it may not fit to it. An upper bound that
+   costs no pass over pixels. */
+double mask_most_hidden(const Mask *mask, int width, int height);

@@ -4,8 +4,8 @@
 #include "common/lfs_pointer.h"
 #include "image/png_chunk.h"
 
+#include <libdeflate.h>
 #include <limits.h>
-#include <zlib.h>
 
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error) {
     static const uint8_t signature[PNG_SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
@@ -105,7 +105,7 @@ static bool check_checksum(const State *state, const PngChunk *chunk, size_t at)
             return error_input(state->error, state->path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
     }
     uint32_t stored = png_number(chunk->data + chunk->length);
-    return crc32_z(0, chunk->type, chunk->length + 4) == stored ||
+    return libdeflate_crc32(0, chunk->type, chunk->length + 4) == stored ||
            error_input(state->error, state->path,
                        "not a PNG file, or damaged: wrong checksum of the chunk %.4s at byte %zu",
                        (const char *)chunk->type, at);

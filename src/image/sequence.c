@@ -126,6 +126,8 @@ ImageSequence *image_sequence_open(const char *path, bool recursive, Error *erro
         error_memory(error, path);
         return NULL;
     }
+    sequence->device = status.st_dev;
+    sequence->inode = status.st_ino;
     sequence->single = !S_ISDIR(status.st_mode);
     sequence->folder = folder_of(path, sequence->single);
     if (sequence->folder == NULL) error_memory(error, path);

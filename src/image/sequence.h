@@ -19,8 +19,9 @@ typedef struct SequenceFrame {
 } SequenceFrame;
 
 typedef struct ImageSequence {
-    char *folder; /* "." for a bare file name */
-    bool single;  /* one file, not a folder */
+    uint64_t device, inode; /* of the file or folder */
+    char *folder;           /* "." for a bare file name */
+    bool single;            /* one file, not a folder */
     int count;
     SequenceFrame *frames; /* [count], sorted by folder, stem, number, name */
     int skipped;           /* pictures in subfolders that were not to be read */

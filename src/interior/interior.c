@@ -43,10 +43,8 @@ double interior_begin(Interior *s, const InteriorRule *rule, double least_scale)
     return s->first_target = rule->first * scale * scale;
 }
 
-/* Impulses are stored in float. Between jammed bodies they can grow without an effect on velocities, until their rounding
-   makes velocities of `rounded` (m/s). */
 static bool is_jammed(const Interior *s) {
-    const double rounded = 0.1, largest = rounded * 0x1p24; /* of impulse / effective mass */
+    const double largest = interior_impulse_max;
     bool jammed = false;
     for (int i = 0; i < s->group_count; i++) {
         const Vec4 speed = s->groups[i].answer_normal * s->groups[i].inverse_normal;

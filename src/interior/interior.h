@@ -133,6 +133,10 @@ typedef struct InteriorRule {
         follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
 } InteriorRule;
 
+/* m/s, of impulse / effective mass. Impulses are stored in float. Between jammed bodies they can grow without an effect on
+   velocities, until their rounding makes velocities of 0.1 m/s. */
+static const double interior_impulse_max = 0.1 * 0x1p24;
+
 extern const InteriorRule interior_quick, interior_gentle;
 
 /* A part of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first tau^2. */

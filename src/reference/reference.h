@@ -45,14 +45,16 @@ typedef struct Reference {
         ReferencePoint *points;
         Vec4 *moved;
         double log_target;
-    } kept[2];        /* interior points to go back to */
-    int left;         /* factorizations that this attempt may still use */
-    double stiffest;  /* a contact resists by at most this times its effective mass */
-    double best;      /* residual of the best answer, m/s */
-    int32_t *bodies;  /* [lu.count] */
-    int32_t *nodes;   /* [body_count] -1 for bodies without contact */
-    BlockEdge *edges; /* [pair_count] */
-    int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
+    } kept[2];          /* interior points to go back to */
+    double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
+    int most;           /* factorizations that a solve may use */
+    int left;           /* that this attempt may still use */
+    double stiffest;    /* a contact resists by at most this times its effective mass */
+    double best;        /* residual of the best answer, m/s */
+    int32_t *bodies;    /* [lu.count] */
+    int32_t *nodes;     /* [body_count] -1 for bodies without contact */
+    BlockEdge *edges;   /* [pair_count] */
+    int32_t *edge_of;   /* [pair_count] -1 for a pair with a body that does not move */
     ReferencePoint *points;
     Vec4 *numbers;
     size_t velocity_capacity, impulse_capacity, group_capacity, pair_capacity, body_capacity, node_capacity,
@@ -76,6 +78,13 @@ void reference_free(Reference *reference);
 /* Solves until the residual is at most REFERENCE_TOLERANCE. start: initial impulses [contact_count]; NULL: the
    problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
+
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations. `residual` is
+   then the largest change by one more visit of a contact while all others stay. */
+bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, int most, Error *error);
+
+/* Stores the results of the last solve, in float: rounding may take a tangent impulse out of the friction cone. */
+void reference_round(const Reference *reference, const ContactProblem *problem, ContactSolution *solution);
 
 /* The residual of a method's impulses [contact_count]; its velocities do not count. False when memory is short. */
 bool reference_residual(Reference *reference, const ContactProblem *problem, const ContactImpulse *impulses,

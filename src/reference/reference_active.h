@@ -13,6 +13,7 @@ static const double stiff = 1e12; /* times the effective mass */
 /* ahead: of the visit, times the effective mass. */
 static void guess_states(Reference *r, double ahead) {
     const Vec4 zero = reference_all(0), factor = reference_all(ahead > 1 ? ahead : stiff);
+    momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const Vec4 l = g->normal - ahead * g->mass_normal * g->gap, t = g->tangent - ahead * g->mass_tangent * g->slip;
@@ -24,16 +25,16 @@ static void guess_states(Reference *r, double ahead) {
         g->dt = reference_choose(sticks, stiff_t, zero);
         g->rn = reference_choose(closed, -stiff_n * g->gap, -g->normal);
         g->rt = reference_choose(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
-        g->push_normal = g->normal + g->rn;
-        g->push_tangent = g->tangent + g->rt + g->s * g->rn;
+        push(&r->pairs[REFERENCE_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
     }
 }
 
 static void take_impulses(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        const Vec4 by = g->rn - g->dn * g->change_normal;
-        const Vec4 tangent = g->tangent + g->rt + g->s * by - g->dt * g->change_tangent;
+        const Relative change = relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes);
+        const Vec4 by = g->rn - g->dn * change.normal;
+        const Vec4 tangent = g->tangent + g->rt + g->s * by - g->dt * change.tangent;
         g->normal = reference_larger(g->normal + by, reference_all(0));
         g->tangent = reference_clamp(tangent, g->friction * g->normal);
     }

@@ -41,25 +41,17 @@ static ReferencePoint combine(const ReferencePoint *x, double share, const Refer
                             x->z + share * y->z, x->p + share * y->p, x->q + share * y->q};
 }
 
-static void solve_towards(Reference *r, double target) {
-    towards(r, target, 0);
-    right_side(r);
-    solve_changes(r);
-    direction(r);
-}
-
 /* Newton's step at the present target into `along`, and the derivative by the logarithm of the target into `step`.
    Returns the square of the former's length. */
 static double find_directions(Reference *r, double target) {
     const size_t bodies = (size_t)r->lu.count;
-    linearise(r);
-    factor_matrix(r);
-    r->left--;
-    solve_towards(r, target);
+    begin_step(r, target);
+    end_step(r);
     const double squared = product(r, true);
     for (int i = 0; i < r->group_count; i++) r->groups[i].along = r->groups[i].step;
     memcpy(r->first_changes, r->changes, bodies * sizeof *r->changes);
-    solve_towards(r, 2 * target); /* linear in the target */
+    begin_next_step(r, 2 * target, 0); /* linear in the target */
+    end_step(r);
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].step, -1, &r->groups[i].along);
     for (size_t k = 0; k < bodies; k++) r->changes[k] -= r->first_changes[k];
     return squared;
@@ -123,9 +115,8 @@ static void track(Tracker *tracker) {
 
 static bool pass_fold(Reference *r, bool to_end) {
     return_to(r, KEPT_ON_WAY);
-    for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
     Tracker tracker = {.r = r,
-                       .log_target = log(mean_product(r, 0)),
+                       .log_target = log(mean_product(r)),
                        .length = length_first,
                        .near = to_end ? nearer : near_path,
                        .off_before = INFINITY};

@@ -115,6 +115,12 @@ static void load_slot(ReferenceGroup *group, int slot, ReferencePair *pair, int 
     const Vec4 before = relative_velocity(&problem->bodies[contact->a], &problem->bodies[contact->b]);
     pair->normal[k] = row_of(contact, x, y);
     pair->tangent[k] = row_of(contact, y, -x);
+    group->normal_x[slot] = x;
+    group->normal_y[slot] = y;
+    group->normal_b[slot] = pair->normal[k][2];
+    group->normal_a[slot] = pair->normal[k][3];
+    group->tangent_b[slot] = pair->tangent[k][2];
+    group->tangent_a[slot] = pair->tangent[k][3];
     group->weight[slot] = 1;
     group->mass_normal[slot] = (double)contact->mass_normal;
     group->mass_tangent[slot] = (double)contact->mass_tangent;

@@ -10,14 +10,12 @@
 #include "reference/reference_parts.h"
 #include <string.h>
 
-static void push(const Reference *r, bool answer, Vec4 *x) {
-    for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
-        const ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];
-        const ReferencePair *pair = &r->pairs[i];
-        const double *normal = (const double *)(answer ? &g->normal : &g->push_normal) + i % REFERENCE_PAIRS * 2;
-        const double *tangent = (const double *)(answer ? &g->tangent : &g->push_tangent) + i % REFERENCE_PAIRS * 2;
-        const Vec4 force = pair->normal[0] * normal[0] + pair->tangent[0] * tangent[0] + pair->normal[1] * normal[1] +
-                           pair->tangent[1] * tangent[1];
+/* x += J^T impulses, of a group's pairs */
+static inline void push(const ReferencePair pairs[REFERENCE_PAIRS], Vec4 normal, Vec4 tangent, Vec4 *x) {
+    for (int half = 0, slot = 0; half < REFERENCE_PAIRS; half++, slot += 2) {
+        const ReferencePair *pair = &pairs[half];
+        const Vec4 force = pair->normal[0] * normal[slot] + pair->tangent[0] * tangent[slot] +
+                           pair->normal[1] * normal[slot + 1] + pair->tangent[1] * tangent[slot + 1];
         x[pair->a] += as_body_a(force);
         x[pair->b] += force;
     }
@@ -28,20 +26,34 @@ static inline Vec4 between(const ReferencePair *pair, const Vec4 *x) {
     return (Vec4){b[0] - a[0], b[1] - a[1], b[2], a[2]};
 }
 
+/* J_n x and J_t x of a group. Adds up in the order of reference_sum(). */
+typedef struct Relative {
+    Vec4 normal, tangent;
+} Relative;
+
+static inline Relative relative(const ReferenceGroup *g, const ReferencePair pairs[REFERENCE_PAIRS], const Vec4 *x) {
+    const Vec4 a = x[pairs[0].a], b = x[pairs[0].b], c = x[pairs[1].a], d = x[pairs[1].b], ab = b - a, cd = d - c;
+    const Vec4 along_x = {ab[0], ab[0], cd[0], cd[0]}, along_y = {ab[1], ab[1], cd[1], cd[1]};
+    const Vec4 spin_a = {a[2], a[2], c[2], c[2]}, spin_b = {b[2], b[2], d[2], d[2]};
+    return (Relative){(g->normal_x * along_x + g->normal_y * along_y) + (g->normal_b * spin_b + g->normal_a * spin_a),
+                      (g->normal_y * along_x - g->normal_x * along_y) +
+                          (g->tangent_b * spin_b + g->tangent_a * spin_a)};
+}
+
+static inline void look_at(ReferenceGroup *g, const ReferencePair pairs[REFERENCE_PAIRS], const Vec4 *moved) {
+    const Relative by = relative(g, pairs, moved);
+    g->gap = g->free_normal + by.normal;
+    g->slip = g->free_tangent + by.tangent;
+}
+
 static void look(Reference *r) {
-    for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];
-        const Vec4 by = between(&r->pairs[i], r->moved);
-        for (int k = 0, slot = i % REFERENCE_PAIRS * 2; k < 2; k++, slot++) {
-            g->gap[slot] = g->free_normal[slot] + reference_sum(r->pairs[i].normal[k] * by);
-            g->slip[slot] = g->free_tangent[slot] + reference_sum(r->pairs[i].tangent[k] * by);
-        }
-    }
+    for (int i = 0; i < r->group_count; i++) look_at(&r->groups[i], &r->pairs[REFERENCE_PAIRS * i], r->moved);
 }
 
 static void apply(Reference *r) {
     memset(r->moved, 0, ((size_t)r->lu.count + 1) * sizeof *r->moved);
-    push(r, true, r->moved);
+    for (int i = 0; i < r->group_count; i++)
+        push(&r->pairs[REFERENCE_PAIRS * i], r->groups[i].normal, r->groups[i].tangent, r->moved);
     for (int k = 0; k <= r->lu.count; k++) r->moved[k] *= r->inverses[k];
     look(r);
 }
@@ -93,18 +105,13 @@ static void factor_matrix(Reference *r) {
     r->factorizations++;
 }
 
+/* The right-hand side without its impulses, into `changes`. */
+static void momentum_left(Reference *r) {
+    for (int k = 0; k < r->lu.count; k++) r->changes[k] = -r->masses[k] * r->moved[k];
+    r->changes[r->lu.count] = reference_all(0);
+}
+
 static void solve_changes(Reference *r) {
-    const int count = r->lu.count;
-    for (int k = 0; k < count; k++) r->changes[k] = -r->masses[k] * r->moved[k];
-    push(r, false, r->changes);
     block_lu_solve(&r->lu, r->changes);
-    r->changes[count] = reference_all(0);
-    for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i / REFERENCE_PAIRS];
-        const Vec4 by = between(&r->pairs[i], r->changes);
-        for (int k = 0, slot = i % REFERENCE_PAIRS * 2; k < 2; k++, slot++) {
-            g->change_normal[slot] = reference_sum(r->pairs[i].normal[k] * by);
-            g->change_tangent[slot] = reference_sum(r->pairs[i].tangent[k] * by);
-        }
-    }
+    r->changes[r->lu.count] = reference_all(0);
 }

@@ -21,14 +21,14 @@ typedef struct ReferencePoint {
 struct ReferenceGroup {
     Vec4 weight, mass_normal, mass_tangent, inverse_normal, inverse_tangent; /* kg and 1/kg, effective masses */
     Vec4 friction;                                                           /* mu */
+    Vec4 normal_x, normal_y; /* the rows, as those of the pairs; the tangent is (normal_y, -normal_x) */
+    Vec4 normal_b, normal_a, tangent_b, tangent_a; /* m, of the spins of b and a */
     Vec4 free_normal, free_tangent; /* m/s: velocities before the contacts along the rows; normal: minus the bias */
     Vec4 start_normal, start_tangent, normal, tangent, best_normal, best_tangent; /* N s, impulses inside the cone */
     Vec4 gap, slip;                       /* m/s: velocities along the rows, normal: minus the bias */
     ReferencePoint now;                   /* of the interior point */
     Vec4 missing_normal, missing_tangent; /* m/s: gap - z and slip - (q - p) */
     Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see reference_newton.c */
-    Vec4 push_normal, push_tangent;       /* N s: impulses of its right-hand side */
-    Vec4 change_normal, change_tangent;   /* m/s: the solution along the rows */
     Vec4 wanted_n, wanted_p, wanted_q;    /* wanted changes of the products l z, u p, w q */
     ReferencePoint step, along;           /* directions */
 };

@@ -36,39 +36,29 @@ static void answer(Reference *r) {
 
 static double at_most(double x, double limit) { return x < limit ? x : limit; }
 
-/* One step. Returns its length, as a share of the full step. */
-static double centre_step(Reference *r) {
-    for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-    const double mean = mean_product(r, 0);
-    linearise(r);
-    factor_matrix(r);
-    r->left--;
-    towards(r, 0, 0);
-    right_side(r);
-    solve_changes(r);
-    direction(r);
-    const double share = at_most(step_room(r), 1), ratio = mean_product(r, share) / mean;
+/* One step from products of this mean. Returns its length, as a share of the full step. */
+static double centre_step(Reference *r, double mean) {
+    begin_step(r, 0);
+    const double share = at_most(end_step(r), 1), ratio = mean_product_after(r, share) / mean;
     const double shrink = at_most(ratio * ratio * ratio, 1);
-    towards(r, mean * (shrink > least_shrink ? shrink : least_shrink), share);
-    right_side(r);
-    solve_changes(r);
-    direction(r);
-    const double length = at_most(bound_share * step_room(r), 1);
+    begin_next_step(r, mean * (shrink > least_shrink ? shrink : least_shrink), share);
+    const double length = at_most(bound_share * end_step(r), 1);
     move(r, length);
     return length;
 }
 
 static bool follow(Reference *r, int most, bool carefully) {
-    const double good = 0.8, short_step = 0.1, near_end = 1e-4; /* (m/s)^2 */
+    const double good = 0.8, short_step = 0.1;
+    const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
     int stuck = 0;
     bool begun = false;
+    double mean = mean_product(r);
     for (r->left = most; r->left > 0;) {
-        const double length = centre_step(r);
-        for (int i = 0; i < r->group_count; i++) r->groups[i].step = (ReferencePoint){0};
-        const double mean = mean_product(r, 0);
+        const double length = centre_step(r, mean);
+        mean = mean_product(r);
         if (!(mean > 0) || isinf(mean)) break;
         if (mean < near_end) answer(r);
-        if (r->best <= REFERENCE_TOLERANCE / 10 || (r->best <= REFERENCE_TOLERANCE / 4 && length < 0.5)) return true;
+        if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);
         if (length >= good && forward) {
             keep(r, KEPT_ON_WAY, log(mean));
@@ -77,9 +67,10 @@ static bool follow(Reference *r, int most, bool carefully) {
         stuck = length < short_step || !forward ? stuck + 1 : 0;
         if (stuck < 2 && !(carefully && length >= good)) continue;
         if (!begun || !pass_fold(r, carefully)) break;
+        mean = mean_product(r);
         stuck = 0;
         carefully = false;
     }
     answer(r);
-    return r->best <= REFERENCE_TOLERANCE / 4;
+    return r->best <= r->enough;
 }

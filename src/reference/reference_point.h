@@ -43,106 +43,160 @@ static void begin(Reference *r, double scale) {
     }
 }
 
-static void linearise(Reference *r) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
-    for (int i = 0; i < r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now;
-        const Vec4 p = now->p / now->u, q = now->q / now->w;
-        g->missing_normal = beyond_rounding(g->gap - now->z);
-        g->missing_tangent = beyond_rounding(g->slip - (now->q - now->p));
-        g->over_z = 1 / (now->z + now->l * soft * g->inverse_normal);
-        g->dn = now->l * g->over_z;
-        g->dt = 1 / (p + q + soft * g->inverse_tangent);
-        g->s = g->friction * (p - q) * g->dt;
-    }
+/* Those of the matrix. */
+static inline void linearise(ReferenceGroup *g, Vec4 soft) {
+    const ReferencePoint *now = &g->now;
+    const Vec4 p = now->p / now->u, q = now->q / now->w;
+    g->missing_normal = beyond_rounding(g->gap - now->z);
+    g->missing_tangent = beyond_rounding(g->slip - (now->q - now->p));
+    g->over_z = 1 / (now->z + now->l * soft * g->inverse_normal);
+    g->dn = now->l * g->over_z;
+    g->dt = 1 / (p + q + soft * g->inverse_tangent);
+    g->s = g->friction * (p - q) * g->dt;
 }
 
 /* Products of the target, less `second` times those of the changes in `step`. */
-static void towards(Reference *r, double target, double second) {
-    for (int i = 0; i < r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now, *by = &g->step;
-        const Vec4 along = target * g->mass_tangent * g->friction;
-        g->wanted_n = g->weight * (target * g->mass_normal - now->l * now->z - second * by->l * by->z);
-        g->wanted_p = g->weight * (along - now->u * now->p - second * by->u * by->p);
-        g->wanted_q = g->weight * (along - now->w * now->q - second * by->w * by->q);
+static inline void towards(ReferenceGroup *g, double target, double second) {
+    const ReferencePoint *now = &g->now, *by = &g->step;
+    const Vec4 along = target * g->mass_tangent * g->friction;
+    g->wanted_n = target * g->mass_normal - now->l * now->z;
+    g->wanted_p = along - now->u * now->p;
+    g->wanted_q = along - now->w * now->q;
+    if (second > 0) {
+        g->wanted_n -= second * by->l * by->z;
+        g->wanted_p -= second * by->u * by->p;
+        g->wanted_q -= second * by->w * by->q;
     }
+    g->wanted_n *= g->weight;
+    g->wanted_p *= g->weight;
+    g->wanted_q *= g->weight;
 }
 
-static void right_side(Reference *r) {
-    for (int i = 0; i < r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now;
-        g->rn = (g->wanted_n - now->l * g->missing_normal) * g->over_z;
-        g->rt = g->dt * (g->wanted_q / now->w - g->wanted_p / now->u - g->missing_tangent);
-        g->push_normal = now->l + g->rn;
-        g->push_tangent = now->t + g->rt + g->s * g->rn;
-    }
+static inline void push_right_side(Reference *r, int i) {
+    ReferenceGroup *g = &r->groups[i];
+    const ReferencePoint *now = &g->now;
+    g->rn = (g->wanted_n - now->l * g->missing_normal) * g->over_z;
+    g->rt = g->dt * (g->wanted_q / now->w - g->wanted_p / now->u - g->missing_tangent);
+    push(&r->pairs[REFERENCE_PAIRS * i], now->l + g->rn, now->t + g->rt + g->s * g->rn, r->changes);
 }
 
-/* The changes by the last solve into `step`. */
-static void direction(Reference *r) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
-    for (int i = 0; i < r->group_count; i++) {
-        ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now;
-        ReferencePoint *by = &g->step;
-        by->l = g->rn - g->dn * g->change_normal;
-        by->t = g->rt + g->s * by->l - g->dt * g->change_tangent;
-        by->u = g->friction * by->l - by->t;
-        by->w = g->friction * by->l + by->t;
-        by->z = g->change_normal + g->missing_normal + by->l * soft * g->inverse_normal;
-        by->p = (g->wanted_p - now->p * by->u) / now->u;
-        by->q = (g->wanted_q - now->q * by->w) / now->w;
-    }
+/* The changes of a group by the last solve into `step`. */
+static inline void direction(ReferenceGroup *g, Relative change, Vec4 soft) {
+    const ReferencePoint *now = &g->now;
+    ReferencePoint *by = &g->step;
+    by->l = g->rn - g->dn * change.normal;
+    by->t = g->rt + g->s * by->l - g->dt * change.tangent;
+    by->u = g->friction * by->l - by->t;
+    by->w = g->friction * by->l + by->t;
+    by->z = change.normal + g->missing_normal + by->l * soft * g->inverse_normal;
+    by->p = (g->wanted_p - now->p * by->u) / now->u;
+    by->q = (g->wanted_q - now->q * by->w) / now->w;
 }
 
-static double step_room(const Reference *r) {
-    Vec4 most = reference_all(0);
-    for (int i = 0; i < r->group_count; i++) {
-        const ReferencePoint *now = &r->groups[i].now, *by = &r->groups[i].step;
-        const Vec4 normal = reference_larger(-by->l / now->l, -by->z / now->z);
-        const Vec4 up = reference_larger(-by->u / now->u, -by->p / now->p);
-        const Vec4 down = reference_larger(-by->w / now->w, -by->q / now->q);
-        most = reference_larger(reference_larger(normal, most), reference_larger(up, down));
-    }
+static inline Vec4 nearest_bound(const ReferencePoint *now, const ReferencePoint *by) {
+    const Vec4 normal = reference_larger(-by->l / now->l, -by->z / now->z);
+    const Vec4 up = reference_larger(-by->u / now->u, -by->p / now->p);
+    const Vec4 down = reference_larger(-by->w / now->w, -by->q / now->q);
+    return reference_larger(normal, reference_larger(up, down));
+}
+
+/* The share of `step` that leads to the nearest bound. */
+static double room_for(Vec4 most) {
     double worst = 1e-9;
     for (int k = 0; k < REFERENCE_SLOTS; k++) worst = most[k] > worst ? most[k] : worst;
     return 1 / worst;
 }
 
-static double mean_product(const Reference *r, double share) {
+static double step_room(const Reference *r) {
+    Vec4 most = reference_all(0);
+    for (int i = 0; i < r->group_count; i++)
+        most = reference_larger(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
+    return room_for(most);
+}
+
+/* A Newton step towards products of the target, into `step`: the first solve with a matrix, which factorizes it, */
+static void begin_step(Reference *r, double target) {
+    const Vec4 soft = reference_all(1 / r->stiffest);
+    momentum_left(r);
+    for (int i = 0; i < r->group_count; i++) {
+        linearise(&r->groups[i], soft);
+        towards(&r->groups[i], target, 0);
+        push_right_side(r, i);
+    }
+    factor_matrix(r);
+    r->left--;
+}
+
+/* the right-hand side of another one, */
+static void begin_next_step(Reference *r, double target, double second) {
+    momentum_left(r);
+    for (int i = 0; i < r->group_count; i++) {
+        towards(&r->groups[i], target, second);
+        push_right_side(r, i);
+    }
+}
+
+/* and the solve. Returns the share of the step that leads to the nearest bound. */
+static double end_step(Reference *r) {
+    const Vec4 soft = reference_all(1 / r->stiffest);
+    Vec4 most = reference_all(0);
+    solve_changes(r);
+    for (int i = 0; i < r->group_count; i++) {
+        ReferenceGroup *g = &r->groups[i];
+        direction(g, relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes), soft);
+        most = reference_larger(nearest_bound(&g->now, &g->step), most);
+    }
+    return room_for(most);
+}
+
+static inline Vec4 products(const ReferenceGroup *g, Vec4 normal, Vec4 up, Vec4 down) {
+    return g->weight * (normal * g->inverse_normal + (up + down) * g->inverse_tangent / g->friction);
+}
+
+/* The mean of the products, over their masses: the target that the point is nearest to. */
+static double mean_product(const Reference *r) {
     Vec4 sum = reference_all(0);
     for (int i = 0; i < r->group_count; i++) {
-        const ReferenceGroup *g = &r->groups[i];
-        const ReferencePoint *now = &g->now, *by = &g->step;
-        const Vec4 normal = (now->l + share * by->l) * (now->z + share * by->z);
-        const Vec4 up = (now->u + share * by->u) * (now->p + share * by->p);
-        const Vec4 down = (now->w + share * by->w) * (now->q + share * by->q);
-        sum += g->weight * (normal * g->inverse_normal + (up + down) * g->inverse_tangent / g->friction);
+        const ReferencePoint *now = &r->groups[i].now;
+        sum += products(&r->groups[i], now->l * now->z, now->u * now->p, now->w * now->q);
     }
     return reference_sum(sum) / (3 * r->contact_count);
 }
 
-static void move(Reference *r, double share) {
-    const Vec4 half = reference_all(0.5);
+/* The same after a share of the step. */
+static double mean_product_after(const Reference *r, double share) {
+    Vec4 sum = reference_all(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
-        ReferencePoint *now = &r->groups[i].now;
-        const ReferencePoint *by = &g->step;
-        now->l += share * by->l;
-        now->z += share * by->z;
-        now->p += share * by->p;
-        now->q += share * by->q;
-        const Vec4 u = now->u + share * by->u, w = now->w + share * by->w, both = 2 * g->friction * now->l;
-        const ReferenceMask slides_up = (ReferenceMask)(u < w); /* the smaller one is precise */
-        now->u = reference_choose(slides_up, u, both - w);
-        now->w = reference_choose(slides_up, both - u, w);
-        now->t = half * (now->w - now->u);
+        const ReferencePoint *now = &g->now, *by = &g->step;
+        sum += products(g, (now->l + share * by->l) * (now->z + share * by->z),
+                        (now->u + share * by->u) * (now->p + share * by->p),
+                        (now->w + share * by->w) * (now->q + share * by->q));
     }
+    return reference_sum(sum) / (3 * r->contact_count);
+}
+
+static inline void move_point(ReferenceGroup *g, double share) {
+    const Vec4 half = reference_all(0.5);
+    ReferencePoint *now = &g->now;
+    const ReferencePoint *by = &g->step;
+    now->l += share * by->l;
+    now->z += share * by->z;
+    now->p += share * by->p;
+    now->q += share * by->q;
+    const Vec4 u = now->u + share * by->u, w = now->w + share * by->w, both = 2 * g->friction * now->l;
+    const ReferenceMask slides_up = (ReferenceMask)(u < w); /* the smaller one is precise */
+    now->u = reference_choose(slides_up, u, both - w);
+    now->w = reference_choose(slides_up, both - u, w);
+    now->t = half * (now->w - now->u);
+}
+
+static void move(Reference *r, double share) {
     for (int k = 0; k < r->lu.count; k++) r->moved[k] += share * r->changes[k];
-    look(r);
+    for (int i = 0; i < r->group_count; i++) {
+        move_point(&r->groups[i], share);
+        look_at(&r->groups[i], &r->pairs[REFERENCE_PAIRS * i], r->moved);
+    }
 }
 
 static void keep(Reference *r, int place, double log_target) {

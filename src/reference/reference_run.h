@@ -40,7 +40,7 @@ static void take_best(Reference *r) {
     apply(r);
 }
 
-static bool is_rough(const Reference *r) { return r->best > REFERENCE_TOLERANCE / 4 && r->best < near_solution; }
+static bool is_rough(const Reference *r) { return r->best > r->enough && r->best < near_solution; }
 
 /* Near the solution the states of most contacts are clear, and sweeps find those of the others. */
 static bool finish(Reference *r) {
@@ -48,14 +48,14 @@ static bool finish(Reference *r) {
     for (int round = 0; round < FINISH_ROUNDS && is_rough(r); round++) {
         for (int i = 0; i < count && is_rough(r); i++) {
             take_best(r);
-            keep_best(r, polish(r, REFERENCE_TOLERANCE / 10, look_ahead[i]));
+            keep_best(r, polish(r, r->aim, look_ahead[i]));
         }
         take_best(r);
         for (int i = 0; i < FINISH_SWEEPS && is_rough(r); i++) sweep(r);
         apply(r);
         keep_best(r, missed(r, NULL));
     }
-    return r->best <= REFERENCE_TOLERANCE / 4;
+    return r->best <= r->enough;
 }
 
 static void run(Reference *r) {
@@ -64,13 +64,14 @@ static void run(Reference *r) {
     keep_start(r);
     r->best = INFINITY;
     keep_best(r, missed(r, NULL));
-    keep_best(r, polish(r, REFERENCE_TOLERANCE / 10, 1));
+    keep_best(r, polish(r, r->aim, 1));
     const int count = sizeof attempts / sizeof *attempts;
-    bool solved = r->best <= REFERENCE_TOLERANCE / 10;
-    for (; !solved && r->attempts < count; r->attempts++) {
+    bool solved = r->best <= r->aim;
+    for (; !solved && r->attempts < count && r->factorizations < r->most; r->attempts++) {
+        const int left = r->most - r->factorizations, most = attempts[r->attempts].most;
         r->stiffest = attempts[r->attempts].stiffest;
         begin(r, attempts[r->attempts].scale);
-        solved = follow(r, attempts[r->attempts].most, attempts[r->attempts].carefully) || finish(r);
+        solved = follow(r, most < left ? most : left, attempts[r->attempts].carefully) || finish(r);
     }
     take_best(r);
 }

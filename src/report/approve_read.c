@@ -11,7 +11,7 @@
 
 enum { MAX_SIZE = 1 << 25 };
 
-/* The required members. Others (verdict, fuzzy, masks) are skipped. */
+/* The required members. Others (verdict, tolerance, masks) are skipped. */
 enum { FORMAT, EXPECTED, ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
 static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
 

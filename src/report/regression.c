@@ -4,8 +4,10 @@
 #include "common/clock.h"
 #include "common/hash.h"
 #include "common/parallel.h"
-#include "image/mask_cover.h"
 #include "image/png_check.h"
+#include "report/regression_causes.h"
+#include "report/regression_changes.h"
+#include "report/regression_limits.h"
 #include "report/regression_states.h"
 
 #include <assert.h>
@@ -13,41 +15,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool within(const RegressionOptions *options, const ImageDifference *difference) {
-    return difference->largest <= options->max_difference &&
-           (double)difference->pixels <= options->max_share * (double)difference->counted;
-}
-
-static bool judge_pixels(const RegressionOptions *options, RegressionFrame *frame, const Image *expected,
-                         const Image *actual, Error *error) {
-    uint8_t *masked = NULL;
-    bool has_mask = options->mask != NULL && options->mask->count > 0;
-    if (has_mask && (masked = mask_make(options->mask, expected->width, expected->height, frame->at[EXPECTED]->path,
-                                        error)) == NULL)
-        return false;
-    ImageDifference *difference = &frame->difference;
-    image_compare_masked(expected, actual, masked, difference);
+static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                         Image *const images[SIDES], Error *error) {
+    Image *expected = images[EXPECTED], *actual = images[ACTUAL];
+    uint8_t *masked;
+    if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
+    regression_compare(regression, frame, expected, actual, masked);
+    bool hidden = frame->difference.counted == 0 && frame->difference.same_size;
+    bool ok = hidden
+                  ? error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared")
+                  : regression_decide(regression, frame, expected, actual, masked, error);
+    if (ok && frame->difference.pixels > 0)
+        ok = regression_find_changes(regression, frame, data, (const Image *const[SIDES]){expected, actual}, masked,
+                                     error);
     free(masked);
-    if (difference->same_size && difference->counted == 0)
-        return error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared");
-    frame->pixels = !difference->same_size        ? PIXELS_RESIZED
-                    : difference->equal           ? PIXELS_EQUAL
-                    : within(options, difference) ? PIXELS_WITHIN
-                                                  : PIXELS_DIFFER;
-    return true;
+    return ok;
 }
 
-static bool decode_and_judge(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     Image *images[SIDES];
     RegressionFile *files = frame->files;
     bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
                                     (const size_t[]){files[EXPECTED].size, files[ACTUAL].size},
                                     (const char *const[]){frame->at[EXPECTED]->path, frame->at[ACTUAL]->path},
-                                    options->max_pixels, images, error);
+                                    regression->options.max_pixels, images, error);
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
         files[side].width = images[side]->width, files[side].height = images[side]->height;
-    ok = ok && judge_pixels(options, frame, images[EXPECTED], images[ACTUAL], error);
+    ok = ok && judge_pixels(regression, frame, data, images, error);
     image_destroy_pair(images);
     return ok;
 }
@@ -66,32 +60,31 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
 }
 
 /* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
-static bool judge_same_bytes(const RegressionOptions *options, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     if (!png_check(data[EXPECTED], a->size, frame->at[EXPECTED]->path, &a->width, &a->height, error)) return false;
     b->width = a->width, b->height = a->height;
-    if (options->mask != NULL && options->mask->count > 0 && mask_may_cover(options->mask, a->width, a->height))
-        return decode_and_judge(options, frame, data, error);
+    if (regression_may_hide_all(regression, frame, a->width, a->height))
+        return decode_and_judge(regression, frame, data, error);
     frame->pixels = PIXELS_EQUAL;
     frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
     return true;
 }
 
-static bool judge(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
+static bool judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     const RegressionOptions *options = &regression->options;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
     regression_judge_states(regression, frame, data);
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     if (a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0)
-        return judge_same_bytes(options, frame, data, error);
+        return judge_same_bytes(regression, frame, data, error);
     frame->metadata = png_display_compare(data[EXPECTED], a->size, data[ACTUAL], b->size);
     frame->metadata_failed = options->strict_metadata && frame->metadata.text[0] != '\0';
-    return decode_and_judge(options, frame, data, error);
+    return decode_and_judge(regression, frame, data, error);
 }
 
-static bool compare_files(const Regression *regression, RegressionFrame *frame, Error *error) {
+static bool compare_files(Regression *regression, RegressionFrame *frame, Error *error) {
     uint8_t *data[SIDES] = {NULL, NULL};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
@@ -113,21 +106,23 @@ static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
 }
 
 /* Where several pictures are accepted, the first that passes counts, or else the closest. */
-static bool compare_accepted(const Regression *regression, RegressionFrame *frame, Error *error) {
+static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
     const RegressionFrame fresh = *frame;
     if (!compare_files(regression, frame, error)) return false;
     for (const SequenceFrame *other = frame->base->next; other != NULL && frame_failed(frame); other = other->next) {
         RegressionFrame attempt = fresh;
         attempt.at[EXPECTED] = other;
-        if (!compare_files(regression, &attempt, error)) return false;
-        if (is_closer(&attempt, frame)) *frame = attempt;
+        bool ok = compare_files(regression, &attempt, error), closer = ok && is_closer(&attempt, frame);
+        free(closer ? frame->changes : attempt.changes);
+        if (closer) *frame = attempt;
+        if (!ok) return false;
     }
     return true;
 }
 
 /* If a frame cannot be read, the others are still compared: the reported error must not depend on the threads. */
 static bool compare_frame(void *context, int i, Error *error) {
-    const Regression *regression = context;
+    Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
     const double begun = clock_seconds();
     Error read_error = {0};
@@ -167,9 +162,12 @@ static void count_frame(Regression *regression, int i) {
     regression->by_verdict[frame->pixels]++;
     if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
     if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
-    regression->physics += pictures && frame->states == STATES_DIFFER_ELSEWHERE;
-    if (pictures && frame->states == STATES_EQUAL) count_first(&regression->renderer, &regression->first_renderer, i);
-    regression->unknown += pictures && frame->states == STATES_UNKNOWN;
+    bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
+    regression->view += view;
+    regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
+    if (pictures && !view && frame->states == STATES_EQUAL)
+        count_first(&regression->renderer, &regression->first_renderer, i);
+    regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
     if (frame->metadata.text[0] != '\0') count_first(&regression->metadata, &regression->first_metadata, i);
     regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
     regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
@@ -226,8 +224,10 @@ static bool pair_frames(Regression *regression, Error *error) {
     if (pairs == NULL) return false;
     regression->frames = calloc((size_t)regression->count + 1, sizeof *regression->frames);
     for (int i = 0; regression->frames != NULL && i < regression->count; i++)
-        regression->frames[i] = (RegressionFrame){
-            .base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b, .at = {pairs[i].a, pairs[i].b}, .flip = NAN};
+        regression->frames[i] = (RegressionFrame){.base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b,
+                                                  .at = {pairs[i].a, pairs[i].b},
+                                                  .flip = NAN,
+                                                  .flip_p99 = NAN};
     free(pairs);
     return regression->frames != NULL || error_memory(error, "frames");
 }
@@ -252,13 +252,13 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
               pair_frames(regression, error) && regression_find_runs(regression, error) &&
-              refuse_empty(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+              refuse_empty(regression, error) && regression_read_rules(regression, error) &&
+              parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
+    if (ok) count(regression);
+    ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;
-    if (ok)
-        count(regression);
-    else
-        regression_free(regression);
+    if (!ok) regression_free(regression);
     return ok;
 }
 
@@ -267,9 +267,15 @@ void regression_free(Regression *regression) {
         free(regression->runs[i].name);
         free(regression->runs[i].differs);
     }
-    for (int i = 0; regression->frames != NULL && i < regression->count; i++) free(regression->frames[i].read_error);
+    for (int i = 0; regression->frames != NULL && i < regression->count; i++) {
+        free(regression->frames[i].read_error);
+        free(regression->frames[i].changes);
+    }
     free(regression->frames);
     free(regression->runs);
+    free(regression->causes);
+    shown_free(&regression->shown);
+    rules_destroy(regression->rules);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_sequence_close(regression->sequences[side]);
     *regression = (Regression){0};
 }

@@ -8,12 +8,15 @@
 #include "image/mask.h"
 #include "image/png_display.h"
 #include "image/sequence.h"
+#include "report/change.h"
+#include "report/rules.h"
+#include "report/shown.h"
 #include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
-    int max_difference; /* of a channel, 0..255 */
-    double max_share;   /* of the unmasked pixels, 0..1; a frame passes if it is within both limits */
-    const Mask *mask;
+    Tolerance tolerance;  /* replaces what the rules give */
+    const char *rules;    /* a file (report/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
     int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
     bool flat;            /* without subfolders */
     bool strict_metadata; /* files that display differently fail (image/png_display.h) */
@@ -25,7 +28,7 @@ typedef enum PixelVerdict {
     PIXELS_EQUAL,
     PIXELS_WITHIN, /* within tolerance */
     PIXELS_DIFFER,
-    PIXELS_RESIZED,
+    PIXELS_RESIZED, /* the difference is that of the overlap */
     PIXELS_MISSING, /* no actual picture */
     PIXELS_EXTRA    /* no expected picture */
 } PixelVerdict;
@@ -34,6 +37,19 @@ typedef enum PixelVerdict {
    equal in this frame but not in the whole run, and no frame of the sequence has equal states and equal pixels; a
    difference of pixels is then not attributed to the renderer. */
 typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
+
+/* Frames that differ for the same reason. */
+typedef struct RegressionCause {
+    char what[512];    /* "body 7 moved" */
+    double most;       /* pixels, of movements; 0: none */
+    int count;         /* frames */
+    char frames[112];  /* "frames 5 to 29", "frame 3", "frames 0, 2 to 4, ..." */
+    bool of_view;      /* the camera differs */
+    int last, written; /* while frames are added: the last one, and the length of `frames` without it */
+    int ranges;
+} RegressionCause;
+
+enum { CAUSES_MAX = 32 };
 
 /* A file as it was when compared. */
 typedef struct RegressionFile {
@@ -53,11 +69,13 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip;      /* image/flip.h, measured by the report; else NaN */
-    bool run_differs; /* a trajectory of its scene differs in any frame */
-    bool shown;       /* in the report */
-    double seconds;   /* that its comparison took, wall time */
-    char *read_error; /* why a picture could not be read; makes regression_run() fail */
+    double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
+    bool run_differs;      /* a trajectory of its scene differs in any frame */
+    bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
+    FrameChanges *changes; /* of different pixels; else NULL */
+    bool shown;            /* in the report */
+    double seconds;        /* that its comparison took, wall time */
+    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
 } RegressionFrame;
 
 /* A trajectory that is in both folders. */
@@ -74,20 +92,25 @@ typedef struct RegressionRun {
 typedef struct Regression {
     RegressionOptions options;
     ImageSequence *sequences[SIDES];
+    Rules *rules; /* or NULL */
     int count, run_count;
     RegressionFrame *frames;                  /* by stem, then number */
     RegressionRun *runs;                      /* by name */
     int failed;                               /* frames */
     int by_verdict[6];                        /* frames, by PixelVerdict */
     int renderer, physics, unknown;           /* frames by cause of the difference */
+    int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
     int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
-    int metadata, first_metadata;             /* frames whose metadata differs, and the first of them (-1: none) */
-    int metadata_failed;                      /* frames that fail for nothing else */
-    int runs_left_out;                        /* .npz files that only the expected folder has */
-    int runs_foreign;                         /* .npz files that are a trajectory in neither folder */
-    int other_accepted; /* frames that pass by another accepted picture than the one of their name */
-    double seconds;     /* of the whole comparison */
+    Shown shown;
+    int cause_count, causes_left_out; /* more than CAUSES_MAX */
+    RegressionCause *causes;          /* different cameras first, then by first frame */
+    int metadata, first_metadata;     /* frames whose metadata differs, and the first of them (-1: none) */
+    int metadata_failed;              /* frames that fail for nothing else */
+    int runs_left_out;                /* .npz files that only the expected folder has */
+    int runs_foreign;                 /* .npz files that are a trajectory in neither folder */
+    int other_accepted;               /* frames that pass by another accepted picture than the one of their name */
+    double seconds;                   /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.
@@ -101,8 +124,8 @@ bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
 const char *frame_name(const RegressionFrame *frame); /* of `base` */
 
-/* "equal", "within tolerance", "renderer changed", "physics changed", "pictures differ", "metadata changed",
-   "missing", "extra" */
+/* "equal", "within tolerance", "renderer changed", "physics changed" (states of this frame differ), "view changed" (the
+   camera does), "run changed" (states of other frames do), "pictures differ", "metadata changed", "missing", "extra" */
 const char *frame_verdict(const RegressionFrame *frame);
 
 /* One line of text: how a frame or a run differs. */
@@ -111,6 +134,7 @@ typedef struct RegressionText {
 } RegressionText;
 RegressionText frame_words(const RegressionFrame *frame);
 RegressionText run_words(const RegressionRun *run);
+RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
 /* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
 RegressionText regression_verdict(const Regression *regression);

@@ -26,30 +26,59 @@ void github_annotate_message(FILE *out, const char *title, const char *message) 
     fputc('\n', out);
 }
 
-static void annotate_case(FILE *out, const RegressionCase *made) {
+/* Whether two neighbours of the list belong to one annotation: frames of one sequence that failed alike. */
+static bool is_same_failure(const Regression *regression, int i, int next) {
+    if (next >= regression->count) return false;
+    const RegressionFrame *a = &regression->frames[i], *b = &regression->frames[next];
+    const SequenceFrame *x = a->base, *y = b->base;
+    return frame_failed(a) && frame_failed(b) && x->number >= 0 && y->number >= 0 && x->stem == y->stem &&
+           memcmp(x->name, y->name, (size_t)x->stem) == 0 && strcmp(frame_verdict(a), frame_verdict(b)) == 0;
+}
+
+typedef struct Failures {
+    int begin, end; /* cases; end is exclusive */
+} Failures;
+
+static void annotate(FILE *out, const Regression *regression, Failures failures) {
+    const RegressionCase made = regression_case(regression, failures.begin);
     fputs("::error file=", out);
-    put_property(out, made->paths[made->paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
+    put_property(out, made.paths[made.paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
     fputs(",title=", out);
-    put_property(out, made->verdict);
+    put_property(out, made.verdict);
     fputs("::", out);
-    put_message(out, made->name);
+    put_message(out, made.name);
+    if (failures.end - failures.begin > 1) {
+        fputs(" to ", out);
+        put_message(out, frame_name(&regression->frames[failures.end - 1]));
+        fprintf(out, ", %d frames; the first", failures.end - failures.begin);
+    }
     fputs(": ", out);
-    put_message(out, made->words.text);
+    put_message(out, made.words.text);
     fputc('\n', out);
 }
 
 void github_annotate(FILE *out, const Regression *regression) {
-    const int failures = regression->failed + regression->run_failed, count = regression_case_count(regression);
-    const int shown = failures > GITHUB_ANNOTATIONS_MAX ? GITHUB_ANNOTATIONS_MAX - 1 : failures;
-    for (int i = 0, done = 0; i < count && done < shown; i++) {
-        /* Trajectories first: they are the cause. */
-        const RegressionCase made = regression_case(regression, (i + regression->count) % count);
-        if (!made.failed) continue;
-        annotate_case(out, &made);
-        done++;
+    Failures found[GITHUB_ANNOTATIONS_MAX];
+    const int count = regression_case_count(regression);
+    int groups = 0, left_out = 0;
+    for (int k = 0; k < count; k++) {
+        int begin = (k + regression->count) % count, end = begin + 1; /* trajectories first: they are the cause */
+        if (!regression_case(regression, begin).failed) continue;
+        while (is_same_failure(regression, end - 1, end)) end++;
+        if (groups < GITHUB_ANNOTATIONS_MAX)
+            found[groups] = (Failures){begin, end};
+        else
+            left_out += end - begin;
+        groups++;
+        k += end - begin - 1;
     }
-    if (failures == shown) return;
+    if (groups > GITHUB_ANNOTATIONS_MAX) {
+        groups = GITHUB_ANNOTATIONS_MAX - 1;
+        left_out += found[groups].end - found[groups].begin;
+    }
+    for (int i = 0; i < groups; i++) annotate(out, regression, found[i]);
+    if (left_out == 0) return;
     char message[128];
-    snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", failures - shown);
+    snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", left_out);
     github_annotate_message(out, "twinbox compare", message);
 }

@@ -15,7 +15,8 @@ enum { GITHUB_ANNOTATIONS_MAX = 10 };
 /* GitHub refuses a larger summary of a step as a whole. */
 enum { GITHUB_SUMMARY_MAX = 1 << 20 };
 
-/* An error for each failure, at most GITHUB_ANNOTATIONS_MAX: if there are more, the last one counts the others. */
+/* An error for each failure, and one for successive frames of a sequence that failed alike; at most
+   GITHUB_ANNOTATIONS_MAX: if there are more, the last one counts the others. */
 void github_annotate(FILE *out, const Regression *regression);
 
 /* One error that is about no file. */

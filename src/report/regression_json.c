@@ -19,15 +19,19 @@ static void write_file(JsonWriter *json, const char *key, const char *name, cons
     json_end(json);
 }
 
+static void write_sides(JsonWriter *json, int left, int top, int right, int bottom) {
+    const int sides[] = {left, top, right, bottom};
+    json_begin_array(json, "box", JSON_ONE_LINE);
+    for (int i = 0; i < 4; i++) json_put_int(json, NULL, sides[i]);
+    json_end(json);
+}
+
 static void write_box(JsonWriter *json, const ImageDifference *difference) {
     if (difference->pixels == 0) {
         json_put_text(json, "box", NULL);
         return;
     }
-    const int sides[] = {difference->left, difference->top, difference->right, difference->bottom};
-    json_begin_array(json, "box", JSON_ONE_LINE);
-    for (int i = 0; i < 4; i++) json_put_int(json, NULL, sides[i]);
-    json_end(json);
+    write_sides(json, difference->left, difference->top, difference->right, difference->bottom);
 }
 
 /* Four digits: the last bits of pow() depend on the machine. */
@@ -35,6 +39,23 @@ static double rounded(double flip) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", flip);
     return isfinite(flip) ? strtod(text, NULL) : NAN;
+}
+
+/* At most IMAGE_REGIONS_MAX; a frame must stay one line below the limit of json_read.h. */
+static void write_regions(JsonWriter *json, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame->changes;
+    json_put_int(json, "region_count", changes == NULL ? 0 : changes->regions.count);
+    json_begin_array(json, "regions", JSON_ONE_LINE);
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        const ImageRegion *region = &changes->regions.list[i];
+        ChangeText name = region_name(changes, i);
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        write_sides(json, region->left, region->top, region->right, region->bottom);
+        json_put_int(json, "pixels", region->pixels);
+        json_put_text(json, "name", name.text[0] != '\0' ? name.text : NULL);
+        json_end(json);
+    }
+    json_end(json);
 }
 
 static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
@@ -48,10 +69,14 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_bool(json, "shown", frame->shown);
     json_put_text(json, "words", frame_words(frame).text);
     json_put_int(json, "differing", frame->difference.pixels);
+    json_put_int(json, "beyond", frame->difference.beyond);
+    json_put_int(json, "edges", frame->difference.moved);
     json_put_int(json, "counted", frame->difference.counted);
     json_put_int(json, "largest", frame->difference.largest);
     write_box(json, &frame->difference);
+    write_regions(json, frame);
     json_put_number(json, "flip", rounded(frame->flip));
+    json_put_number(json, "flip_p99", rounded(frame->flip_p99));
     json_put_text(json, "metadata", frame->metadata.text[0] != '\0' ? frame->metadata.text : NULL);
     write_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
     write_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
@@ -70,6 +95,11 @@ static void write_run(JsonWriter *json, const RegressionRun *run) {
     json_end(json);
 }
 
+static void write_limits(JsonWriter *json, const Regression *regression) {
+    json_put_text(json, "tolerance", tolerance_words(&regression->options.tolerance).text);
+    json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
+}
+
 void report_write_json(FILE *file, const void *context) {
     const Report *report = context;
     const Regression *regression = report->regression;
@@ -80,11 +110,12 @@ void report_write_json(FILE *file, const void *context) {
     json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
     json_put_text(&json, "verdict", regression_verdict(regression).text);
     json_put_text(&json, "notes", regression_notes(regression).text);
-    json_begin_array(&json, "fuzzy", JSON_ONE_LINE);
-    json_put_int(&json, NULL, regression->options.max_difference);
-    json_put_number(&json, NULL, regression->options.max_share);
-    json_end(&json);
+    write_limits(&json, regression);
     json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
+    json_begin_array(&json, "causes", JSON_LINES);
+    for (int i = 0; i < regression->cause_count; i++)
+        json_put_text(&json, NULL, cause_words(&regression->causes[i]).text);
+    json_end(&json);
     json_begin_array(&json, "frames", JSON_LINES);
     for (int i = 0; i < regression->count; i++) write_frame(&json, &regression->frames[i]);
     json_end(&json);

@@ -21,6 +21,14 @@ static void write_attachment(FILE *file, const char *path) {
     fputs("]]\n", file);
 }
 
+static void write_regions(FILE *file, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame != NULL ? frame->changes : NULL;
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        html_put(file, region_words(changes, i).text);
+        fputc('\n', file);
+    }
+}
+
 static void write_failure(FILE *file, const RegressionCase *made) {
     static const char *const titles[SIDES] = {"expected: ", "actual: "};
     char message[sizeof made->words.text + 64];
@@ -35,6 +43,7 @@ static void write_failure(FILE *file, const RegressionCase *made) {
         html_put(file, made->paths[side]);
         fputc('\n', file);
     }
+    write_regions(file, made->frame);
     fputs("</failure>\n    <system-out>", file);
     write_attachment(file, made->paths[ACTUAL]); /* the first one is what GitLab shows */
     write_attachment(file, made->paths[EXPECTED]);
@@ -66,6 +75,12 @@ void report_write_junit(FILE *file, const void *context) {
     for (int i = 0; i < count; i++) {
         const RegressionCase made = regression_case(regression, i);
         write_case(file, &made);
+    }
+    const RegressionText notes = regression_notes(regression);
+    if (notes.text[0] != '\0') {
+        fputs("  <system-out>", file);
+        html_put(file, notes.text);
+        fputs("</system-out>\n", file);
     }
     fputs("</testsuite>\n", file);
 }

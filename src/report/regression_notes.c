@@ -23,6 +23,9 @@ static void add(RegressionText *notes, int count, const char *format, ...) {
 RegressionText regression_notes(const Regression *regression) {
     RegressionText notes = {""};
     enum { NAME = 100 }; /* of each name, so that all notes fit */
+    const ImageSequence *const *sides = (const ImageSequence *const *)regression->sequences;
+    bool same = sides[EXPECTED]->device == sides[ACTUAL]->device && sides[EXPECTED]->inode == sides[ACTUAL]->inode;
+    add(&notes, same, "expected and actual are the same %s", sides[EXPECTED]->single ? "file" : "folder");
     int accepted = regression->other_accepted, metadata = regression->metadata;
     add(&notes, accepted, "%d frame%s passed by another accepted picture", accepted, plural(accepted));
     if (metadata > 0) {

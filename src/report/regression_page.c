@@ -16,9 +16,12 @@ static void write_counts(FILE *file, const Regression *regression) {
     fputs("<ul class=\"counts\" aria-label=\"Frames by verdict\">\n", file);
     write_count(file, regression->renderer, "bad", "renderer changed");
     write_count(file, regression->physics, "bad", "physics changed");
+    write_count(file, regression->view, "bad", "view changed");
+    write_count(file, regression->elsewhere, "bad", "run changed");
     write_count(file, regression->unknown, "bad", "pictures differ");
     write_count(file, by[PIXELS_MISSING], "bad", "missing");
     write_count(file, by[PIXELS_EXTRA], "bad", "extra");
+    write_count(file, regression->metadata_failed, "bad", "metadata changed");
     write_count(file, by[PIXELS_WITHIN], "odd", "within tolerance");
     write_count(file, by[PIXELS_EQUAL], "good", "equal pixels");
     write_count(file, regression->run_failed, "bad",
@@ -47,11 +50,11 @@ static void write_description(FILE *file, const Regression *regression) {
     fputs(", actual ", file);
     write_code(file, regression->sequences[ACTUAL]->folder);
     fprintf(file, ": %d %s, ", regression->count, regression->count == 1 ? "frame" : "frames");
-    if (options->max_difference > 0 && options->max_share > 0)
-        fprintf(file, "tolerance: differences of at most %d in at most %g%% of the pixels", options->max_difference,
-                100 * options->max_share);
-    else
-        fputs("tolerance: none", file);
+    fprintf(file, "tolerance: %s", tolerance_words(&options->tolerance).text);
+    if (regression->rules != NULL) {
+        fputs(", rules of ", file);
+        write_code(file, rules_path(regression->rules));
+    }
     if (options->mask != NULL && options->mask->count > 0)
         fprintf(file, ", %d %s", options->mask->count, options->mask->count == 1 ? "mask" : "masks");
     fputs(".</p>\n", file);
@@ -86,7 +89,7 @@ static void write_summary(FILE *file, const Report *report) {
     write_counts(file, regression);
     fputs("<p class=\"begin\">", file);
     html_put(file, regression_begin(regression).text);
-    fputs("</p>\n", file);
+    fputs("</p>\n<ul id=\"causes\" aria-label=\"Causes\"></ul>\n", file);
     write_notes(file, regression);
     if (report->pictures->left_out > 0)
         fprintf(
@@ -156,5 +159,6 @@ void report_write_page(FILE *file, const void *context) {
     write_pictures(file, report->pictures);
     fputs("<script type=\"application/json\" id=\"data\">", file);
     report_write_json(file, report);
-    fprintf(file, "</script>\n<script>\n%s</script>\n</main>\n</body>\n</html>\n", report_page_js);
+    fprintf(file, "</script>\n<script>\n\"use strict\";\n{\n%s\n%s\n%s}\n</script>\n</main>\n</body>\n</html>\n",
+            report_stage_js, report_list_js, report_page_js);
 }

@@ -3,6 +3,7 @@
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "image/difference_picture.h"
+#include "report/regression_limits.h"
 #include "report/regression_parts.h"
 
 #include <assert.h>
@@ -29,34 +30,35 @@ static bool measure(const Image *expected, const Image *actual, RegressionFrame 
     if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
     const FlipSink sink = heat_picture_sink(heat);
     bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, heat != NULL ? &sink : NULL, &flip, error);
-    if (ok) frame->flip = flip.mean;
+    if (ok) frame->flip = flip.mean, frame->flip_p99 = flip.p99;
     if (ok && heat != NULL) ok = (picture->data = indexed_png_end(heat, &picture->size, error)) != NULL;
     indexed_png_destroy(heat);
     return ok;
 }
 
-/* Measures FLIP and, if there is room, draws the difference pictures. */
-static bool draw(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+static int larger(int a, int b) { return a > b ? a : b; }
+
+/* Measures FLIP and, if there is room, draws the difference pictures. Of pictures of different size, the difference
+   picture shows both, and FLIP the overlap. */
+static bool draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
                  ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
-    uint8_t *masked = NULL;
-    const Mask *mask = regression->options.mask;
-    if (mask != NULL && mask->count > 0 &&
-        (masked = mask_make(mask, expected->width, expected->height, frame->at[EXPECTED]->path, error)) == NULL)
-        return false;
+    uint8_t *masked;
+    int width = larger(expected->width, actual->width), height = larger(expected->height, actual->height);
+    if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
     ReportPicture *difference = &pictures[DIFFERENCE];
-    bool ok =
-        !room || (difference->data = difference_picture(expected, actual, masked, &difference->size, error)) != NULL;
+    if (room) difference->data = difference_picture(expected, actual, masked, width, height, &difference->size, error);
     image_copy_masked(expected, actual, masked);
-    ok = ok && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
+    bool ok =
+        (!room || difference->data != NULL) && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);
     return ok;
 }
 
-/* Only for frames with different pixels and equal sizes. */
+/* Only for frames with two pictures whose pixels differ. */
 static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
                              bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
-    if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_WITHIN) return true;
+    if (frame->pixels == PIXELS_EQUAL || frame->pixels > PIXELS_RESIZED) return true;
     assert(frame->at[EXPECTED] != NULL && frame->at[ACTUAL] != NULL);
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
@@ -132,7 +134,7 @@ bool report_pictures_gather(ReportPictures *pictures, Regression *regression, si
     bool ok = true;
     for (int i = 0; i < regression->count; i++) {
         RegressionFrame *frame = &regression->frames[i];
-        if (frame->pixels == PIXELS_EQUAL) frame->flip = 0;
+        if (frame->pixels == PIXELS_EQUAL) frame->flip = frame->flip_p99 = 0;
         batch.wanted += is_wanted(frame, true) || is_wanted(frame, false);
     }
     for (int failed = 1; failed >= 0; failed--)

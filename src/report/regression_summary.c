@@ -47,6 +47,18 @@ static void put_code(FILE *out, const char *text) {
     for (size_t i = 0; i < fence; i++) fputc('`', out);
 }
 
+/* Each line is an item of a list. */
+static void write_items(FILE *out, const char *lines) {
+    char item[sizeof((RegressionText *)NULL)->text];
+    for (size_t length; *lines != '\0'; lines += length + (lines[length] == '\n')) {
+        length = strcspn(lines, "\n");
+        snprintf(item, sizeof item, "%.*s", (int)length, lines);
+        fputs("- ", out);
+        put_text(out, item);
+        fputc('\n', out);
+    }
+}
+
 static void write_head(FILE *out, const Regression *regression) {
     fputs("### twinbox compare: ", out);
     put_text(out, regression_verdict(regression).text);
@@ -55,17 +67,8 @@ static void write_head(FILE *out, const Regression *regression) {
     fputs(", actual ", out);
     put_code(out, regression->sequences[ACTUAL]->folder);
     fprintf(out, ": %d of %d frames failed.\n\n", regression->failed, regression->count);
-    const RegressionText begin = regression_begin(regression);
-    if (begin.text[0] == '\0') return;
-    char line[sizeof begin.text];
-    for (const char *at = begin.text; *at != '\0'; at += strspn(at, "\n")) {
-        size_t length = strcspn(at, "\n");
-        snprintf(line, sizeof line, "%.*s", (int)length, at);
-        fputs("- ", out);
-        put_text(out, line);
-        fputc('\n', out);
-        at += length;
-    }
+    write_items(out, regression_begin(regression).text);
+    write_items(out, regression_notes(regression).text);
     fputc('\n', out);
 }
 

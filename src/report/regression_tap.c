@@ -25,10 +25,21 @@ static void write_details(FILE *file, const RegressionCase *made) {
     fputs("  ...\n", file);
 }
 
+/* A comment for each line. */
+static void write_notes(FILE *file, const char *notes) {
+    if (notes[0] != '\0') fputs("# ", file);
+    for (; *notes != '\0'; notes++) {
+        fputc(*notes, file);
+        if (*notes == '\n') fputs("# ", file);
+        if (notes[1] == '\0') fputc('\n', file);
+    }
+}
+
 void report_write_tap(FILE *file, const void *context) {
     const Regression *regression = ((const Report *)context)->regression;
     const int count = regression_case_count(regression);
     fprintf(file, "TAP version 14\n1..%d\n", count);
+    write_notes(file, regression_notes(regression).text);
     for (int i = 0; i < count; i++) {
         const RegressionCase made = regression_case(regression, i);
         fprintf(file, "%s %d - ", made.failed ? "not ok" : "ok", i + 1);

@@ -16,8 +16,10 @@ const char *frame_verdict(const RegressionFrame *frame) {
     case PIXELS_EXTRA: return "extra";
     case PIXELS_DIFFER:
     case PIXELS_RESIZED:
+        if (frame->states == STATES_DIFFER) return "physics changed";
+        if (frame->other_view) return "view changed";
         if (frame->states == STATES_UNKNOWN) return "pictures differ";
-        return frame->states == STATES_EQUAL ? "renderer changed" : "physics changed";
+        return frame->states == STATES_EQUAL ? "renderer changed" : "run changed";
     case PIXELS_EQUAL:
     case PIXELS_WITHIN: break;
     }
@@ -39,6 +41,31 @@ static void add(RegressionText *text, const char *between, const char *format, .
     va_end(arguments);
 }
 
+/* The name of the largest region that has one. */
+static void add_changes(RegressionText *words, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame->changes;
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        if (changes->region_change[i] < 0) continue;
+        int others = changes->count - 1;
+        add(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
+        if (others > 0) add(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
+        return;
+    }
+}
+
+static void add_difference(RegressionText *words, const ImageDifference *difference) {
+    if (difference->pixels == 0)
+        add(words, "", "equal pixels");
+    else
+        add(words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
+            difference->pixels == 1 ? "pixel differs" : "pixels differ",
+            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
+            difference->first_y);
+    if (difference->moved > 0)
+        add(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
+            difference->moved == 1 ? "pixel" : "pixels");
+}
+
 RegressionText frame_words(const RegressionFrame *frame) {
     RegressionText words = {""};
     const ImageDifference *difference = &frame->difference;
@@ -47,23 +74,32 @@ RegressionText frame_words(const RegressionFrame *frame) {
     case PIXELS_MISSING: add(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: add(&words, "", "no expected picture"); break;
     case PIXELS_RESIZED:
-        add(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        add(&words, "", "sizes differ: %d x %d and %d x %d pixels; overlap: ", a->width, a->height, b->width,
+            b->height);
+        add_difference(&words, difference);
         break;
     case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
-    case PIXELS_DIFFER:
-        add(&words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
-            difference->pixels == 1 ? "pixel differs" : "pixels differ",
-            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
-            difference->first_y);
+    case PIXELS_DIFFER: add_difference(&words, difference);
     }
     if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
-    if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
+    if (frame->other_view && frame->states != STATES_DIFFER)
+        add(&words, ", ", "the camera differs");
+    else if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
         add(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
+    add_changes(&words, frame);
     if (frame->metadata.text[0] != '\0') add(&words, ", ", "metadata differs: %s", frame->metadata.text);
     if (frame->at[EXPECTED] != NULL && frame->at[EXPECTED] != frame->base)
         add(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
             frame->at[EXPECTED]->name + frame->at[EXPECTED]->folder);
+    return words;
+}
+
+RegressionText cause_words(const RegressionCause *cause) {
+    RegressionText words = {""};
+    add(&words, "", "%s: %s", cause->frames, cause->what);
+    if (cause->most > 0)
+        add(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
     return words;
 }
 
@@ -73,8 +109,10 @@ RegressionText run_words(const RegressionRun *run) {
     if (d->equal) add(&words, "", "equal states");
     if (d->what[0] != '\0') add(&words, "", "%s", d->what);
     if (d->frame >= 0)
-        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s; at most %g m", d->frame, d->body,
-            d->distance, d->angle, d->speed, d->max_distance);
+        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
+            d->angle, d->speed);
+    if (d->max_frame >= 0)
+        add(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
     return words;
 }
 
@@ -84,12 +122,14 @@ static void add_count(RegressionText *text, int count, const char *what) {
 
 RegressionText regression_verdict(const Regression *regression) {
     RegressionText verdict = {""};
-    bool physics = regression->physics > 0 || regression->run_failed > 0, renderer = regression->renderer > 0;
+    bool physics = regression->physics > 0 || regression->elsewhere > 0 || regression->run_failed > 0;
+    bool renderer = regression->renderer > 0;
     if (physics || renderer)
         add(&verdict, ", ", "%s",
             physics && renderer ? "physics and renderer changed"
             : physics           ? "physics changed"
                                 : "renderer changed");
+    if (regression->view > 0 && !physics) add(&verdict, ", ", "view changed");
     if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (cause unknown: no states)");
     if (regression->metadata_failed > 0) add(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");

@@ -49,8 +49,8 @@ static void add_values(const Parameters *parameters, const char *text, char *out
 static ChainShown show_text(const YamlTree *tree, int node) {
     ChainShown shown;
     snprintf(shown.text, sizeof shown.text, "%s", yaml_show(tree, node).text);
-    if (tree->nodes[node].kind == YAML_SCALAR && tree->parameters != NULL)
-        add_values(tree->parameters, yaml_text(tree, node), shown.text, sizeof shown.text);
+    if (tree->nodes[node].kind == YAML_SCALAR && tree->context != NULL)
+        add_values(tree->context, yaml_text(tree, node), shown.text, sizeof shown.text);
     return shown;
 }
 
@@ -69,7 +69,7 @@ static bool malformed(const Chain *chain, Error *error) {
 
 /* The value of the name that begins the text, without its '$'. */
 static bool take_name(const Chain *chain, const char *text, double *value, const char **rest, Error *error) {
-    Parameters *parameters = chain->tree->parameters;
+    Parameters *parameters = chain->tree->context;
     size_t length = strspn(text, PARAMETER_LETTERS);
     if (length == 0)
         return yaml_error(chain->tree, chain->node, error, "%s: a parameter's name must follow the '$' (got %s)",

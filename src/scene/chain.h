@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Chains: numbers of a scene file given as products and quotients, from left to right, of decimals and $names of the
-   scene's parameters, such as 10*$slope or 1/$rate. No other operators, no parentheses, no blanks. */
+   scene's parameters, such as 10*$slope or 1/$rate. No other operators, no parentheses, no blanks. The tree's context is the scene's
+   Parameters, or NULL where there are none. */
 #pragma once
-#include "scene/yaml_tree.h"
+#include "yaml/yaml_tree.h"
 
 /* Time is linear in the number of factors, and a file of 1.5 MB has room for 750,000. */
 enum { CHAIN_MAX_NUMBERS = 16, CHAIN_SHOWN_SIZE = 320 };

@@ -2,7 +2,7 @@
 #include "scene/launch.h"
 
 #include "common/parse.h"
-#include "scene/fields.h"
+#include "scene/scene_fields.h"
 
 #include <math.h>
 

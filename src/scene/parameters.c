@@ -3,8 +3,8 @@
 
 #include "common/names.h"
 #include "scene/chain.h"
-#include "scene/fields.h"
-#include "scene/nearest.h"
+#include "scene/scene_fields.h"
+#include "yaml/nearest.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 /* The key `parameters` of a scene. */
 #pragma once
 #include "scene/scene.h"
-#include "scene/yaml_tree.h"
+#include "yaml/yaml_tree.h"
 
 #define PARAMETER_LETTERS "abcdefghijklmnopqrstuvwxyz0123456789_"
 

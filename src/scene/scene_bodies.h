@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key `bodies` of a scene. */
 #pragma once
-#include "scene/fields.h"
+#include "scene/scene_fields.h"
 #include "scene/scene.h"
 
 /* Default of Box2D-Lite. */

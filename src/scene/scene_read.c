@@ -76,8 +76,9 @@ static bool field_networks(const YamlTree *tree, int node, const Field *field, v
 static bool field_parameters(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)node, (void)field, (void)error;
     Scene *scene = member;
-    scene->parameter_count = tree->parameters->count;
-    memcpy(scene->parameters, tree->parameters->items, sizeof scene->parameters);
+    const Parameters *parameters = tree->context;
+    scene->parameter_count = parameters->count;
+    memcpy(scene->parameters, parameters->items, sizeof scene->parameters);
     return true;
 }
 
@@ -111,9 +112,9 @@ static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings
     if (!parameters_read(&parameters, tree, error) ||
         !parameters_set(&parameters, tree->source.path, settings, count, error))
         return false;
-    tree->parameters = &parameters;
+    tree->context = &parameters;
     bool ok = read_fields(tree, scene, error) && parameters_all_used(&parameters, tree, error);
-    tree->parameters = NULL;
+    tree->context = NULL;
     return ok;
 }
 

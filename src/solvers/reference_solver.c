@@ -16,13 +16,7 @@ static void *create(const Settings *chosen, Error *error) {
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ReferenceVelocity *velocity = &reference->velocities[i];
-        solution->velocities[i] = (BodyVelocity){vec2((float)velocity->x, (float)velocity->y), (float)velocity->spin};
-    }
-    for (int i = 0; i < problem->contact_count; i++)
-        solution->impulses[i] =
-            (ContactImpulse){(float)reference->impulses[i].normal, (float)reference->impulses[i].tangent};
+    reference_round(reference, problem, solution);
     return true;
 }
 

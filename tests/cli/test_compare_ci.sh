@@ -16,11 +16,17 @@ def picture(path, grey):
         file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 1, 8, 0, 0, 0, 0)))
         file.write(chunk(b"IDAT", zlib.compress(bytes([0, 9, grey]))) + chunk(b"IEND", b""))
 for folder, grey in ("few/a", 9), ("few/b", 12):
-    for i in range(3):
-        picture(f"{folder}/f_{i}.png", grey if i > 0 else 9)
+    for i in range(4):
+        picture(f"{folder}/f_{i}.png", grey if i in (1, 3) else 9)
+# Every second of 40 frames fails; in a row, every one of 30.
 for folder, grey in ("many/a", 9), ("many/b", 12):
+    for i in range(40):
+        picture(f"{folder}/f_{i}.png", grey if i % 2 == 0 else 9)
+for folder, grey in ("row/a", 9), ("row/b", 12):
     for i in range(30):
         picture(f"{folder}/f_{i}.png", grey)
+    picture(f"{folder}/home.png", grey)
+    picture(f"{folder}/menu.png", grey)
 hostile = ["::error title=x::y", "##[add-mask]x", "a%0A::warning::b", "x,line=1:2", "a|b`c``d", "<script>alert(1)",
            "[x](javascript:1)", "# TODO later", "x # SKIP", "back\\slash\\", "]]>&amp;", "\ufffe\uffff", "@me $x$ :+1:", "_a_ *b*"]
 for folder, grey in ("hostile/a", 9), ("hostile/b", 12):
@@ -46,7 +52,7 @@ annotated() {
 annotated few
 cat >wanted <<'TEXT'
 ::error file=few/a/f_1.png,title=pictures differ::f_1.png: 1 pixel differs (50%25) by at most 3, first at (1, 0)
-::error file=few/a/f_2.png,title=pictures differ::f_2.png: 1 pixel differs (50%25) by at most 3, first at (1, 0)
+::error file=few/a/f_3.png,title=pictures differ::f_3.png: 1 pixel differs (50%25) by at most 3, first at (1, 0)
 TEXT
 equal "the annotations" "$(cat annotations)" "$(cat wanted)"
 # What names files stands where the runner does not look for commands.
@@ -58,8 +64,12 @@ run 1 compare few/a few/b --annotations github
 [ "$(sed -n 's/^::stop-commands:://p' out)" != "$token" ] || fail "the token can be known before"
 
 annotated many
-equal "annotations of 30 failures" "$(wc -l <annotations)" 10
-equal "the last one" "$(tail -n 1 annotations)" "::error title=twinbox compare::21 more failures; the step summary and the report list them"
+equal "annotations of 20 failures" "$(wc -l <annotations)" 10
+equal "the last one" "$(tail -n 1 annotations)" "::error title=twinbox compare::11 more failures; the step summary and the report list them"
+annotated row
+equal "annotations of a sequence and two pictures" "$(cut -d' ' -f2- annotations | cut -c1-80)" "file=row/a/f_0.png,title=pictures differ::f_0.png to f_29.png, 30 frames; the fi
+file=row/a/home.png,title=pictures differ::home.png: 1 pixel differs (50%25) by 
+file=row/a/menu.png,title=pictures differ::menu.png: 1 pixel differs (50%25) by "
 run 0 compare few/a few/a --annotations github
 ! grep '^::error' out || fail "an annotation of equal pictures"
 head -c 40 few/a/f_1.png >few/b/f_1.png
@@ -110,6 +120,18 @@ if command -v prove >/dev/null; then
     prove --exec cat report/results.tap >proved 2>&1
     grep -q "Failed 14/14 subtests" proved || fail "prove: $(cat proved)"
 fi
+
+# What a comparison leaves out is in all of them.
+mkdir sub.a sub.b sub.a/inner sub.b/inner
+cp few/a/f_0.png sub.a/ && cp few/a/f_0.png sub.b/
+cp few/a/f_0.png sub.a/inner/ && cp few/a/f_1.png sub.b/inner/
+GITHUB_STEP_SUMMARY=$folder/sub.md run 0 compare sub.a sub.b --no-recursive --annotations github --report report
+grep -q '^# not compared: 1 picture in subfolders of sub.a' report/results.tap || fail "no note in results.tap"
+grep -q '^- not compared.*1 picture in subfolders of sub.a' sub.md || fail "no note in the summary: $(cat sub.md)"
+/usr/bin/python3 - <<'PYTHON' || fail "no note in junit.xml"
+import xml.etree.ElementTree
+assert "not compared: 1 picture in subfolders of sub.a" in xml.etree.ElementTree.parse("report/junit.xml").find("system-out").text
+PYTHON
 
 # A summary of which GitHub would refuse all is cut, and what was there before counts.
 rm summary.md

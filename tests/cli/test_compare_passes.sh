@@ -54,10 +54,20 @@ echo text | tee a/run.npz >b/run.npz
 run 0 compare a b
 says "equal: 2 frames"
 says "not compared: 1 .npz file without a trajectory"
-! grep -q "1 trajectories" out || fail "text was counted as a trajectory"
+! grep -q "1 trajectory" out || fail "text was counted as a trajectory"
 rm b/run.npz
 run 0 compare a b
 says "not compared: 1 .npz file only in a"
+
+# A comparison with itself tells nothing.
+fresh
+ln -s a same
+run 0 compare a same
+says "expected and actual are the same folder"
+run 0 compare a/home.png a/../same/home.png
+says "expected and actual are the same file"
+run 0 compare a b
+! grep -q "the same" out || fail "two folders are taken for one"
 
 # Subfolders.
 fresh
@@ -85,7 +95,7 @@ run 2 compare a b # trajectories do not replace pictures
 rm -r b/*
 cp one.npz b
 run 0 compare a b
-says "equal: 0 frames, 1 trajectories"
+says "equal: 0 frames, 1 trajectory"
 
 # The state of a picture is that of the runs in its own folder.
 fresh
@@ -99,7 +109,7 @@ grep -q '"name": "sub/x.png", "verdict": "physics changed"' report/results.json 
 run 0 approve report
 says "replaced a/sub/run.npz"
 run 0 compare a b
-says "equal: 2 frames, 1 trajectories"
+says "equal: 2 frames, 1 trajectory"
 
 # Links.
 fresh

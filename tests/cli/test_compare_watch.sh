@@ -30,7 +30,7 @@ watch() {
 
 watch expected actual --report report
 seen 1 "watching expected and actual; Ctrl-C ends"
-seen 1 "equal: 3 frames, 1 trajectories"
+seen 1 "equal: 3 frames, 1 trajectory"
 grep -q '"verdict": "equal"' report/results.json || fail "no report of equal pictures"
 cp changed/* actual/
 seen 2 "watching"
@@ -67,6 +67,12 @@ seen 4 "equal: 3 frames"
 touch actual/notes.txt actual/.hidden.png
 sleep 1.2
 seen 7 "watching"
+# Rules are inputs.
+echo "rules: []" >expected/compare.yaml
+seen 8 "watching"
+seen 1 "expected/compare.yaml:1:8: error:"
+rm expected/compare.yaml
+seen 9 "watching"
 stopped 0
 
 # The exit status is that of the last comparison.

@@ -3,6 +3,8 @@
 #include "testing.h"
 
 #include "image/difference_picture.h"
+#include "image/image_compare.h"
+#include "image/mask.h"
 
 enum { LEVELS = 256 };
 
@@ -17,7 +19,7 @@ static Image *read_back(uint8_t *file, size_t size) {
 static Image *draw(const Image *expected, const Image *actual, const uint8_t *masked) {
     Error error = {0};
     size_t size;
-    uint8_t *file = difference_picture(expected, actual, masked, &size, &error);
+    uint8_t *file = difference_picture(expected, actual, masked, expected->width, expected->height, &size, &error);
     return read_back(file, size);
 }
 
@@ -71,7 +73,7 @@ static void masked_pixels_are_hatched(void **state) {
     uint8_t masked[LEVELS];
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     memset(actual->pixels, 255, 4 * LEVELS);
-    memset(masked, 1, sizeof masked);
+    memset(masked, IGNORED_MASK, sizeof masked);
     Image *drawn = draw(expected, actual, masked);
     for (int x = 0; x < LEVELS; x++) {
         int grey = x % 8 == 0 ? 120 : 200;
@@ -139,9 +141,56 @@ static void noise_comes_back(void **state) {
     image_destroy(drawn);
 }
 
+static void ignored_edges_are_blue(void **state) {
+    (void)state;
+    uint8_t masked[LEVELS];
+    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    memset(actual->pixels, 255, 4 * LEVELS);
+    memset(masked, IGNORED_EDGE, sizeof masked);
+    Image *drawn = draw(expected, actual, masked);
+    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
+    image_destroy(expected);
+    image_destroy(actual);
+    image_destroy(drawn);
+}
+
+/* Equal but for one pixel, 24 x 12 and 16 x 20. */
+static void what_only_one_picture_has_is_striped(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    Image *a = black(24, 12), *b = black(16, 20);
+    ImageDifference difference;
+    for (int i = 0; i < 24 * 12; i++) a->pixels[4 * i] = (uint8_t)(i % 24 + 9 * (i / 24));
+    for (int i = 0; i < 16 * 20; i++) b->pixels[4 * i] = (uint8_t)(i % 16 + 9 * (i / 16));
+    b->pixels[4 * (5 * 16 + 7)]++;
+    image_compare(a, b, &difference);
+    assert_false(difference.same_size);
+    image_cut_to_overlap(a, b);
+    assert_true(a->width == 16 && a->height == 12 && b->width == 16 && b->height == 12);
+    image_compare(a, b, &difference);
+    assert_true(difference.pixels == 1 && difference.first_x == 7 && difference.first_y == 5);
+    uint8_t *file = difference_picture(a, b, NULL, 24, 20, &size, &error);
+    Image *drawn = read_back(file, size);
+    int striped = 0, colored = 0;
+    for (int i = 0; i < 24 * 20; i++) {
+        const uint8_t *p = drawn->pixels + 4 * i;
+        bool inside = i % 24 < 16 && i / 24 < 12, stripe = p[0] == 150 && p[1] == 120 && p[2] == 175;
+        striped += stripe;
+        colored += p[0] != p[1];
+        assert_false(inside && stripe);
+    }
+    assert_int_equal(striped, (24 * 20 - 16 * 12) / 2);
+    assert_int_equal(colored, striped + 1);
+    image_destroy(a);
+    image_destroy(b);
+    image_destroy(drawn);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(differences_are_coloured_by_size), cmocka_unit_test(equal_pixels_are_pale),
+        cmocka_unit_test(ignored_edges_are_blue),           cmocka_unit_test(what_only_one_picture_has_is_striped),
         cmocka_unit_test(masked_pixels_are_hatched),        cmocka_unit_test(sixteen_bits_count_in_full),
         cmocka_unit_test(heat_goes_from_black_to_yellow),   cmocka_unit_test(noise_comes_back),
     };

@@ -15,8 +15,14 @@ static int clear(void **state) {
 
 static uint8_t *made(void) {
     Error error = {0};
-    uint8_t *masked = mask_make(&mask, WIDTH, HEIGHT, "frame.png", &error);
-    assert_ok(masked != NULL, error);
+    Image *expected = image_create(WIDTH, HEIGHT, &error);
+    uint8_t *masked = calloc(WIDTH * HEIGHT, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        expected->pixels[4 * i] = (uint8_t)i;
+        expected->pixels[4 * i + 3] = i % 2 == 0 ? 255 : 128;
+    }
+    assert_ok(mask_draw(&mask, expected, "frame.png", masked, &error), error);
+    image_destroy(expected);
     return masked;
 }
 
@@ -46,9 +52,21 @@ static void pictures_mask_where_they_are_not_black(void **state) {
     uint8_t *masked = made();
     for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(masked[i], i == 3 || i == 7);
     free(masked);
-    assert_null(mask_make(&mask, WIDTH + 1, HEIGHT, "frame.png", &error));
+    image->width++;
+    assert_false(mask_draw(&mask, image, "frame.png", NULL, &error));
     assert_error(error, ERROR_INPUT, "mask.png: error: the mask has 6 x 4 pixels, but frame.png has 7 x 4");
     image_destroy(image);
+}
+
+/* Opaque ones: the odd pixels are not. */
+static void colours_mask_where_the_expected_picture_has_them(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int i = 8; i <= 11; i++) assert_ok(mask_add_color(&mask, (const uint8_t[3]){(uint8_t)i, 0, 0}, &error), error);
+    assert_ok(mask_add_color(&mask, (const uint8_t[3]){4, 1, 0}, &error), error);
+    uint8_t *masked = made();
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(masked[i], i == 8 || i == 10);
+    free(masked);
 }
 
 static void masked_pixels_do_not_count(void **state) {
@@ -56,9 +74,11 @@ static void masked_pixels_do_not_count(void **state) {
     Error error = {0};
     ImageDifference difference;
     Image *a = image_create(WIDTH, HEIGHT, &error), *b = image_create(WIDTH, HEIGHT, &error);
-    uint8_t masked[WIDTH * HEIGHT] = {[8] = 1, [9] = 1};
-    a->pixels[4 * 8] = 200, a->pixels[4 * 10] = 3, a->pixels[4 * 22 + 2] = 7;
-    image_compare_masked(a, b, masked, &difference);
+    uint8_t masked[WIDTH * HEIGHT] = {[8] = IGNORED_MASK, [9] = IGNORED_MASK, [20] = IGNORED_EDGE, [21] = IGNORED_EDGE};
+    a->pixels[4 * 8] = 200, a->pixels[4 * 10] = 3, a->pixels[4 * 22 + 2] = 7, a->pixels[4 * 20] = 90;
+    image_compare_masked(a, b, masked, 3, &difference);
+    assert_int_equal(difference.beyond, 1);
+    assert_int_equal(difference.moved, 1);
     assert_int_equal(difference.counted, WIDTH * HEIGHT - 2);
     assert_int_equal(difference.pixels, 2);
     assert_int_equal(difference.largest, 7);
@@ -66,8 +86,8 @@ static void masked_pixels_do_not_count(void **state) {
     assert_true(difference.left == 4 && difference.top == 1 && difference.right == 5 && difference.bottom == 4);
     image_copy_masked(b, a, masked);
     assert_true(a->pixels[4 * 8] == 0 && a->pixels[4 * 10] == 3);
-    masked[10] = masked[22] = 1;
-    image_compare_masked(a, b, masked, &difference);
+    masked[10] = masked[22] = IGNORED_MASK;
+    image_compare_masked(a, b, masked, 0, &difference);
     assert_true(difference.equal);
     image_destroy(a);
     image_destroy(b);
@@ -85,6 +105,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
         cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
+        cmocka_unit_test_teardown(colours_mask_where_the_expected_picture_has_them, clear),
         cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
         cmocka_unit_test_teardown(the_number_of_masks_is_limited, clear),
     };

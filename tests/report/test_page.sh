@@ -97,7 +97,7 @@ cat >probe.html <<'PROBE'
     note("marks of both pictures", marks(), [...document.querySelectorAll(".ring")].map(mark => mark.dataset.number));
     await press("5");
     note("regions", get("regions-part").hidden, ...[...document.querySelectorAll("#regions li")].map(item => item.textContent), get("more-regions").textContent);
-    note("causes", get("causes-part").hidden, get("causes").textContent);
+    note("causes", get("causes").textContent);
     note("marks", marks() > 0, get("ring-button").getAttribute("aria-pressed"));
     await press("m");
     note("no marks", marks(), get("ring-button").getAttribute("aria-pressed"));
@@ -106,6 +106,11 @@ cat >probe.html <<'PROBE'
     await press("0");
     await press("End");
     note("end", ...place(), pressed(), ...images());
+    note("link by name", location.hash);
+    await follow("#frame=frame_000004.png");
+    note("followed by name", ...place());
+    await follow("#frame=sub%2Fframe_000004.png");
+    note("followed by name again", ...place());
     note("cannot", get("mode-swipe").disabled, get("next").disabled);
     await press("ArrowRight");
     note("beyond", ...place());
@@ -137,12 +142,13 @@ cat >probe.html <<'PROBE'
 })();
 </script>
 PROBE
-# Two regions instead of those found, and a cause: a mark around most of the picture is left out.
+# A name in a subfolder, two regions instead of those found, and a cause: a mark around most of the picture is left out.
 /usr/bin/python3 - <<'PYTHON'
 import json, re
 page = open("report/report.html").read()
 begin, data, end = re.fullmatch(r'(.*<script type="application/json" id="data">)(.*?)(</script>.*)', page, re.DOTALL).groups()
 data = json.loads(data)
+data["frames"][5]["name"] = "sub/frame_000004.png" # a number that two names have
 data["causes"] = ["frames 1 to 4: body 1 moved by <b>"]
 for frame in data["frames"]:
     frame["region_count"] = 3
@@ -175,17 +181,20 @@ if command -v chromium >/dev/null; then
     says "followed back: frame_000001.png | physics changed | 2 of 5 | mode-swipe | true"
     says "sorted by flip: 5 | true | frame_000001.png"
     says "sorted by largest: 5 | true | frame_000001.png"
-    says "sorted by name: frame_000000.png,frame_000001.png,frame_000002.png,frame_000004.png,frame_000005.png | frame_000001.png | physics changed | 2 of 5"
+    says "sorted by name: frame_000000.png,frame_000001.png,frame_000002.png,frame_000004.png,sub/frame_000004.png | frame_000001.png | physics changed | 2 of 5"
     says "figures: FLIP 0."
     says "marks: true | true"
     says "marks of both pictures: 4 | 1,1,2,2"
     says "regions: false | body 1 moved: 10 x 14 pixels at (10, 10), 99 of them differ | 10 x 10 pixels at (40, 40), 7 of them differ | and 1 more"
-    says "causes: false | frames 1 to 4: body 1 moved by <b>"
+    says "causes: frames 1 to 4: body 1 moved by <b>"
     says "no marks: 0 | false"
     says "zoom: 1 | 80px"
-    says "end: frame_000005.png | extra | 5 of 5 | mode-actual | actual:80"
+    says "end: sub/frame_000004.png | extra | 5 of 5 | mode-actual | actual:80"
+    says "link by name: #frame=sub%2Fframe_000004.png&mode=actual"
+    says "followed by name: frame_000004.png | physics changed | 4 of 5"
+    says "followed by name again: sub/frame_000004.png | extra | 5 of 5"
     says "cannot: true | true"
-    says "beyond: frame_000005.png | extra | 5 of 5"
+    says "beyond: sub/frame_000004.png | extra | 5 of 5"
     says "all: 6 | true | frame_000000.png | missing | 1 of 6"
     says "scrubbed: frame_000003.png | equal | 4 of 6 | false | Equal pictures are not included in this report."
     says "own keys: 4 of 6"

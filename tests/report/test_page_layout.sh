@@ -12,7 +12,8 @@ run 0 render a.npz -o expected --size 320x180 --frames 0:4
 run 0 render b.npz -o actual --size 320x180 --frames 1:5
 cp expected/frame_000003.png actual/frame_000003.png
 rm expected/*.npz actual/*.npz
-# A frame within tolerance: without states, and one pixel of another colour.
+# A frame within tolerance: without states, and one pixel of another colour. In a subfolder, one with other metadata.
+mkdir expected/sub actual/sub
 /usr/bin/python3 - <<'PYTHON'
 import struct, zlib
 chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -21,6 +22,10 @@ for folder, first in ("expected", 9), ("actual", 10):
     with open(f"{folder}/plain.png", "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 320, 180, 8, 0, 0, 0, 0)))
         file.write(chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    with open(f"{folder}/sub/gamma.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)))
+        file.write(chunk(b"gAMA", struct.pack(">I", 45454 if first == 9 else 60000)))
+        file.write(chunk(b"IDAT", zlib.compress(b"\0\0")) + chunk(b"IEND", b""))
 PYTHON
 run 1 compare expected actual --fuzzy 1,0.01 --report report
 
@@ -68,6 +73,12 @@ cat >probe.html <<'PROBE'
     await wait();
     note("window", innerWidth >= 390, document.documentElement.scrollWidth <= innerWidth);
     const slider = get("scrubber").getBoundingClientRect();
+    /* A row far below is shown by scrolling the list, never the page. */
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "3000px";
+    document.body.dispatchEvent(new KeyboardEvent("keydown", {key: "End", bubbles: true}));
+    await wait();
+    note("not scrolled", scrollY);
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "";
     note("fold", slider.top >= 0 && slider.bottom <= 900 && slider.bottom <= innerHeight);
     const labels = [...document.querySelectorAll(".plot h3, .plot span")];
     const clipped = labels.filter(e => {
@@ -94,6 +105,8 @@ cat >probe.html <<'PROBE'
     };
     get("all").click();
     await wait();
+    note("metadata", get("notes").textContent.includes("metadata differs in 1 frame"),
+      ...[...get("rows").lastChild.children].map(part => part.className + " " + part.textContent));
     note("looks", ...["good", "odd", "bad"].map(look => document.querySelectorAll("#rows ." + look).length > 0));
     for (const hidden of document.querySelectorAll("main [hidden]")) hidden.hidden = false;
     get("help").open = true;
@@ -131,11 +144,13 @@ NARROW
 
 check_page() {
     says "window: true | true"
+    says "not scrolled: 0"
     says "labels: 10 |  | true"
     says "plots: 2 | true | true"
     says "tab: skip | 1 | 5 | 1 | true"
     says "skip link seen: true"
     says "skipped to: stage"
+    says "metadata: true | row-name sub/gamma.png | odd equal | row-figures metadata differs"
     says "looks: true | true | true"
     says "pairs: true"
     [ "$(grep '^low contrast:' out)" = "low contrast: " ] || fail "$1: $(grep '^low contrast:' out)"

@@ -38,7 +38,7 @@ static void render_into(const char *folder) {
     const Trajectory *const panels[] = {run};
     const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
     assert_ok(render_sequence(panels, 1, &options, NULL, NULL, &error), error);
-    assert_ok(trajectory_write(run, in(folder, "two.npz"), &error), error);
+    assert_ok(trajectory_write(run, in(folder, "two_boxes-engine.npz"), &error), error);
 }
 
 static Trajectory *make_run(void) {
@@ -85,7 +85,7 @@ static Regression compared(void) {
     return regression;
 }
 
-/* One letter per frame: (e)qual, (r)enderer, (p)hysics; and the overall verdict. */
+/* One letter per frame: (e)qual, (r)enderer or (r)un, (p)hysics, (v)iew; and the overall verdict. */
 static void assert_verdicts(const Regression *regression, const char *letters, const char *whole) {
     char found[FRAMES + 1] = "";
     for (int i = 0; i < FRAMES; i++) found[i] = frame_verdict(&regression->frames[i])[0];
@@ -95,8 +95,23 @@ static void assert_verdicts(const Regression *regression, const char *letters, c
 }
 
 static void remove_runs(void) {
-    assert_int_equal(remove(in(expected, "two.npz")), 0);
-    assert_int_equal(remove(in(actual, "two.npz")), 0);
+    assert_int_equal(remove(in(expected, "two_boxes-engine.npz")), 0);
+    assert_int_equal(remove(in(actual, "two_boxes-engine.npz")), 0);
+}
+
+static void remove_manifests(void) {
+    assert_int_equal(remove(in(expected, "manifest.json")), 0);
+    assert_int_equal(remove(in(actual, "manifest.json")), 0);
+}
+
+static void assert_cause(const Regression *regression, int cause, const char *words) {
+    assert_true(cause < regression->cause_count);
+    assert_string_equal(cause_words(&regression->causes[cause]).text, words);
+}
+
+static void assert_name(const Regression *regression, int frame, const char *name) {
+    assert_non_null(regression->frames[frame].changes);
+    assert_string_equal(region_name(regression->frames[frame].changes, 0).text, name);
 }
 
 /* A picture as from another renderer: new pixels, but the frame's original texts. */
@@ -140,6 +155,12 @@ static void a_box_drawn_a_sixteenth_of_a_pixel_aside(void **state) {
     Regression regression = compared();
     assert_verdicts(&regression, "eeeree", "renderer changed");
     assert_string_equal(regression_begin(&regression).text, "renderer changed first in frame_000003.png");
+    assert_int_equal(regression.cause_count, 1);
+    const Change *change = &regression.frames[3].changes->list[0];
+    assert_true(change->kind == CHANGE_MOVED && change->body == FIRST_BOX && !change->by_states);
+    assert_near(change->right, 31.0 / 512, 0.01); /* the scale is 31 pixels/m */
+    assert_near(change->up, 0, 0.01);
+    assert_non_null(strstr(cause_words(&regression.causes[0]).text, "frame 3: body 1 moved at most 0.0"));
     image_destroy(image);
     regression_free(&regression);
 }
@@ -153,11 +174,16 @@ static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
     assert_int_equal(regression.frames[3].pixels, PIXELS_DIFFER);
     assert_int_equal(regression.runs[0].difference.frame, 3);
     assert_int_equal(regression.runs[0].difference.body, FIRST_BOX);
+    assert_int_equal(regression.cause_count, 1);
+    assert_cause(&regression, 0, "frame 3: states differ, body 1 first");
+    assert_name(&regression, 3, "body 1 moved 0.06 px right");
     regression_free(&regression);
-    /* Without runs, the pictures' texts give the frame and the panel. */
+    /* Without runs, the pictures' texts give the frame and the panel, but no body. */
     remove_runs();
     regression = compared();
     assert_verdicts(&regression, "eeepee", "physics changed");
+    assert_cause(&regression, 0, "frame 3: states differ in panel 1");
+    assert_name(&regression, 3, "");
     assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000003.png, panel 1");
     regression_free(&regression);
 }
@@ -174,6 +200,41 @@ static void one_pixel_of_a_label(void **state) {
     const ImageDifference *difference = &regression.frames[4].difference;
     assert_true(difference->pixels == 1 && difference->largest == 1);
     assert_true(difference->first_x == 20 && difference->first_y == 12);
+    image_destroy(image);
+    regression_free(&regression);
+}
+
+/* A cause has one line, with the frames that it covers. */
+static void causes_of_several_frames(void **state) {
+    (void)state;
+    static const int frames[] = {1, 2, 3, 5};
+    for (int i = 0; i < 4; i++) {
+        Vec2 *box = run_position(run, frames[i], SECOND_BOX), old = *box;
+        box->y += 2.0F * (float)(i + 1) / 32;
+        Image *image = drawn(frames[i]);
+        if (frames[i] == 2) memset(image->pixels + 4 * 20 * WIDTH, 0x70, 40); /* above the panel is the page */
+        replace_pixels(frames[i], image);
+        image_destroy(image);
+        *box = old;
+    }
+    Regression regression = compared();
+    assert_verdicts(&regression, "errrer", "renderer changed");
+    assert_cause(&regression, 0, "frames 1 to 3, 5: body 2 moved at most 7.7 px");
+    assert_name(&regression, 1, "body 2 moved 1.9 px up");
+    regression_free(&regression);
+}
+
+/* A run that has not drawn the pictures gives no names. */
+static void a_run_of_other_pictures(void **state) {
+    (void)state;
+    Error error = {0};
+    run_position(run, 3, FIRST_BOX)->x += 1;
+    Image *image = drawn(3);
+    replace_pixels(3, image);
+    assert_ok(trajectory_write(run, in(actual, "two_boxes-engine.npz"), &error), error);
+    Regression regression = compared();
+    assert_name(&regression, 3, "");
+    assert_cause(&regression, 0, "frame 3: states differ, body 1 first");
     image_destroy(image);
     regression_free(&regression);
 }
@@ -196,14 +257,14 @@ static void the_last_bit_of_one_body(void **state) {
     Error error = {0};
     float *angle = run_angle(run, 4, SECOND_BOX);
     *angle = nextafterf(*angle, 10);
-    assert_ok(trajectory_write(run, in(actual, "two.npz"), &error), error);
+    assert_ok(trajectory_write(run, in(actual, "two_boxes-engine.npz"), &error), error);
     Regression regression = compared();
     assert_verdicts(&regression, "eeeepe", "physics changed");
     assert_int_equal(regression.frames[4].pixels, PIXELS_EQUAL);
     assert_int_equal(regression.runs[0].difference.frame, 4);
     assert_int_equal(regression.runs[0].difference.body, SECOND_BOX);
-    assert_non_null(
-        strstr(regression_begin(&regression).text, "physics changed first in two.npz: from frame 4, body 2"));
+    assert_non_null(strstr(regression_begin(&regression).text,
+                           "physics changed first in two_boxes-engine.npz: from frame 4, body 2"));
     regression_free(&regression);
     /* The texts of its frames show it too. */
     render_into(actual);
@@ -233,12 +294,12 @@ static void other_runs_beside_the_frames(void **state) {
     (void)state;
     Error error = {0};
     Trajectory *other = run_make("engine", 4);
-    assert_ok(trajectory_write(other, in(actual, "two.npz"), &error), error);
+    assert_ok(trajectory_write(other, in(actual, "two_boxes-engine.npz"), &error), error);
     Regression regression = compared();
     assert_verdicts(&regression, "eeeepp", "physics changed");
     regression_free(&regression);
     other->size[FIRST_BOX].x = 3;
-    assert_ok(trajectory_write(other, in(actual, "two.npz"), &error), error);
+    assert_ok(trajectory_write(other, in(actual, "two_boxes-engine.npz"), &error), error);
     regression = compared();
     assert_verdicts(&regression, "pppppp", "physics changed");
     trajectory_destroy(other);
@@ -255,13 +316,20 @@ static void a_camera_that_follows_the_run(void **state) {
     render_into(actual);
     Regression regression = compared();
     assert_int_equal(regression.by_verdict[PIXELS_DIFFER], FRAMES);
-    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_verdicts(&regression, "vppppp", "physics changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
     assert_int_equal(regression.runs[0].difference.frame, 1);
+    /* The camera is the first cause, of all frames; the states are the second, of five. */
+    assert_int_equal(regression.cause_count, 2);
+    assert_true(regression.causes[0].of_view && regression.causes[0].count == FRAMES);
+    assert_non_null(strstr(cause_words(&regression.causes[0]).text, "frames 0 to 5: the camera differs: "));
+    assert_string_equal(cause_words(&regression.causes[1]).text, "frames 1 to 5: states differ, body 1 first");
     regression_free(&regression);
     remove_runs();
+    remove_manifests();
     regression = compared();
-    assert_verdicts(&regression, "pppppp", "physics changed");
+    assert_verdicts(&regression, "rppppp", "physics changed");
+    assert_string_equal(frame_verdict(&regression.frames[0]), "run changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
     assert_string_equal(regression_begin(&regression).text, "physics changed first in frame_000001.png, panel 1");
     regression_free(&regression);
@@ -273,6 +341,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_box_drawn_a_sixteenth_of_a_pixel_aside, make, remove_folders),
         cmocka_unit_test_setup_teardown(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders),
         cmocka_unit_test_setup_teardown(one_pixel_of_a_label, make, remove_folders),
+        cmocka_unit_test_setup_teardown(causes_of_several_frames, make, remove_folders),
+        cmocka_unit_test_setup_teardown(a_run_of_other_pictures, make, remove_folders),
         cmocka_unit_test_setup_teardown(two_frames_swapped, make, remove_folders),
         cmocka_unit_test_setup_teardown(the_last_bit_of_one_body, make, remove_folders),
         cmocka_unit_test_setup_teardown(both_at_once, make, remove_folders),

@@ -2,7 +2,7 @@
 /* Files that would eat time or memory, and files damaged at random. */
 #include "scene_text.h"
 
-#include "scene/yaml_tree.h"
+#include "yaml/yaml_tree.h"
 
 /* A text that grows. */
 typedef struct Text {
@@ -106,7 +106,7 @@ static void aliases_of_aliases_are_refused(void **state) {
             (size_t)sprintf(text.data + text.size, "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", 'a' + level,
                             'a' + level, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1,
                             'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1);
-    text_expect(&text, "1:7: error: anchors (&) are not allowed in a scene");
+    text_expect(&text, "1:7: error: anchors (&) are not allowed");
 }
 
 static void floods_are_refused(void **state) {
@@ -119,7 +119,7 @@ static void floods_are_refused(void **state) {
     expect_flood("", "!a\n", 100000, gap);
     expect_flood("", "\n", 100000, "7072:1: error: too many blanks and empty lines in a row");
     expect_flood("{a:\n", " \n", 100000, "3537:1: error: too many blanks and empty lines in a row");
-    expect_flood("%", "%", 100000, "1:1: error: YAML directives are not allowed in a scene");
+    expect_flood("%", "%", 100000, "1:1: error: YAML directives are not allowed");
     expect_flood("bodies: [", "a,\n ", 300000, "219998:2: error: more than 220000 values in one file");
 }
 
@@ -128,7 +128,7 @@ static void large_line_numbers_keep_the_excerpt_aligned(void **state) {
     Text text = text_new("");
     text_add(&text, "- a\n", 100000);
     text_add(&text, "- &b c\n", 1);
-    text_expect(&text, "100001:6: error: anchors (&) are not allowed in a scene\n"
+    text_expect(&text, "100001:6: error: anchors (&) are not allowed\n"
                        "100001 | - &b c\n"
                        "       |      ^");
 }

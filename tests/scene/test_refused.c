@@ -2,7 +2,7 @@
 /* Invalid scene files, and the message for each mistake. */
 #include "scene_text.h"
 
-#include "scene/source.h"
+#include "yaml/source.h"
 
 #define BOX "size: [1, 1], mass: 1, position: [0, 0]"
 #define TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
@@ -173,17 +173,17 @@ static const Refused networks[] = {
 };
 
 static const Refused yaml[] = {
-    {"a: &x 1\n", "1:7: error: anchors (&) are not allowed in a scene"},
-    {"a: *x\n", "1:5: error: aliases (*) are not allowed in a scene"},
-    {"a: !x 1\n", "1:7: error: tags (!) are not allowed in a scene"},
-    {"a: !!float 1\n", "1:12: error: tags (!) are not allowed in a scene"},
+    {"a: &x 1\n", "1:7: error: anchors (&) are not allowed"},
+    {"a: *x\n", "1:5: error: aliases (*) are not allowed"},
+    {"a: !x 1\n", "1:7: error: tags (!) are not allowed"},
+    {"a: !!float 1\n", "1:12: error: tags (!) are not allowed"},
     {BASE GROUND "<<: {dt: 1}\n", "7:1: error: '<<' is not a key of a scene; known: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
                                   "position_correction, frames, camera, bodies, bomb, networks, parameters"},
-    {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed in a scene"},
-    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a scene file must hold one document only"},
+    {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed"},
+    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a file must hold one document only"},
     {"a: \"\\0\"\n", "1:5: error: a text must not contain the character \\0"},
-    {"a: \x01\n", "1:4: error: control character 0x01 in a scene file"},
+    {"a: \x01\n", "1:4: error: control character 0x01"},
     {"a: b\n\xc3\xa4\xff\n", "2:2: error: not UTF-8 text"},
     {"a: \xc0\x80\n", "1:4: error: not UTF-8 text"},
     {"a: \xed\xa0\x80\n", "1:4: error: not UTF-8 text"},
@@ -192,8 +192,8 @@ static const Refused yaml[] = {
     {"\xff\xfe"
      "a",
      "1:1: error: not UTF-8 text"},
-    {"", "1:1: error: the file holds no scene"},
-    {"# nothing\n", "1:1: error: the file holds no scene"},
+    {"", "1:1: error: the file is empty"},
+    {"# nothing\n", "1:1: error: the file is empty"},
 };
 
 static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
@@ -209,7 +209,7 @@ static void nul_bytes_are_refused(void **state) {
     (void)state;
     static const char text[] = "dt: 1\0\niterations: 10\n";
     expect_refused_bytes(text, sizeof text - 1,
-                         "1:6: error: control character 0x00 in a scene file\n"
+                         "1:6: error: control character 0x00\n"
                          "    1 | dt: 1?\n"
                          "      |      ^");
 }
@@ -248,7 +248,7 @@ static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
-    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07 in a scene file\n"
+    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07\n"
                                               "    1 | {\"\xc3\xa4\": 1?}\n"
                                               "      |        ^");
 }
@@ -298,7 +298,7 @@ static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
         "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
         "      |          ^");
     expect_refused("[" TEXT_64 TEXT_64 ", &a b, " TEXT_64 "]\n",
-                   "1:135: error: anchors (&) are not allowed in a scene\n"
+                   "1:135: error: anchors (&) are not allowed\n"
                    "    1 | ...aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa, &a b, "
                    "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
                    "      |    "

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The method interior: its solution against the reference, and what it must keep whatever the problem is. */
+#include "consistent.h"
 #include "kernels.h"
 #include "random_problem.h"
 #include "reference_worlds.h"
@@ -154,28 +155,6 @@ static void random_problems_have_the_reference_solution(void **state) {
         agree += error_of("near=1e-7", &random.problem, reference.velocities) < 1e-4;
     }
     if (compared < 40 || agree < compared * 9 / 10) fail_msg("%d of %d agree", agree, compared);
-}
-
-/* As assert_consistent(), in double: relative to the sum of the impulses of a body, as redundant contacts may have large
-   ones that cancel. */
-static void assert_velocities_fit(const ContactProblem *problem, const ContactSolution *found) {
-    const double rounding = found->fallbacks.by_sweeps > 0 ? 1e-4 : 1e-6; /* sweeps add up float changes */
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        double x = (double)body->velocity.x, y = (double)body->velocity.y, sum = fabs(x) + fabs(y) + 1;
-        for (int k = 0; k < problem->contact_count; k++) {
-            const ContactPoint *contact = &problem->contacts[k];
-            if (contact->a != i && contact->b != i) continue;
-            const double inverse = contact->a == i ? -(double)body->inv_mass : (double)body->inv_mass;
-            const double l = inverse * (double)found->impulses[k].normal,
-                         t = inverse * (double)found->impulses[k].tangent;
-            x += l * (double)contact->normal.x + t * (double)contact->normal.y;
-            y += l * (double)contact->normal.y - t * (double)contact->normal.x;
-            sum += fabs(l) + fabs(t);
-        }
-        assert_near(found->velocities[i].linear.x, x, rounding * sum);
-        assert_near(found->velocities[i].linear.y, y, rounding * sum);
-    }
 }
 
 /* For any problem: impulses inside the cone, velocities that are those of the impulses. */

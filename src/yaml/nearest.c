@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/nearest.h"
+#include "yaml/nearest.h"
 
 #include <stddef.h>
 #include <string.h>

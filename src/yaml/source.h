@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The text of a scene file, and messages that show a place in it, as a compiler does. */
+/* The text of a YAML file, and messages that show a place in it, as a compiler does. */
 #pragma once
 #include "common/error.h"
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads mappings of a scene file by tables: each key with the parser of its value and the member that it fills.
- */
+/* Reads mappings of a YAML file by tables: each key with the parser of its value and the member that it fills. */
 #pragma once
-#include "scene/yaml_tree.h"
+#include "yaml/yaml_tree.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -15,10 +14,6 @@ typedef struct Range {
     const char *unit;
 } Range;
 
-/* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */
-extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,
-    range_gravity, range_dt, range_rate;
-
 typedef struct Field Field;
 
 /* Reads a value node into *member. */
@@ -28,7 +23,7 @@ struct Field {
     const char *key; /* NULL ends a table, which has at most FIELDS_MAX rows */
     FieldParser *parse;
     size_t offset;      /* of the member in the struct that the mapping describes */
-    const Range *range; /* of field_number, field_vector, field_int */
+    const Range *range; /* of a number; else NULL */
     bool required;
 };
 
@@ -41,11 +36,5 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
 /* The value's node of a key in the `nodes` of fields_read(), 0 if it is missing. */
 int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key);
 
-/* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain (chain.h). */
-FieldParser field_number;
-/* Vec2: a list of two numbers. */
-FieldParser field_vector;
-/* int; digits, or a chain whose value is whole. */
-FieldParser field_int;
 /* bool: true, false, on, off, yes, no. */
 FieldParser field_switch;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Builds a YamlTree from libfyaml's events. */
-#include "scene/yaml_tree.h"
+#include "yaml/yaml_tree.h"
 
 #include "common/array.h"
 
@@ -84,8 +84,8 @@ static void close_node(Builder *builder) {
 /* Aliases need an anchor before them, so without anchors there are no valid aliases. */
 static bool refuse_extras(const Builder *builder, const struct fy_token *anchor, const struct fy_token *tag,
                           Error *error) {
-    if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed in a scene");
-    return tag == NULL || fail(builder, error, "tags (!) are not allowed in a scene");
+    if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed");
+    return tag == NULL || fail(builder, error, "tags (!) are not allowed");
 }
 
 /* `dt:` without a value; `dt: ""` has one. */
@@ -102,7 +102,7 @@ static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     builder->fed_before = builder->fed;
     switch (event->type) {
     case FYET_DOCUMENT_START:
-        return ++builder->documents == 1 || fail(builder, error, "a scene file must hold one document only");
+        return ++builder->documents == 1 || fail(builder, error, "a file must hold one document only");
     case FYET_MAPPING_START:
         return refuse_extras(builder, event->mapping_start.anchor, event->mapping_start.tag, error) &&
                open_node(builder, YAML_MAPPING, error);
@@ -114,7 +114,7 @@ static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
     case FYET_SCALAR:
         return refuse_extras(builder, event->scalar.anchor, event->scalar.tag, error) &&
                add_scalar(builder, event->scalar.value, error);
-    case FYET_ALIAS: return fail(builder, error, "aliases (*) are not allowed in a scene");
+    case FYET_ALIAS: return fail(builder, error, "aliases (*) are not allowed");
     default: return true;
     }
 }
@@ -148,7 +148,7 @@ static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_di
         if (!taken) return false;
     }
     return builder->tree->node_count > 0 ||
-           source_error(&builder->tree->source, (Place){0, 0}, error, "the file holds no scene");
+           source_error(&builder->tree->source, (Place){0, 0}, error, "the file is empty");
 }
 
 /* Feeds the text in pieces, which limits how far libfyaml reads ahead of its events: a million brackets would cost it a

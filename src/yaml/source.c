@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scene file text: checks before parsing, and excerpts with a caret. */
-#include "scene/source.h"
+/* The text of a YAML file: checks before parsing, and excerpts with a caret. */
+#include "yaml/source.h"
 
 #include "common/file.h"
 #include "common/utf8.h"
@@ -152,12 +152,11 @@ static bool check_character(const Source *source, size_t at, uint32_t character,
         return true;
     }
     if ((character < 0x20 && character != '\t') || character == 0x7f)
-        return source_error(source, check->place, error, "control character 0x%02x in a scene file",
-                            (unsigned)character);
+        return source_error(source, check->place, error, "control character 0x%02x", (unsigned)character);
     if (at - check->line_start >= SOURCE_MAX_LINE)
         return source_error(source, check->place, error, "a line must have at most %d bytes", SOURCE_MAX_LINE);
     if (at == check->line_start && character == '%')
-        return source_error(source, check->place, error, "YAML directives are not allowed in a scene");
+        return source_error(source, check->place, error, "YAML directives are not allowed");
     check->place.column++;
     return true;
 }

@@ -4,7 +4,7 @@
    libfyaml's own documents take seconds for thousands of keys and minutes for aliases of aliases. This tree allows no
    aliases, anchors, tags or second documents. */
 #pragma once
-#include "scene/source.h"
+#include "yaml/source.h"
 
 #include <stdbool.h>
 
@@ -33,8 +33,7 @@ typedef struct YamlTree {
     int node_count;  /* >= 1; node 0 is the root */
     YamlNode *nodes; /* [node_count] */
     char *texts;     /* the scalars, each with a NUL */
-    /* The parameters of its $names (parameters.h), NULL before they are read; not owned. */
-    struct Parameters *parameters;
+    void *context;   /* for those who read values (FieldParser); NULL at first; not owned */
 } YamlTree;
 
 /* Reads the file. An error shows the place (source_error). On failure there is nothing to free. */
