@@ -155,8 +155,12 @@ static void load_pair(Reference *r, int i, const ContactProblem *problem) {
         load_slot(&r->groups[i / REFERENCE_PAIRS], i % REFERENCE_PAIRS * 2 + k, pair, k, problem);
 }
 
+bool reference_reserve(Reference *r, const ContactProblem *problem) {
+    return reserve(r, problem) && analyse(r, problem);
+}
+
 bool reference_load(Reference *r, const ContactProblem *problem) {
-    if (!reserve(r, problem) || !analyse(r, problem)) return false;
+    if (!reference_reserve(r, problem)) return false;
     load_bodies(r, problem);
     r->contact_count = r->factorizations = r->attempts = 0;
     for (int i = 0; i < r->group_count; i++) clear_group(&r->groups[i]);

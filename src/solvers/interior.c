@@ -81,7 +81,7 @@ typedef struct State {
     Interior interior;
     LargeIslands large;
     Momentum momentum;
-    Reference path;
+    CentralPath path;
     InteriorNet net; /* of interior-net */
     float near;      /* m/s */
     float start_factors[IMPACT_SWEEPS], many_factors[MANY_SWEEPS], factors[FALLBACK_SWEEPS],
@@ -97,7 +97,7 @@ static void destroy(void *state) {
     interior_free(&solver->interior);
     large_islands_free(&solver->large);
     momentum_free(&solver->momentum);
-    reference_free(&solver->path);
+    central_path_free(&solver->path);
     free(solver);
 }
 
@@ -221,6 +221,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (left_to_sweeps)
         return large_islands_solve(&solver->large, &solver->momentum, solver->near, problem, solution, error);
     bool rests;
+    if (!central_path_reserve(&solver->path, problem, error)) return false;
     if (!find_rest(solver, problem, &rests)) return error_memory(error, "interior");
     if (!start(solver, problem, rests)) return error_memory(error, "interior");
     const float enough = rests ? smaller(solver->near, rounding) : trusted * solver->near;

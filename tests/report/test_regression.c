@@ -319,7 +319,7 @@ static void a_camera_that_follows_the_run(void **state) {
     assert_verdicts(&regression, "vppppp", "physics changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
     assert_int_equal(regression.runs[0].difference.frame, 1);
-    /* The camera is the first cause, of all frames; the states are the second, of five. */
+    /* The camera is the first cause, of all frames; the states are the second. */
     assert_int_equal(regression.cause_count, 2);
     assert_true(regression.causes[0].of_view && regression.causes[0].count == FRAMES);
     assert_non_null(strstr(cause_words(&regression.causes[0]).text, "frames 0 to 5: the camera differs: "));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The method interior where its iterations fail: at impacts whose central path turns back. */
+#include "allocations.h"
 #include "consistent.h"
 #include "kernels.h"
 #include "reference_worlds.h"
@@ -85,6 +86,33 @@ static void a_step_without_a_solution_falls_back(void **state) {
     world_destroy(world);
 }
 
+/* After a problem of the same size that iterations solve: a softer impact. */
+static void the_path_allocates_nothing(void **state) {
+    (void)state;
+    enum { BODIES_MAX = 64 };
+    Error error = {0};
+    World *world = make_struck_wall(-3.9f, 0.9f, 1);
+    const ContactProblem *struck = next_problem(world);
+    ContactProblem calm = *struck;
+    ProblemBody bodies[BODIES_MAX];
+    assert_in_range(struck->body_count, 3, BODIES_MAX);
+    memcpy(bodies, struck->bodies, (size_t)struck->body_count * sizeof *bodies);
+    for (int i = 0; i < struck->body_count; i++) {
+        bodies[i].velocity = vec2_scale(0.2f, bodies[i].velocity);
+        bodies[i].angular_velocity *= 0.2f;
+    }
+    calm.bodies = bodies;
+    ContactSolution found = make_solution(struck);
+    ContactSolver solver = make_solver(&solver_interior, "near=0.001");
+    assert_ok(solver.kind->solve(solver.state, &calm, &found, &error), error);
+    allocations = 0;
+    assert_ok(solver.kind->solve(solver.state, struck, &found, &error), error);
+    assert_int_equal(allocations, 0);
+    free_solver(&solver);
+    free_solution(&found);
+    world_destroy(world);
+}
+
 /* The reference ends as soon as asked to. */
 static void the_path_ends_at_the_tolerance(void **state) {
     (void)state;
@@ -103,9 +131,9 @@ static void the_path_ends_at_the_tolerance(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(struck_walls_need_no_sweeps),
-                                       cmocka_unit_test(a_step_without_a_solution_falls_back),
-                                       cmocka_unit_test(the_path_ends_at_the_tolerance)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(struck_walls_need_no_sweeps), cmocka_unit_test(a_step_without_a_solution_falls_back),
+        cmocka_unit_test(the_path_allocates_nothing), cmocka_unit_test(the_path_ends_at_the_tolerance)};
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     reference_free(&reference);
     return failed;
