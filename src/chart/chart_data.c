@@ -174,7 +174,7 @@ static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, 
     ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
     bool room = on_front != NULL && rows != NULL;
     for (int p = 0; p < CHART_PANELS; p++) {
-        chart->panels[p].marks = malloc((size_t)table->count * sizeof(ChartMark));
+        chart->panels[p].marks = calloc((size_t)table->count, sizeof(ChartMark));
         room = room && chart->panels[p].marks != NULL;
     }
     if (room) {

@@ -119,6 +119,7 @@ refused "--bodies: error: narrow-phase takes 2 to 2 bodies (got 1)" narrow-phase
 refused "--bodies: error: narrow-phase takes 2 to 2 bodies (got 3)" narrow-phase engine.npz -o a.png --bodies 1,2,3
 refused "--bodies: error: '1,' is not a list of different bodies" strip engine.npz -o a.png --bodies 1,
 refused "there is no body 99" strip engine.npz -o a.png --bodies 1,99
+refused "--bodies: error: cannot be combined with --camera" strip engine.npz -o a.png --bodies 1 --camera 0,1,2,3
 refused "--height: error: '19'" strip engine.npz -o a.png --height 19
 refused "--height: error: does not apply to the kind strobe" strobe engine.npz -o a.png --height 50
 refused "--bodies: error: '1,1' is not a list of different bodies" narrow-phase engine.npz -o a.png --bodies 1,1
