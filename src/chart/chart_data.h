@@ -55,7 +55,8 @@ typedef struct Chart {
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h) are drawn
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
-   them are left out, and counted in their line. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+   them are left out, and counted in their line. False with error set if nothing remains, or for more than
+   CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 

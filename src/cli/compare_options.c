@@ -24,7 +24,8 @@ static const Option option_table[] = {
     {"--beyond", 0, "SHARE", "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than that",
      OPTION_READ(read_beyond, CompareOptions, tolerance)},
     {"--flip", 0, "[p99=]MAX",
-     "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated)",
+     "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated); "
+     "prints FLIP of the first frame that fails",
      OPTION_READ(read_flip, CompareOptions, tolerance)},
     {"--antialias", 0, NULL, "Ignore pixels along edges that moved by a part of a pixel, or were sampled otherwise",
      OPTION_READ(read_antialias, CompareOptions, tolerance)},

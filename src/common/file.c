@@ -96,8 +96,8 @@ static bool write_all(int file, const char *data, size_t size) {
     return true;
 }
 
-/* Creates a file in the folder of path (relative to the directory `at`) and returns its name in `name`. Not mkstemp: its files are readable by their
-   owner only, whatever the umask. */
+/* Creates a file in the folder of path (relative to the directory `at`) and returns its name in `name`. Not mkstemp:
+   its files are readable by their owner only, whatever the umask. */
 static int create_beside(int at, const char *path, char *name, size_t name_size) {
     for (unsigned attempt = 0;; attempt++) {
         struct timespec now;

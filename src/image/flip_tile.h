@@ -28,6 +28,6 @@ FlipTile *flip_tile_create(const FlipModel *model, Error *error);
 void flip_tile_destroy(FlipTile *tile);
 
 /* values[y - area.top][x] = FLIP of pixel x, y of the area, which has at most the size of a tile, where it is larger
-   than the value already there. Rows of `values` are `stride` apart. Beyond the pictures' edges, their outermost pixels continue. Where a pixel that counts is not opaque,
-   the larger value on white and on black. */
+   than the value already there. Rows of `values` are `stride` apart. Beyond the pictures' edges, their outermost
+   pixels continue. Where a pixel that counts is not opaque, the larger value on white and on black. */
 void flip_tile_compute(FlipTile *tile, const Image *const pictures[2], FlipArea area, float *values, size_t stride);

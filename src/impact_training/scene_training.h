@@ -23,8 +23,8 @@ typedef struct SceneTraining {
     void *context;
 } SceneTraining;
 
-/* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss
-   that is NaN or infinite. If progress stops the training after the first network was made, returns the network as it is. `command` is left empty.
-   Same bits for any number of threads. */
+/* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN
+   or infinite. If progress stops the training after the first network was made, returns the network as it is.
+   `command` is left empty. Same bits for any number of threads. */
 SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
                                 Error *error);

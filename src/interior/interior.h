@@ -29,10 +29,10 @@
    Armand, Nguyen, Shpakovych, "Second-Order Cone Programming for Frictional Contact Mechanics Using Interior Point
    Algorithm" (2024), which solve conic programs with a symmetric matrix.
 
-   Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the residual
-   shows it, and the method `interior` then follows the central path (solvers/central_path.h). Beyond some hundred bodies the time of the
-   factorization grows faster than the number of contacts (block_lu.h). Same bits on every instruction
-   set: double, a fixed order of operations, no fused multiply-add. */
+   Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the
+   residual shows it, and the method `interior` then follows the central path (solvers/central_path.h). Beyond some
+   hundred bodies the time of the factorization grows faster than the number of contacts (block_lu.h). Same bits on
+   every instruction set: double, a fixed order of operations, no fused multiply-add. */
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "interior/block_lu.h"

@@ -70,8 +70,9 @@ typedef struct Reference {
    Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree within 4e-7 m/s (RMS).
    In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008 m/s apart: redundant
    contacts drift so slowly that the residual of sweeps hardly shows it. In about 1% of the
-   impacts on walls and piles friction allows a second solution, 0.01 to 2.8 m/s from the first. Some steps of piles between walls have no solution: position correction pushes
-   boxes into each other, and no impulses are large enough. Their residual stays high. */
+   impacts on walls and piles friction allows a second solution, 0.01 to 2.8 m/s from the first. Some steps of piles
+   between walls have no solution: position correction pushes boxes into each other, and no impulses are large enough.
+   Their residual stays high. */
 #define REFERENCE_TOLERANCE 1e-9
 
 void reference_free(Reference *reference);

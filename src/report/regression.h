@@ -69,7 +69,7 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip, flip_p99; /* image/flip.h; NaN where neither a limit, the report nor the first failure needs it */
+    double flip, flip_p99; /* image/flip.h; NaN where neither a limit nor the report needs it */
     bool run_differs;      /* a trajectory of its scene differs in any frame */
     bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */

@@ -28,5 +28,5 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
                        const uint8_t *masked, Error *error);
 
 /* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
-   that compare names. */
+   that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
 bool regression_measure_first(Regression *regression, Error *error);

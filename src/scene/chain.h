@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Chains: numbers of a scene file given as products and quotients, from left to right, of decimals and $names of the
-   scene's parameters, such as 10*$slope or 1/$rate. No other operators, no parentheses, no blanks. The tree's context is the scene's
-   Parameters, or NULL where there are none. */
+   scene's parameters, such as 10*$slope or 1/$rate. No other operators, no parentheses, no blanks. The tree's context
+   is the scene's Parameters, or NULL where there are none. */
 #pragma once
 #include "yaml/yaml_tree.h"
 

@@ -38,8 +38,10 @@ complains "--beyond: error: '2' is not a share from 0 to 1"
 run 2 compare a b --flip p50=0.1
 complains "--flip: error: 'p50=0.1' is not MAX, mean=MAX or p99=MAX"
 
-# FLIP is printed for the frame named, and its limits are those numbers.
+# With a limit, FLIP is printed for the frame named, and its limits are those numbers.
 run 1 compare a b
+grep -q FLIP out && fail "FLIP without --flip"
+run 1 compare a b --flip 0
 mean=$(sed -n 's/^  FLIP: mean \([0-9.e-]*\), .*/\1/p' out)
 p99=$(sed -n 's/^  FLIP: .*99th percentile \([0-9.e-]*\)$/\1/p' out)
 above() { /usr/bin/python3 -c "print($1 * 1.01)"; }
