@@ -38,8 +38,7 @@ static void print_first(const Regression *regression) {
         const RegressionFrame *frame = &regression->frames[i];
         if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
         printf("first difference: %s: %s\n", frame_name(frame), frame_words(frame).text);
-        if (!isnan(frame->flip))
-            printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frame->flip, frame->flip_p99);
+        if (!isnan(frame->flip)) printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frame->flip, frame->flip_p99);
         print_regions(frame->changes);
         return;
     }
