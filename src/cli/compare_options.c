@@ -3,7 +3,7 @@
 
 #include "cli/options.h"
 #include "report/regression_report.h"
-#include "report/rules.h"
+#include "regression/rules.h"
 
 #include <limits.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /* The options of twinbox compare. */
 #pragma once
 #include "image/mask.h"
-#include "report/tolerance.h"
+#include "regression/tolerance.h"
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
 typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;

@@ -7,7 +7,7 @@
 #include "common/file.h"
 #include "common/folder.h"
 #include "common/hash.h"
-#include "report/rules.h"
+#include "regression/rules.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes JSON (RFC 8259) as a stream, UTF-8 only.
 
-   jansson, which reads JSON here (report/json_read.h), cannot write these files: it puts either everything or nothing on
+   jansson, which reads JSON here (json/json_read.h), cannot write these files: it puts either everything or nothing on
    lines of its own, where a line is a record here (manifest.json grows by a line for each picture, and what a killed
    program left is compared line by line); it prints 0.1 with 17 digits; and it does not escape '<', which would end the
    script that results.json is part of in report.html. */

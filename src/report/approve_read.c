@@ -3,7 +3,7 @@
 
 #include "common/array.h"
 #include "image/sequence.h"
-#include "report/json_read.h"
+#include "json/json_read.h"
 
 #include <stdlib.h>
 #include <string.h>

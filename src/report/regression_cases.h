@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The results of a comparison as CI systems show them: a list of test cases, the frames, then the trajectories. */
 #pragma once
-#include "report/regression.h"
+#include "regression/regression.h"
 
 #include <limits.h>
 

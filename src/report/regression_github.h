@@ -4,7 +4,7 @@
    none can become a command or markup. Other output with names belongs between "::stop-commands::TOKEN" and "::TOKEN::",
    with a token that nobody can know before: a runner searches whole lines for old commands ("##[...]"). */
 #pragma once
-#include "report/regression.h"
+#include "regression/regression.h"
 
 #include <stddef.h>
 #include <stdio.h>

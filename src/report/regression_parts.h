@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of a comparison's report. Only regression_report.c and the writers of parts include this. */
 #pragma once
-#include "report/regression.h"
+#include "regression/regression.h"
 
 #include <stdio.h>
 

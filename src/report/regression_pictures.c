@@ -3,7 +3,7 @@
 #include "common/hash.h"
 #include "common/parallel.h"
 #include "image/difference_picture.h"
-#include "report/regression_limits.h"
+#include "regression/regression_limits.h"
 #include "report/regression_parts.h"
 
 #include <assert.h>

@@ -2,7 +2,7 @@
 /* The report of a comparison: report.html, a self-contained page; junit.xml and results.tap for CI; results.json for
    programs and for approval (approve.h). */
 #pragma once
-#include "report/regression.h"
+#include "regression/regression.h"
 
 /* Default limit for the pictures in a report: a browser opens this size in a second or two. */
 enum { REPORT_MEGABYTES = 64 };

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
+   the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same
+   name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
+#pragma once
+#include "common/progress.h"
+#include "image/image_compare.h"
+#include "image/mask.h"
+#include "image/png_display.h"
+#include "image/sequence.h"
+#include "naming/change.h"
+#include "regression/rules.h"
+#include "naming/shown.h"
+#include "trajectory/trajectory.h"
+
+typedef struct RegressionOptions {
+    Tolerance tolerance;  /* replaces what the rules give */
+    const char *rules;    /* a file (regression/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
+    int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
+    bool flat;            /* without subfolders */
+    bool strict_metadata; /* files that display differently fail (image/png_display.h) */
+} RegressionOptions;
+
+typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
+
+typedef enum PixelVerdict {
+    PIXELS_EQUAL,
+    PIXELS_WITHIN, /* within tolerance */
+    PIXELS_DIFFER,
+    PIXELS_RESIZED, /* the difference is that of the overlap */
+    PIXELS_MISSING, /* no actual picture */
+    PIXELS_EXTRA    /* no expected picture */
+} PixelVerdict;
+
+/* A frame's picture may depend on the whole run, through the camera or a scale. STATES_DIFFER_ELSEWHERE: states are
+   equal in this frame but not in the whole run, and no frame of the sequence has equal states and equal pixels; a
+   difference of pixels is then not attributed to the renderer. */
+typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
+
+/* Frames that differ for the same reason. */
+typedef struct RegressionCause {
+    char what[512];    /* "body 7 moved" */
+    double most;       /* pixels, of movements; 0: none */
+    int count;         /* frames */
+    char frames[112];  /* "frames 5 to 29", "frame 3", "frames 0, 2 to 4, ..." */
+    bool of_view;      /* the camera differs */
+    int last, written; /* while frames are added: the last one, and the length of `frames` without it */
+    int ranges;
+} RegressionCause;
+
+enum { CAUSES_MAX = 32 };
+
+/* A file as it was when compared. */
+typedef struct RegressionFile {
+    uint64_t hash; /* XXH3 of its bytes */
+    size_t size;
+    int width, height; /* of a picture */
+} RegressionFile;
+
+typedef struct RegressionFrame {
+    const SequenceFrame *base;      /* has the frame's name: the expected file, or the actual one of an extra frame */
+    const SequenceFrame *at[SIDES]; /* NULL on one side for a missing or extra frame; where several pictures are
+                                       accepted (base->next), the one that passes or is closest */
+    RegressionFile files[SIDES];
+    PixelVerdict pixels;
+    StateVerdict states;
+    int panel; /* first panel, from 1, whose "State" text differs; else 0 */
+    ImageDifference difference;
+    PngDisplay metadata; /* that differs; only for different files */
+    bool metadata_failed;
+    double flip, flip_p99; /* image/flip.h; NaN where neither a limit nor the report needs it */
+    bool run_differs;      /* a trajectory of its scene differs in any frame */
+    bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
+    FrameChanges *changes; /* of different pixels; else NULL */
+    bool shown;            /* in the report */
+    double seconds;        /* that its comparison took, wall time */
+    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
+} RegressionFrame;
+
+/* A trajectory that is in both folders. */
+typedef struct RegressionRun {
+    char *name;
+    RegressionFile files[SIDES];
+    TrajectoryDifference difference;
+    char scene[TRAJECTORY_NAME_SIZE];
+    int frames;    /* of the longer one; 0 if equal */
+    bool *differs; /* [frames] */
+    double seconds;
+} RegressionRun;
+
+typedef struct Regression {
+    RegressionOptions options;
+    ImageSequence *sequences[SIDES];
+    Rules *rules; /* or NULL */
+    int count, run_count;
+    RegressionFrame *frames;                  /* by stem, then number */
+    RegressionRun *runs;                      /* by name */
+    int failed;                               /* frames */
+    int by_verdict[6];                        /* frames, by PixelVerdict */
+    int renderer, physics, unknown;           /* frames by cause of the difference */
+    int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
+    int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
+    int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
+    Shown shown;
+    int cause_count, causes_left_out; /* more than CAUSES_MAX */
+    RegressionCause *causes;          /* different cameras first, then by first frame */
+    int metadata, first_metadata;     /* frames whose metadata differs, and the first of them (-1: none) */
+    int metadata_failed;              /* frames that fail for nothing else */
+    int runs_left_out;                /* .npz files that only the expected folder has */
+    int runs_foreign;                 /* .npz files that are a trajectory in neither folder */
+    int other_accepted;               /* frames that pass by another accepted picture than the one of their name */
+    double seconds;                   /* of the whole comparison */
+} Regression;
+
+/* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.
+   False with error set if a file cannot be read (the first by the order of frames), if masks hide all its pixels, or if
+   progress stops the comparison; then nothing needs to be freed. */
+bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
+                    const Progress *progress, Error *error);
+void regression_free(Regression *regression);
+
+bool regression_passed(const Regression *regression);
+bool frame_failed(const RegressionFrame *frame);
+const char *frame_name(const RegressionFrame *frame); /* of `base` */
+
+/* "equal", "within tolerance", "renderer changed", "physics changed" (states of this frame differ), "view changed" (the
+   camera does), "run changed" (states of other frames do), "pictures differ", "metadata changed", "missing", "extra" */
+const char *frame_verdict(const RegressionFrame *frame);
+
+/* One line of text: how a frame or a run differs. */
+typedef struct RegressionText {
+    char text[1024];
+} RegressionText;
+RegressionText frame_words(const RegressionFrame *frame);
+RegressionText run_words(const RegressionRun *run);
+RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
+
+/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
+RegressionText regression_verdict(const Regression *regression);
+RegressionText regression_begin(const Regression *regression);
+
+/* What was left out, or let pass although it is not equal: a line each; empty if there is nothing. */
+RegressionText regression_notes(const Regression *regression);

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "regression/regression_limits.h"
+
+#include "common/file.h"
+#include "image/antialias.h"
+#include "image/mask_cover.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool check_rules(const Regression *regression, Error *error) {
+    const char **names = malloc(((size_t)regression->count + 1) * sizeof *names);
+    if (names == NULL) return error_memory(error, "rules");
+    for (int i = 0; i < regression->count; i++) names[i] = frame_name(&regression->frames[i]);
+    bool ok = rules_check_names(regression->rules, names, regression->count, error);
+    free(names);
+    return ok;
+}
+
+bool regression_read_rules(Regression *regression, Error *error) {
+    const ImageSequence *expected = regression->sequences[EXPECTED];
+    char found[PATH_MAX];
+    const char *path = regression->options.rules;
+    if (path == NULL) {
+        if (!file_path(found, sizeof found, error, "%s/%s", expected->folder, RULES_NAME)) return false;
+        if (access(found, F_OK) != 0) return true;
+        path = found;
+    }
+    regression->rules = rules_read(path, error);
+    return regression->rules != NULL && (expected->single || check_rules(regression, error));
+}
+
+Tolerance regression_tolerance(const Regression *regression, const RegressionFrame *frame) {
+    Tolerance tolerance = {0};
+    if (regression->rules != NULL) rules_override(regression->rules, frame_name(frame), &tolerance);
+    tolerance_override(&tolerance, &regression->options.tolerance);
+    return tolerance;
+}
+
+static bool has_masks(const Regression *regression, const RegressionFrame *frame) {
+    const Mask *mask = regression->options.mask;
+    return (mask != NULL && mask->count > 0) ||
+           (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
+}
+
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
+    const Mask *mask = regression->options.mask;
+    double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
+    if (regression->rules != NULL) hidden += rules_most_hidden(regression->rules, frame_name(frame), width, height);
+    return hidden >= (double)width * height;
+}
+
+static bool draw_masks(const Regression *regression, const RegressionFrame *frame, const Image *expected,
+                       uint8_t *masked, Error *error) {
+    const Mask *mask = regression->options.mask;
+    const char *path = frame->at[EXPECTED]->path;
+    return (mask == NULL || mask_draw(mask, expected, path, masked, error)) &&
+           (regression->rules == NULL ||
+            rules_draw_masks(regression->rules, frame_name(frame), expected, path, masked, error));
+}
+
+static void cut_mask(uint8_t *masked, int width, const Image *to) {
+    for (int y = 0; y < to->height && to->width < width; y++)
+        memmove(masked + (size_t)y * (size_t)to->width, masked + (size_t)y * (size_t)width, (size_t)to->width);
+}
+
+bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
+                       uint8_t **masked, Error *error) {
+    bool masks = has_masks(regression, frame), edges = regression_tolerance(regression, frame).antialias;
+    int width = expected->width;
+    *masked = NULL;
+    if ((masks || edges) && (*masked = calloc((size_t)width * (size_t)expected->height, 1)) == NULL)
+        return error_memory(error, frame_name(frame));
+    if (masks && !draw_masks(regression, frame, expected, *masked, error)) {
+        free(*masked);
+        *masked = NULL;
+        return false;
+    }
+    image_cut_to_overlap(expected, actual);
+    if (masks) cut_mask(*masked, width, expected);
+    if (edges) antialias_mark(expected, actual, *masked);
+    return true;
+}
+
+static bool same_size(const RegressionFrame *frame) {
+    const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
+    return a->width == b->width && a->height == b->height;
+}
+
+void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
+                        const Image *actual, const uint8_t *masked) {
+    ImageDifference *difference = &frame->difference;
+    int tolerance = regression_tolerance(regression, frame).tolerance;
+    image_compare_masked(expected, actual, masked, tolerance, difference);
+    difference->same_size = same_size(frame);
+    difference->equal = difference->equal && difference->same_size;
+}
+
+/* Ignored pixels count as equal. */
+static bool measure(RegressionFrame *frame, const Image *expected, Image *actual, const uint8_t *masked, Error *error) {
+    FlipSummary flip;
+    image_copy_masked(expected, actual, masked);
+    if (!flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &flip, error)) return false;
+    frame->flip = flip.mean, frame->flip_p99 = flip.p99;
+    return true;
+}
+
+bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                       const uint8_t *masked, Error *error) {
+    const ImageDifference *difference = &frame->difference;
+    Tolerance tolerance = regression_tolerance(regression, frame);
+    if (!difference->same_size)
+        frame->pixels = PIXELS_RESIZED;
+    else if (difference->pixels == 0)
+        frame->pixels = difference->moved > 0 ? PIXELS_WITHIN : PIXELS_EQUAL;
+    else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
+        return false;
+    else
+        frame->pixels = tolerance_holds(&tolerance, difference, &(FlipSummary){frame->flip, frame->flip_p99})
+                            ? PIXELS_WITHIN
+                            : PIXELS_DIFFER;
+    return true;
+}
+
+static Image *read_picture(const Regression *regression, const char *path, Error *error) {
+    size_t size;
+    uint8_t *data = image_load_png(path, &size, error);
+    Image *image = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
+    free(data);
+    return image;
+}
+
+static bool measure_files(const Regression *regression, RegressionFrame *frame, Error *error) {
+    uint8_t *masked = NULL;
+    Image *expected = read_picture(regression, frame->at[EXPECTED]->path, error);
+    Image *actual = expected == NULL ? NULL : read_picture(regression, frame->at[ACTUAL]->path, error);
+    bool ok = actual != NULL && regression_ignore(regression, frame, expected, actual, &masked, error) &&
+              measure(frame, expected, actual, masked, error);
+    image_destroy(expected);
+    image_destroy(actual);
+    free(masked);
+    return ok;
+}
+
+bool regression_measure_first(Regression *regression, Error *error) {
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
+        bool wanted = (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
+        return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
+    }
+    return true;
+}

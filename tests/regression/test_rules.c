@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rules of a comparison: what is refused, with its place, and what applies to a name; limits that hold or not. */
+#include "testing.h"
+
+#include "regression/rules.h"
+
+static Rules *read_text(const char *text, Error *error) {
+    *error = (Error){.kind = ERROR_NONE};
+    return rules_read(write_bytes(temporary_path("compare.yaml"), text, strlen(text)), error);
+}
+
+static void expect_refused(const char *text, const char *message) {
+    Error error;
+    Rules *rules = read_text(text, &error);
+    if (rules != NULL) fail_msg("not refused, but expected: %s", message);
+    assert_error(error, ERROR_INPUT, message);
+}
+
+static void mistakes_are_refused_with_their_place(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *message;
+    } table[] = {
+        {"", ":1:1: error: the file is empty"},
+        {"- 1\n", ":1:1: error: a file of rules must be a mapping"},
+        {"rule: []\n", ":1:1: error: 'rule' is not a key of a file of rules; did you mean 'rules'?"},
+        {"rules: []\n", ":1:8: error: rules must be a list of at least one rule (got none)"},
+        {"rules:\n  - tolerance: 1\n", ":2:5: error: a rule needs the key 'files'"},
+        {"rules:\n  - files: a\n", ":2:5: error: a rule needs a limit or a mask"},
+        {"rules:\n  - {files: [a], tolerance: 1}\n", ":2:13: error: files must be a glob of names"},
+        {"rules:\n  - {files: a, tolerence: 1}\n",
+         ":2:16: error: 'tolerence' is not a key of a rule; did you mean 'tolerance'?"},
+        {"rules:\n  - {files: a, tolerance: 1, tolerance: 2}\n", ":2:30: error: key 'tolerance' is given twice"},
+        {"rules:\n  - {files: a, tolerance: 256}\n",
+         ":2:27: error: tolerance must be a whole number from 0 to 255 (got 256)"},
+        {"rules:\n  - {files: a, beyond: 1.5}\n", ":2:24: error: beyond must be from 0 to 1 (got 1.5)"},
+        {"rules:\n  - {files: a, fuzzy: 2}\n", ":2:23: error: fuzzy must be a list of two numbers, such as [2, 0.01]"},
+        {"rules:\n  - {files: a, fuzzy: [2, 7]}\n", ":2:27: error: fuzzy must be from 0 to 1 (got 7)"},
+        {"rules:\n  - {files: a, flip: much}\n", ":2:22: error: flip must be from 0 to 1 (got much)"},
+        {"rules:\n  - {files: a, flip: {p98: 1}}\n",
+         ":2:23: error: 'p98' is not a key of a limit of FLIP; did you mean 'p99'?"},
+        {"rules:\n  - {files: a, antialias: 2}\n", ":2:27: error: antialias must be on or off (got 2)"},
+        {"rules:\n  - {files: a, masks: x}\n", ":2:23: error: masks must be a list (got x)"},
+        {"rules:\n  - {files: a, masks: [x]}\n", ":2:24: error: a mask must be a mapping"},
+        {"rules:\n  - {files: a, masks: [{}]}\n", ":2:24: error: a mask must have one key"},
+        {"rules:\n  - {files: a, masks: [{colour: \"#000000\", rectangle: [0, 0, 1, 1]}]}\n",
+         ":2:24: error: a mask must have one key"},
+        {"rules:\n  - {files: a, masks: [{rectangle: [0, 0, 0, 1]}]}\n",
+         ":2:36: error: rectangle must be a list [X, Y, W, H]"},
+        {"rules:\n  - {files: a, masks: [{rectangle: [0, 0, 1]}]}\n",
+         ":2:36: error: rectangle must be a list [X, Y, W, H]"},
+        {"rules:\n  - {files: a, masks: [{colour: red}]}\n",
+         ":2:33: error: colour must be \"#rrggbb\", in quotes (got red)"},
+        {"rules:\n  - {files: a, masks: [{colour: \"#12345g\"}]}\n", ":2:34: error: colour must be"},
+        {"rules:\n  - {files: a, masks: [{picture: none.png}]}\n", "none.png: error: "},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) expect_refused(table[i].text, table[i].message);
+}
+
+/* Rules, and pictures of masks. */
+static void numbers_of_rules_are_limited(void **state) {
+    (void)state;
+    enum { ROOM = 64 };
+    Error error;
+    static char many[(RULES_MAX + 2) * ROOM];
+    const Image dot = {1, 1, (uint8_t[]){9, 9, 9, 255}, NULL};
+    assert_ok(image_write_png(&dot, temporary_path("dot.png"), NULL, 0, &error), error);
+    for (int over = 0; over <= 1; over++) {
+        size_t used = (size_t)sprintf(many, "rules:\n");
+        for (int i = 0; i < RULES_MAX + over; i++)
+            used += (size_t)sprintf(many + used, "- {files: a, tolerance: %d}\n", i % 256);
+        Rules *rules = over == 0 ? read_text(many, &error) : NULL;
+        if (over == 0) assert_ok(rules != NULL, error);
+        if (over == 1) expect_refused(many, ":2:1: error: at most 256 rules (got 257)");
+        rules_destroy(rules);
+        used = (size_t)sprintf(many, "rules:\n");
+        for (int i = 0; i < RULES_MAX_PICTURES + over; i++)
+            used += (size_t)sprintf(many + used, "- {files: a, masks: [{picture: dot.png}]}\n");
+        rules = over == 0 ? read_text(many, &error) : NULL;
+        if (over == 0) assert_ok(rules != NULL, error);
+        if (over == 1) expect_refused(many, ":66:32: error: a file of rules must have at most 64 pictures");
+        rules_destroy(rules);
+    }
+}
+
+static const char text[] = "rules:\n"
+                           "  - {files: \"*\", tolerance: 2, beyond: 0.5, antialias: on}\n"
+                           "  - files: \"sub/*\"\n"
+                           "    tolerance: 7\n"
+                           "    antialias: off\n"
+                           "    flip: {p99: 0.25}\n"
+                           "    masks: [{rectangle: [1, 0, 1, 1]}]\n"
+                           "  - {files: sub/a.png, fuzzy: [9, 0.1], masks: [{colour: \"#0aFF00\"}]}\n";
+
+static void later_rules_replace_limits(void **state) {
+    (void)state;
+    Error error;
+    Rules *rules = read_text(text, &error);
+    assert_ok(rules != NULL, error);
+    Tolerance a = {0}, b = {0};
+    rules_override(rules, "b.png", &a);
+    assert_int_equal(a.given, LIMIT_TOLERANCE | LIMIT_BEYOND | LIMIT_ANTIALIAS);
+    assert_true(a.tolerance == 2 && a.beyond == 0.5 && a.antialias);
+    rules_override(rules, "sub/a.png", &b);
+    assert_true(b.tolerance == 7 && b.beyond == 0.5 && !b.antialias && b.flip_p99 == 0.25);
+    assert_true(b.fuzzy == 9 && b.share == 0.1);
+    assert_string_equal(tolerance_words(&b).text,
+                        "differences of at most 9 in at most 10% of the pixels, differences above 7 in at most 50% of "
+                        "the pixels, 99th percentile of FLIP of at most 0.25");
+    rules_destroy(rules);
+}
+
+static void all_masks_count(void **state) {
+    (void)state;
+    Error error;
+    Rules *rules = read_text(text, &error);
+    Image *expected = image_create(3, 1, &error);
+    uint8_t masked[3] = {0};
+    memcpy(expected->pixels + 8, (const uint8_t[]){10, 255, 0, 255}, 4);
+    assert_false(rules_have_masks(rules, "b.png"));
+    assert_true(rules_have_masks(rules, "sub/b.png"));
+    assert_ok(rules_draw_masks(rules, "sub/b.png", expected, "b.png", masked, &error), error);
+    assert_true(masked[0] == IGNORED_NOT && masked[1] == IGNORED_MASK && masked[2] == IGNORED_NOT);
+    assert_ok(rules_draw_masks(rules, "sub/a.png", expected, "a.png", masked, &error), error);
+    assert_true(masked[0] == IGNORED_NOT && masked[2] == IGNORED_MASK);
+    image_destroy(expected);
+    rules_destroy(rules);
+}
+
+static void a_rule_without_files_is_refused(void **state) {
+    (void)state;
+    Error error;
+    static const char *const names[] = {"b.png", "sub/a.png"}, *const other[] = {"b.png", "sub/c.png"};
+    Rules *rules = read_text(text, &error);
+    assert_ok(rules_check_names(rules, names, 2, &error), error);
+    assert_false(rules_check_names(rules, other, 2, &error));
+    assert_error(error, ERROR_INPUT, ":8:13: error: no picture has a name that matches 'sub/a.png'\n");
+    rules_destroy(rules);
+}
+
+/* 100 pixels, of which 10 differ by at most 40, and 2 by more than 20. */
+static void every_limit_that_is_given_must_hold(void **state) {
+    (void)state;
+    static const ImageDifference difference = {.pixels = 10, .beyond = 2, .largest = 40, .counted = 100};
+    static const FlipSummary flip = {.mean = 0.02, .p99 = 0.3};
+    static const struct {
+        Tolerance tolerance;
+        bool holds;
+    } table[] = {
+        {{0}, false},
+        {{.given = LIMIT_ANTIALIAS, .antialias = true}, false},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = 0.1}, true},
+        {{.given = LIMIT_FUZZY, .fuzzy = 39, .share = 0.1}, false},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = 0.09}, false},
+        {{.given = LIMIT_TOLERANCE, .tolerance = 20}, false},
+        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = 0.02}, true},
+        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = 0.01}, false},
+        {{.given = LIMIT_FLIP_MEAN, .flip_mean = 0.02}, true},
+        {{.given = LIMIT_FLIP_MEAN, .flip_mean = 0.01}, false},
+        {{.given = LIMIT_FLIP_P99, .flip_p99 = 0.3}, true},
+        {{.given = LIMIT_FLIP_P99, .flip_p99 = 0.2}, false},
+        {{.given = LIMITS_FLIP, .flip_mean = 0.02, .flip_p99 = 0.2}, false},
+        {{.given = LIMIT_FLIP_MEAN | LIMIT_FUZZY, .flip_mean = 0.02, .fuzzy = 39, .share = 1}, false},
+        {{.given = LIMIT_FLIP_MEAN | LIMIT_BEYOND, .flip_mean = 0.02, .beyond = 0.01}, false},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (tolerance_holds(&table[i].tolerance, &difference, &flip) != table[i].holds) fail_msg("row %zu", i);
+    assert_true(tolerance_holds(&(Tolerance){0}, &(ImageDifference){.counted = 100}, &flip));
+}
+
+static void limits_of_flip_are_parsed(void **state) {
+    (void)state;
+    Tolerance tolerance = {0};
+    assert_true(tolerance_parse_flip(&tolerance, "0.01") && tolerance.flip_mean == 0.01);
+    assert_true(tolerance_parse_flip(&tolerance, "p99=0.1") && tolerance.flip_p99 == 0.1);
+    assert_int_equal(tolerance.given, LIMITS_FLIP);
+    assert_true(tolerance_parse_flip(&tolerance, "mean=0") && tolerance.flip_mean == 0);
+    static const char *const wrong[] = {"", "x", "p99", "p99=", "p98=0.1", "1.1", "-0.1", "nan", "mean=0.1 "};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        if (tolerance_parse_flip(&tolerance, wrong[i])) fail_msg("accepted: '%s'", wrong[i]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mistakes_are_refused_with_their_place),
+        cmocka_unit_test(numbers_of_rules_are_limited),
+        cmocka_unit_test(later_rules_replace_limits),
+        cmocka_unit_test(all_masks_count),
+        cmocka_unit_test(a_rule_without_files_is_refused),
+        cmocka_unit_test(every_limit_that_is_given_must_hold),
+        cmocka_unit_test(limits_of_flip_are_parsed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
