@@ -6,17 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int channel_difference(const Image *a, const Image *b, size_t i) {
-    if (a->pixels16 == NULL && b->pixels16 == NULL) return abs(a->pixels[i] - b->pixels[i]);
+static int deep_difference(const Image *a, const Image *b, size_t i) {
     int deep_a = a->pixels16 != NULL ? a->pixels16[i] : a->pixels[i] * 257;
     int deep_b = b->pixels16 != NULL ? b->pixels16[i] : b->pixels[i] * 257;
     return (abs(deep_a - deep_b) + 256) / 257;
 }
 
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
+    bool deep = a->pixels16 != NULL || b->pixels16 != NULL;
     int largest = 0;
     for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++) {
-        int difference = channel_difference(a, b, i);
+        int difference = deep ? deep_difference(a, b, i) : abs(a->pixels[i] - b->pixels[i]);
         if (difference > largest) largest = difference;
     }
     return largest;
@@ -40,8 +40,7 @@ static bool equal_row(const Image *a, const Image *b, size_t first) {
            memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
 }
 
-/* The next pixel of a row, from x on, that may differ; `width` if there is none. */
-static size_t next_difference(const Image *a, const Image *b, size_t first, size_t x) {
+size_t image_next_difference(const Image *a, const Image *b, size_t first, size_t x) {
     enum { PART = 16 };
     const uint8_t *p = a->pixels + 4 * first, *q = b->pixels + 4 * first;
     size_t width = (size_t)a->width;
@@ -67,7 +66,8 @@ void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked,
     for (int y = 0; y < a->height; y++) {
         size_t first = (size_t)y * width;
         if (equal_row(a, b, first)) continue;
-        for (size_t x = next_difference(a, b, first, 0); x < width; x = next_difference(a, b, first, x + 1)) {
+        for (size_t x = image_next_difference(a, b, first, 0); x < width;
+             x = image_next_difference(a, b, first, x + 1)) {
             int here = image_pixel_difference(a, b, first + x);
             Ignored ignored = masked == NULL ? IGNORED_NOT : (Ignored)masked[first + x];
             if (here > 0 && ignored == IGNORED_NOT) count_pixel(difference, (int)x, y, here, tolerance);

@@ -19,6 +19,10 @@ void image_compare(const Image *a, const Image *b, ImageDifference *difference);
 /* The largest difference of a channel of one pixel, as above. Both pictures must have the same size. */
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
 
+/* The next pixel from x on that may differ, in the row that begins at pixel `first`; `width` if there is none. Certain
+   where both pictures have 8 bits. */
+size_t image_next_difference(const Image *a, const Image *b, size_t first, size_t x);
+
 /* masked[height, width]: see image/mask.h; NULL: nothing is ignored. tolerance: 0..255. */
 void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, int tolerance,
                           ImageDifference *difference);

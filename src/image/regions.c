@@ -113,9 +113,11 @@ static void add_row(Scan *scan, int left, int right, int row) {
 static void scan_rows(Scan *scan, const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *box) {
     for (int y = box->top; y < box->bottom; y++) {
         size_t first = (size_t)y * (size_t)scan->width;
+        size_t right = (size_t)box->right, x = image_next_difference(a, b, first, (size_t)box->left);
         bool any = false;
-        for (int x = box->left; x < box->right; x++) {
-            size_t pixel = first + (size_t)x;
+        if (x < right) memset(scan->differs, 0, (size_t)scan->width * sizeof *scan->differs);
+        for (; x < right; x = image_next_difference(a, b, first, x + 1)) {
+            size_t pixel = first + x;
             scan->differs[x] = (masked == NULL || masked[pixel] == 0) && image_pixel_difference(a, b, pixel) > 0;
             any = any || scan->differs[x];
         }
