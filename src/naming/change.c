@@ -69,7 +69,12 @@ ChangeText change_words(const Change *change) {
     case CHANGE_OTHER:
         if (change->subject <= SUBJECT_BODIES) text_add(text.text, sizeof text.text, " changed");
         break;
-    case CHANGE_MOVED: add_amount(&text, change); break;
+    case CHANGE_MOVED:
+        if (change->subject == SUBJECT_BODIES)
+            text_add(text.text, sizeof text.text, " moved");
+        else
+            add_amount(&text, change);
+        break;
     case CHANGE_COLOUR: text_add(text.text, sizeof text.text, ": colour"); break;
     case CHANGE_LINE_WIDTH: text_add(text.text, sizeof text.text, ": line width"); break;
     case CHANGE_APPEARED: text_add(text.text, sizeof text.text, " only in the actual run"); break;

@@ -46,7 +46,7 @@ typedef struct FrameChanges {
     ImageRegions regions;
     int count;
     Change list[CHANGES_MAX];                 /* [count] */
-    int16_t region_change[IMAGE_REGIONS_MAX]; /* [regions.kept] the change with most pixels there; -1: unknown */
+    int16_t region_change[IMAGE_REGIONS_MAX]; /* [regions.kept] the change that names it best; -1: unknown */
     int16_t region_others[IMAGE_REGIONS_MAX]; /* [regions.kept] number of further changes there */
 } FrameChanges;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every differing pixel gets an owner: a text, a body, or the rest of its panel. A region has the name of the change that
-   owns most of its pixels. */
+   owns most of its pixels, and is not of several bodies. */
 #include "naming/naming.h"
 
 #include "naming/naming_bodies.h"
@@ -98,6 +98,12 @@ static void name_rest(Naming *naming) {
     name_rectangle(naming, (ViewRect){0, 0, view->width, view->height}, SUBJECT_PAGE, 0);
 }
 
+/* Whether change i names a region better than change j: it is of one thing, not of several bodies; or it has more pixels. */
+static bool names_better(const FrameChanges *changes, const int64_t *pixels, int i, int j) {
+    bool several_i = changes->list[i].subject == SUBJECT_BODIES, several_j = changes->list[j].subject == SUBJECT_BODIES;
+    return several_i != several_j ? several_j : pixels[i] > pixels[j];
+}
+
 static void name_region(Naming *naming, int region) {
     FrameChanges *changes = naming->changes;
     const ImageRegion *r = &changes->regions.list[region];
@@ -111,7 +117,7 @@ static void name_region(Naming *naming, int region) {
     for (int i = 0; i < changes->count; i++) {
         if (pixels[i] == 0) continue;
         others++;
-        if (best < 0 || pixels[i] > pixels[best]) best = i;
+        if (best < 0 || names_better(changes, pixels, i, best)) best = i;
     }
     changes->region_change[region] = (int16_t)best;
     changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
