@@ -2,6 +2,7 @@
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
    3 the system failed. */
 #include "cli/commands.h"
+#include "common/names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +13,7 @@ static void print_help(FILE *file) {
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nEach command has its own help and an example: twinbox COMMAND --help\n"
+    fputs("\nEach command has its own help and an example: twinbox help COMMAND\n"
           "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
@@ -24,24 +25,37 @@ static const Command *find_command(const char *name) {
     return NULL;
 }
 
+static bool is_one_of(const char *word, const char *first, const char *second, const char *third) {
+    return strcmp(word, first) == 0 || strcmp(word, second) == 0 || strcmp(word, third) == 0;
+}
+
+static int refuse_command(const char *name) {
+    Error error = {0};
+    NameList known = {0};
+    for (const Command *command = commands; command->name != NULL; command++) name_list_add(&known, command->name);
+    error_unknown(&error, "twinbox", name, "a command", &known);
+    fprintf(stderr, "%s\n", error.message);
+    return ERROR_INPUT;
+}
+
 int main(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+    bool help = is_one_of(argv[1], "help", "--help", "-h");
+    if (help && argc == 2) {
         print_help(stdout);
         return 0;
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    const char *wanted = argv[help ? 2 : 1];
+    const Command *command = find_command(wanted);
+    if (is_one_of(argv[argc == 3 && command != NULL ? 2 : 1], "--version", "-V", "-V")) {
         puts("twinbox " TWINBOX_VERSION);
         return 0;
     }
-    const Command *command = find_command(argv[1]);
-    if (command == NULL) {
-        fprintf(stderr, "twinbox: error: no command '%s'; twinbox --help lists all\n", argv[1]);
-        return ERROR_INPUT;
-    }
+    if (command == NULL) return refuse_command(wanted);
+    if (help) argv[2] = "--help";
     char name[64];
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[1] = name;

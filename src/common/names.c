@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/names.h"
 
+#include "common/nearest.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -19,7 +21,24 @@ void name_list_add(NameList *list, const char *name) {
                                    list->used > 0 ? ", " : "", name);
 }
 
+/* The listed name that is nearest; empty if none is near. */
+static void find_nearest(const NameList *list, const char *name, char *nearest, size_t size) {
+    enum { WORDS = 256 };
+    char text[sizeof list->text], *rest = NULL;
+    const char *words[WORDS];
+    int count = 0;
+    memcpy(text, list->text, sizeof text);
+    for (char *word = strtok_r(text, ", ", &rest); word != NULL && count < WORDS; word = strtok_r(NULL, ", ", &rest))
+        words[count++] = word;
+    const char *found = nearest_word(name, words, count);
+    snprintf(nearest, size, "%s", found != NULL ? found : "");
+}
+
 bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known) {
+    char nearest[64];
+    find_nearest(known, name, nearest, sizeof nearest);
+    if (nearest[0] != '\0')
+        return error_input(error, where, "'%.64s' is not %s; did you mean '%s'?", name, what, nearest);
     return error_input(error, where, "'%.64s' is not %s; known: %s", name, what,
                        known->used > 0 ? known->text : "none");
 }

@@ -14,5 +14,6 @@ typedef struct NameList {
 /* Appends a name that the list does not have yet; ignores it if there is no room. */
 void name_list_add(NameList *list, const char *name);
 
-/* The error for a name that a table lacks: "'foo' is not a method; known: a, b, c", where `what` is "a method". */
+/* The error for a name that a table lacks: "'fo' is not a method; did you mean 'foo'?" or, if no known name is near,
+   "'x' is not a method; known: foo, bar", where `what` is "a method". */
 bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known);

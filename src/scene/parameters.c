@@ -4,7 +4,7 @@
 #include "common/names.h"
 #include "scene/chain.h"
 #include "scene/scene_fields.h"
-#include "yaml/nearest.h"
+#include "common/nearest.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include "common/names.h"
 #include "common/parse.h"
-#include "yaml/nearest.h"
+#include "common/nearest.h"
 
 #include <string.h>
 

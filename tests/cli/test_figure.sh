@@ -87,8 +87,8 @@ refused() {
     run 2 figure "$@"
     complains "$message"
 }
-refused "'stripes' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
-    stripes engine.npz -o a.png
+refused "'picture' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
+    picture engine.npz -o a.png
 refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: the name of a figure must end in" strip engine.npz -o ./png
 refused "needed" strip engine.npz

@@ -98,7 +98,7 @@ complains "nowhere.npz: error"
 run 2 render "$engine" -o x --theme grey
 complains "'grey' is not a valid value; known: light, dark"
 run 2 render "$engine" -o x --show trails,ghost
-complains "--show: error: 'ghost' is not a valid value; known: ghosts, distance, trails, contacts, impulses, velocities, timeline"
+complains "--show: error: 'ghost' is not a valid value; did you mean 'ghosts'?"
 run 2 render "$engine" -o x --show trails,
 complains "'' is not a valid value"
 run 2 render "$engine" -o x --show "$(printf 'x%.0s' $(seq 5000))"

@@ -70,7 +70,18 @@ static void known_names_are_listed_once_and_whole(void **state) {
     static const char *const names[] = {"pair-net", "net", "pair-net", "scene", "net"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) name_list_add(&known, names[i]);
     assert_false(error_unknown(&error, "--kind", "nett", "a kind", &known));
-    assert_string_equal(error.message, "--kind: error: 'nett' is not a kind; known: pair-net, net, scene");
+    assert_string_equal(error.message, "--kind: error: 'nett' is not a kind; did you mean 'net'?");
+    Error far = {0}, long_known = {0}, long_given = {0};
+    assert_false(error_unknown(&far, "--kind", "magic", "a kind", &known));
+    assert_string_equal(far.message, "--kind: error: 'magic' is not a kind; known: pair-net, net, scene");
+    /* Names that are too long for a suggestion. */
+    static const char long_name[] = "0123456789012345678901234567890123456789";
+    NameList long_names = {0};
+    name_list_add(&long_names, long_name);
+    assert_false(error_unknown(&long_known, "--kind", "012345678901234567890123456789", "a kind", &long_names));
+    assert_non_null(strstr(long_known.message, "; known: 0123456789"));
+    assert_false(error_unknown(&long_given, "--kind", long_name, "a kind", &known));
+    assert_non_null(strstr(long_given.message, "; known: pair-net"));
     for (int i = 0; i < 1000; i++) {
         char name[24]; /* room for any int, for gcc */
         snprintf(name, sizeof name, "number-%03d", i);

@@ -184,7 +184,7 @@ static void methods_are_found_by_name(void **state) {
     }
     assert_true(count > 2);
     assert_false(method_parse(&method, "engin", &error));
-    assert_error(error, ERROR_INPUT, "method: error: 'engin' is not a method; known: engine, ");
+    assert_error(error, ERROR_INPUT, "method: error: 'engin' is not a method; did you mean 'engine'?");
     error = (Error){0};
     char text[METHOD_TEXT_SIZE + 1];
     memset(text, 'x', METHOD_TEXT_SIZE);

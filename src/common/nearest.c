@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "yaml/nearest.h"
+#include "common/nearest.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -29,6 +29,7 @@ const char *nearest_word(const char *word, const char *const *words, int count) 
     size_t length = strlen(word), best = 1 + length / 3;
     if (length >= WORD_SIZE) return NULL;
     for (int i = 0; i < count; i++) {
+        if (strlen(words[i]) >= WORD_SIZE) continue;
         size_t distance = edits(word, words[i]);
         if (distance > best || (distance == best && nearest != NULL)) continue;
         best = distance;
