@@ -44,7 +44,7 @@ int main(int argc, char **argv) {
         return ERROR_INPUT;
     }
     bool help = is_one_of(argv[1], "help", "--help", "-h");
-    if (help && argc == 2) {
+    if (help && (argc == 2 || is_one_of(argv[2], "help", "--help", "-h"))) {
         print_help(stdout);
         return 0;
     }

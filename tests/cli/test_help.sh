@@ -46,8 +46,10 @@ for version in --version -V "simulate --version" "chart -V"; do
     says "twinbox "
     equal "lines of $version" "$(wc -l <out)" 1
 done
-run 0 help
-says "Usage: twinbox COMMAND"
+for general in help --help -h "help --help"; do
+    run 0 $general
+    says "Usage: twinbox COMMAND"
+done
 run 0 help simulate
 cp out by_help
 run 0 simulate --help
