@@ -25,9 +25,11 @@ static const Command *find_command(const char *name) {
     return NULL;
 }
 
-static bool is_one_of(const char *word, const char *first, const char *second, const char *third) {
-    return strcmp(word, first) == 0 || strcmp(word, second) == 0 || strcmp(word, third) == 0;
+static bool is_help(const char *word) {
+    return strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
 }
+
+static bool is_version(const char *word) { return strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0; }
 
 static int refuse_command(const char *name) {
     Error error = {0};
@@ -43,14 +45,14 @@ int main(int argc, char **argv) {
         print_help(stderr);
         return ERROR_INPUT;
     }
-    bool help = is_one_of(argv[1], "help", "--help", "-h");
-    if (help && (argc == 2 || is_one_of(argv[2], "help", "--help", "-h"))) {
+    bool help = is_help(argv[1]);
+    if (help && (argc == 2 || is_help(argv[2]))) {
         print_help(stdout);
         return 0;
     }
     const char *wanted = argv[help ? 2 : 1];
     const Command *command = find_command(wanted);
-    if (is_one_of(argv[argc == 3 && command != NULL ? 2 : 1], "--version", "-V", "-V")) {
+    if (is_version(argv[argc == 3 && command != NULL ? 2 : 1])) {
         puts("twinbox " TWINBOX_VERSION);
         return 0;
     }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/compare_print.h"
 
+#include "common/text_add.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,8 +20,6 @@ static void print_names(const Regression *regression, PixelVerdict verdict, cons
         }
     printf(count > NAMED ? " ...\n" : "\n");
 }
-
-static const char *plural(int count) { return count == 1 ? "" : "s"; }
 
 static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
 

@@ -124,11 +124,12 @@ static void name_region(Naming *naming, int region) {
 }
 
 static void mark_differences(Naming *naming, const uint8_t *masked) {
-    size_t pixels = (size_t)naming->scene->view->width * (size_t)naming->scene->view->height;
-    for (size_t i = 0; i < pixels; i++)
-        if ((masked == NULL || masked[i] == 0) &&
-            image_pixel_difference(naming->pictures[0], naming->pictures[1], i) > 0)
-            naming->owners[i] = OWNER_UNKNOWN;
+    const Image *a = naming->pictures[0], *b = naming->pictures[1];
+    size_t width = (size_t)a->width, all = width * (size_t)a->height;
+    for (size_t first = 0; first < all; first += width)
+        for (size_t x = image_next_difference(a, b, first, 0); x < width; x = image_next_difference(a, b, first, x + 1))
+            if ((masked == NULL || masked[first + x] == 0) && image_pixel_difference(a, b, first + x) > 0)
+                naming->owners[first + x] = OWNER_UNKNOWN;
 }
 
 bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a comparison left out, or let pass although it is not equal. */
+#include "common/text_add.h"
 #include "common/utf8.h"
 #include "regression/regression.h"
 
 #include <stdarg.h>
 #include <string.h>
-
-static const char *plural(int count) { return count == 1 ? "" : "s"; }
 
 /* Adds a line if there is anything to count. */
 static void add(RegressionText *notes, int count, const char *format, ...) PRINTF_LIKE(3, 4);

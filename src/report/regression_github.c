@@ -31,8 +31,8 @@ static bool is_same_failure(const Regression *regression, int i, int next) {
     if (next >= regression->count) return false;
     const RegressionFrame *a = &regression->frames[i], *b = &regression->frames[next];
     const SequenceFrame *x = a->base, *y = b->base;
-    return frame_failed(a) && frame_failed(b) && x->number >= 0 && y->number >= 0 && x->stem == y->stem &&
-           memcmp(x->name, y->name, (size_t)x->stem) == 0 && strcmp(frame_verdict(a), frame_verdict(b)) == 0;
+    return frame_failed(a) && frame_failed(b) && x->number >= 0 && y->number >= 0 &&
+           sequence_compare_stems(x, y) == 0 && strcmp(frame_verdict(a), frame_verdict(b)) == 0;
 }
 
 typedef struct Failures {

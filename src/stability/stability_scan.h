@@ -10,9 +10,9 @@ typedef struct StabilityScan {
     const ContenderList *methods;
 } StabilityScan;
 
-/* Writes the rows of the tables "stability", "refusals", "fallbacks" (every unshifted run of a method
-   that may fall back) and "rest" (every unshifted run, if study.rests), ordered by method; methods run in parallel. Omits methods that set their own
-   number of sweeps if the study scans it. `scan` is a StabilityScan. */
+/* Writes the rows of the tables "stability", "refusals", "fallbacks" (every unshifted run of a method that may fall back)
+   and "rest" (every unshifted run, if study.rests), ordered by method; methods run in parallel. Omits methods that set
+   their own number of sweeps if the study scans it. `scan` is a StabilityScan. */
 bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error);
 
 /* The verdict on one run of a study; seed: stability_shift(). False with error set if the method does not apply to the
