@@ -47,12 +47,13 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help = "Run a scene with one method and store the trajectory.\v"
-            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-            "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
-            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help =
+        "Run a scene with one method and store the trajectory.\v"
+        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+        "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
+        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
@@ -112,8 +113,7 @@ static bool record(const Scene *scene, const Method *method, SimulateVerdict *ve
                    Error *error) {
     const StepObserver observer = simulate_verdict_observer(verdict);
     NetworkFallbacks fallbacks = {0};
-    Trajectory *run =
-        simulate_counting(scene, method, &fallbacks, &observer, progress_bar_begin(scene->name), error);
+    Trajectory *run = simulate_counting(scene, method, &fallbacks, &observer, progress_bar_begin(scene->name), error);
     progress_bar_end();
     bool ok = run != NULL && store(run, options, error);
     if (ok) {

@@ -2,7 +2,6 @@
 #include "cli/simulate_verdict.h"
 
 #include "common/file.h"
-#include "common/json_write.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -45,9 +44,7 @@ static int count_bodies(const SimulateVerdict *verdict, int *fallen) {
     return count;
 }
 
-static bool runs_to_the_end(const SimulateVerdict *verdict) {
-    return verdict->reading.frame >= verdict->watch.frame;
-}
+static bool runs_to_the_end(const SimulateVerdict *verdict) { return verdict->reading.frame >= verdict->watch.frame; }
 
 /* "body 7, 0.53 m lower" */
 static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE]) {
@@ -75,8 +72,7 @@ static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE
     case VERDICT_NON_FINITE:
         snprintf(figure, FIGURE_SIZE, "a body's state is NaN or infinite; fastest body before: %.3g m/s", value);
         return;
-    default:
-        snprintf(figure, FIGURE_SIZE, "kinetic energy %.3g J per body", value);
+    default: snprintf(figure, FIGURE_SIZE, "kinetic energy %.3g J per body", value);
     }
 }
 
@@ -132,28 +128,31 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     json_put_text(json, "unit", reading->unit);
 }
 
-static void write_json(FILE *out, const void *context) {
-    const SimulateVerdict *verdict = context;
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
     const VerdictWatch *watch = &verdict->watch;
-    JsonWriter json = {.out = out};
-    json_begin_object(&json, NULL, JSON_LINES);
-    json_put_text(&json, "format", "twinbox verdict 1");
-    json_put_text(&json, "scene", verdict->scene->name);
-    json_put_text(&json, "method", verdict->method);
-    json_put_int(&json, "steps", watch->frame);
-    json_put_number(&json, "dt", (double)verdict->scene->dt);
-    write_reading(verdict, &json);
-    json_put_text(&json, "falls_judged",
+    json_begin_object(json, key, JSON_LINES);
+    json_put_text(json, "format", "twinbox simulate verdict 1");
+    json_put_text(json, "scene", verdict->scene->name);
+    json_put_text(json, "method", verdict->method);
+    json_put_int(json, "steps", watch->frame);
+    json_put_number(json, "dt", (double)verdict->scene->dt);
+    write_reading(verdict, json);
+    json_put_text(json, "falls_judged",
                   watch->run.stands       ? "to the end"
                   : watch->run.until_bomb ? "until the bomb touches"
                                           : "no");
-    write_fallen(verdict, &json);
-    json_put_number(&json, "kinetic", watch->kinetic);
-    json_put_number(&json, "energy", watch->energy);
-    json_put_number(&json, "available", watch->own.available);
-    json_put_number(&json, "drift", verdict->reading.drift);
-    json_put_number(&json, "gained", verdict->reading.gained);
-    json_end(&json);
+    write_fallen(verdict, json);
+    json_put_number(json, "kinetic", watch->kinetic);
+    json_put_number(json, "energy", watch->energy);
+    json_put_number(json, "available", watch->own.available);
+    json_put_number(json, "drift", verdict->reading.drift);
+    json_put_number(json, "gained", verdict->reading.gained);
+    json_end(json);
+}
+
+static void write_json(FILE *out, const void *context) {
+    JsonWriter json = {.out = out};
+    simulate_verdict_put(context, &json, NULL);
 }
 
 bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The verdict on the run of `simulate`, found while its steps are made. */
 #pragma once
+#include "common/json_write.h"
 #include "scene/scene.h"
 #include "simulate/simulate.h"
 #include "stability/verdict.h"
@@ -27,5 +28,8 @@ void simulate_verdict_free(SimulateVerdict *verdict);
 /* Prints "    verdict: falls at 4.22 s (body 7, 0.53 m lower)". */
 void simulate_verdict_print(const SimulateVerdict *verdict);
 
-/* Writes it with all figures as JSON (src/trajectory/README.md). */
+/* Puts it with all figures as an object into JSON (src/study/README.md, The verdict on one run). */
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key);
+
+/* Writes that object as a file. */
 bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);

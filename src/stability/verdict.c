@@ -32,8 +32,7 @@ static bool add_static(VerdictWatch *watch, const Body *body, int index, Error *
     if (!array_reserve((void **)&watch->statics, &watch->static_capacity, (size_t)watch->static_count + 1,
                        sizeof *watch->statics))
         return error_memory(error, "verdict");
-    watch->statics[watch->static_count++] =
-        (WatchedStatic){index, cos((double)body->angle), sin((double)body->angle)};
+    watch->statics[watch->static_count++] = (WatchedStatic){index, cos((double)body->angle), sin((double)body->angle)};
     return true;
 }
 
