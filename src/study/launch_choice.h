@@ -12,5 +12,5 @@ typedef struct LaunchChoice {
 } LaunchChoice;
 
 /* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller. NULL
-   with error set for a table or a family that does not fit the scene. */
+   with error set for a table or a family that does not fit the scene, and for launches that launches_check() refuses. */
 Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error);
