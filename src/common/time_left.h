@@ -21,8 +21,8 @@ void time_left_begin(TimeLeft *left);
 void time_left_add(TimeLeft *left, double time, double part);
 
 /* The seconds that are left at the rate of the last third of the time, at least 4 s. False if that means little: in the
-   first 2 s, with less than 2% done in the first 20 s, or while the rates of both halves of that time differ by more than a factor of
-   2. */
+   first 2 s, with less than 2% done in the first 20 s, or while the rates of both halves of that time differ by more
+   than a factor of 2. */
 bool time_left_estimate(const TimeLeft *left, double time, double part, double *seconds);
 
 /* "8 s", "6 min 40 s" or "2 h 10 min": no digits that an estimate does not have. */

@@ -9,6 +9,6 @@
 FieldParser field_overlaps;
 
 /* Checks the bodies, and the bomb if it is there from the start. Nodes: the list of bodies, and the bomb (0: none). The
-   error is at the entry of the later one, with its index and that of the other. At most 0.4 s for any 10,000 boxes, 5 ms
-   for a structure. */
+   error is at the entry of the later one, with its index and that of the other. Takes some ms for a structure of 10,000
+   boxes. */
 bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *scene, Error *error);

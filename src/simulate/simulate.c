@@ -29,8 +29,8 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
     return false;
 }
 
-/* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the engine's run,
-   too. */
+/* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the engine's
+   run, too. */
 static bool add_bomb(const Scene *scene, World *world, Error *error) {
     const Launch own = launch_of(scene);
     return (launch_is_free(scene, world) || launches_check(scene, &own, 1, error)) &&
