@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 
+#include "cli/notes.h"
 #include "common/clock.h"
 #include "common/time_left.h"
 
@@ -50,7 +51,7 @@ static bool report(void *context, double done, double total) {
     const double time = clock_seconds(), elapsed = time - bar.begun, pause = bar.terminal ? 0.1 : 5.0;
     const double part = done < total ? done / total : 1.0;
     time_left_add(&bar.left, elapsed, part);
-    if (elapsed >= 1.0 && time - bar.shown >= pause && done > 0) {
+    if (note_level() > NOTES_QUIET && elapsed >= 1.0 && time - bar.shown >= pause && done > 0) {
         bar.shown = time;
         bar.visible = true;
         show(part, elapsed);
