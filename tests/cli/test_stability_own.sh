@@ -61,9 +61,9 @@ kill -INT $!
 wait $!
 equal "exit status of an interrupted study" $? 2
 complains "stopped; finished parts are kept"
-sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/five_ratio
+sed -i 's/engine,k=10,ratio,,[0-9.]*/engine,k=10,ratio,,1.5/' part/parts-*/five_ratio
 run 0 stability five.yaml $two -o part
-equal "a finished part is kept" "$(grep -c 'k=4,ratio,,1.5,' part/stability.csv)" 1
+equal "a finished part is kept" "$(grep -c 'k=10,ratio,,1.5,' part/stability.csv)" 1
 cmp -s whole/maps.csv part/maps.csv || fail "an interrupted run ends with another map"
 
 # Refused before the work, so that no folder is made.
