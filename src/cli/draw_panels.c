@@ -71,12 +71,12 @@ static bool write_output(VideoOptions *video, const Progress *progress, Error *e
     return ok;
 }
 
-static bool encode(const char *path, const Panels *panels, const RenderOptions *render, const RenderResult *result,
+static bool encode(const char *path, const RenderOptions *render, const RenderResult *result,
                    Error *error) {
     VideoOptions video = {.directory = render->directory,
                           .first = result->first,
                           .last = result->last,
-                          .frame_rate = 1 / (double)panels->runs[0]->dt,
+                          .frame_rate = result->rate,
                           .hashes = result->hashes,
                           .path = path};
     const Progress *progress = progress_bar_begin(is_output(path) ? "writing" : "encoding");
@@ -96,7 +96,7 @@ bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVi
                  Error *error) {
     bool ok = draw(panels, render, result, error);
     if (ok && result->all) remove_stale_frames(render, result->last);
-    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], panels, render, result, error);
+    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
     free(result->hashes);
     result->hashes = NULL;
     return ok;

@@ -31,6 +31,13 @@ static const Option option_table[] = {
      OPTION_READ(read_frames, Options, render)},
     {"--slow", 0, "K", "K times slower around the bomb's impact, 2 to 16, with poses interpolated between frames",
      OPTION_INT(Options, render.slow, 2, RENDER_SLOW_MAX)},
+    {"--fps", 0, "N",
+     "Pictures per second, 1 to 240, in real time: frames are left out, or poses interpolated between them (default: "
+     "every "
+     "frame of the run)",
+     OPTION_DOUBLE(Options, render.fps, RENDER_FPS_MIN, RENDER_FPS_MAX)},
+    {"--duration", 0, "SECONDS", "Length of the film with its cards; the run is shown faster or slower to fit",
+     OPTION_DOUBLE(Options, render.duration, RENDER_DURATION_MIN, RENDER_DURATION_MAX)},
     {"--hold", 0, "SECONDS", "Hold the last frame for this long",
      OPTION_DOUBLE(Options, render.hold, 0, RENDER_HOLD_MAX)},
     {"--title", 0, "TEXT", "Begin with a title card of two seconds", OPTION_TEXT(Options, render.title)},

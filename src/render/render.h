@@ -16,6 +16,7 @@ typedef struct PictureHashes {
 typedef struct RenderResult {
     int first, last;       /* indices of the files */
     bool all;              /* the whole run was drawn */
+    double rate;           /* pictures per second of the film */
     int kept;              /* of these, unchanged from an earlier call */
     char why[256];         /* options->resume: why nothing could be kept; otherwise empty */
     PictureHashes *hashes; /* [last - first + 1]; freed by the caller */

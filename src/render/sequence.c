@@ -160,6 +160,7 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
         return false;
     result->first = first;
     result->last = moments_last(&plan);
+    result->rate = plan.rate;
     result->all = first == 0 && last == picture->frames - 1;
     Manifest manifest;
     WorkerJob job = {.picture = picture, .options = options, .plan = &plan, .manifest = &manifest};
