@@ -2,11 +2,9 @@
 #include "cli/draw_panels.h"
 
 #include "cli/progress_bar.h"
-#include "render/sink.h"
 #include "render/video.h"
 #include "simulate/method.h"
 
-#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,17 +83,9 @@ static bool encode(const char *path, const RenderOptions *render, const RenderRe
     return ok;
 }
 
-/* Frames of an earlier, longer run would look like frames of this one. */
-static void remove_stale_frames(const RenderOptions *render, int last) {
-    char path[PATH_MAX];
-    for (int frame = last + 1; sink_frame_path(path, sizeof path, render->directory, frame); frame++)
-        if (unlink(path) != 0) return;
-}
-
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderResult *result,
                  Error *error) {
     bool ok = draw(panels, render, result, error);
-    if (ok && result->all) remove_stale_frames(render, result->last);
     for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
     free(result->hashes);
     result->hashes = NULL;

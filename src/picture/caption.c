@@ -3,6 +3,7 @@
 
 #include "picture/caption_item.h"
 
+#include <math.h>
 #include <stdio.h>
 
 void caption_title(const Picture *picture, char title[CAPTION_SIZE]) {
@@ -19,7 +20,9 @@ bool caption_is_pair(const Picture *picture) { return picture->count == 2 && pic
 static bool describe_speed(Moment moment, char *text, size_t size) {
     const double least = 0.01;
     char speed[48] = "";
-    if (moment.slow > 1 + least) snprintf(speed, sizeof speed, "slow motion 1/%.3g", moment.slow);
+    if (moment.slow > 1 + least)
+        snprintf(speed, sizeof speed, moment.slow == rint(moment.slow) ? "slow motion 1/%.3g" : "%.3g times slower",
+                 moment.slow);
     if (moment.slow < 1 - least) snprintf(speed, sizeof speed, "%.3g times faster", 1 / moment.slow);
     snprintf(text, size, "%s%s%s", speed, speed[0] != '\0' && moment.parts > 1 ? ", " : "",
              moment.parts > 1 ? "interpolated poses" : "");
