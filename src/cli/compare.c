@@ -3,8 +3,10 @@
 #include "cli/compare_options.h"
 #include "cli/compare_print.h"
 #include "cli/compare_watch.h"
+#include "cli/notes.h"
 #include "cli/progress_bar.h"
 #include "common/hash.h"
+#include "common/text_add.h"
 #include "report/regression_github.h"
 #include "report/regression_report.h"
 #include "trajectory/trajectory.h"
@@ -86,6 +88,10 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                              progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
+    note_verbose("%d frame%s matched, %d %s; limits of the command line: %s; %.3f s", regression.count,
+                 plural(regression.count), regression.run_count,
+                 regression.run_count == 1 ? "trajectory" : "trajectories", tolerance_words(&options->tolerance).text,
+                 regression.seconds);
     print(options, &regression);
     ok = regression_passed(&regression);
     if (options->report != NULL && !report(&regression, options, error)) ok = false;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/diverge_print.h"
+#include "cli/notes.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 
@@ -93,7 +94,7 @@ static void print(const Divergence *d, const Options *options) {
     diverge_print_growth(&d->growth, (double)a->dt);
     if (d->chaos.distance != NULL)
         diverge_print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
-    else
+    else if (note_level() > NOTES_QUIET)
         printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
 }
 

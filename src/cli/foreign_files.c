@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files in the folder of a sequence that could be mistaken for a part of it. */
+#include "cli/notes.h"
 #include "cli/picture_notes.h"
 #include "common/array.h"
 #include "common/text_add.h"
@@ -48,7 +49,8 @@ static bool is_of_sequence(const char *name, const RenderResult *result, const P
 static bool is_input(const char *directory, const char *name, const Panels *panels) {
     char path[PATH_MAX];
     struct stat file, input;
-    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || stat(path, &file) != 0) return false;
+    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || stat(path, &file) != 0)
+        return false;
     for (int i = 0; i < panels->count; i++)
         if (stat(panels->inputs[i], &input) == 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino)
             return true;
@@ -84,8 +86,7 @@ static int by_name(const void *a, const void *b) { return strcmp(*(char *const *
 static size_t end_of_range(const Names *names, size_t first) {
     size_t last = first;
     const int frame = frame_of(names->list[first]);
-    while (frame >= 0 && last + 1 < names->count &&
-           frame_of(names->list[last + 1]) == frame + (int)(last + 1 - first))
+    while (frame >= 0 && last + 1 < names->count && frame_of(names->list[last + 1]) == frame + (int)(last + 1 - first))
         last++;
     return last;
 }

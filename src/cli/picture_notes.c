@@ -1,24 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/picture_notes.h"
 
-#include "common/text_add.h"
+#include "cli/notes.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-static void note_print(const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    fprintf(stderr, "twinbox: note: ");
-    vfprintf(stderr, format, arguments);
-    fprintf(stderr, "\n");
-    va_end(arguments);
-}
-
 static bool differ(const Trajectory *a, const Trajectory *b) {
-    return a->scene_hash != 0 && b->scene_hash != 0 && (a->scene_hash != b->scene_hash || strcmp(a->scene, b->scene) != 0);
+    return a->scene_hash != 0 && b->scene_hash != 0 &&
+           (a->scene_hash != b->scene_hash || strcmp(a->scene, b->scene) != 0);
 }
 
 void note_different_scenes(const Trajectory *const *runs, int count) {
@@ -29,9 +20,10 @@ void note_different_scenes(const Trajectory *const *runs, int count) {
             note_print("the runs are of different scenes: %s (by %s) and %s (by %s)", a->scene, a->method, b->scene,
                        b->method);
         else
-            note_print("the runs of %s by %s and by %s are of different scenes: their launches, settings or files differ "
-                       "(scene_hash %016" PRIx64 " and %016" PRIx64 ")",
-                       a->scene, a->method, b->method, a->scene_hash, b->scene_hash);
+            note_print(
+                "the runs of %s by %s and by %s are of different scenes: their launches, settings or files differ "
+                "(scene_hash %016" PRIx64 " and %016" PRIx64 ")",
+                a->scene, a->method, b->method, a->scene_hash, b->scene_hash);
         return;
     }
 }
