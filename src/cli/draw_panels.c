@@ -73,8 +73,7 @@ static bool write_output(VideoOptions *video, const Progress *progress, Error *e
     return ok;
 }
 
-static bool encode(const char *path, const RenderOptions *render, const RenderResult *result,
-                   Error *error) {
+static bool encode(const char *path, const RenderOptions *render, const RenderResult *result, Error *error) {
     VideoOptions video = {.directory = render->directory,
                           .first = result->first,
                           .last = result->last,

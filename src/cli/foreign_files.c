@@ -110,7 +110,7 @@ void note_foreign_files(const char *directory, const RenderResult *result, const
         qsort(names.list, names.count, sizeof *names.list, by_name);
         describe(&names, text);
         note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
-                   plural((int)(names.count > 1) + 1), names.count > 1 ? "are" : "is", text);
+                   plural((int)names.count), names.count > 1 ? "are" : "is", text);
     }
     for (size_t i = 0; i < names.count; i++) free(names.list[i]);
     free(names.list);

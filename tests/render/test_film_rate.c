@@ -103,6 +103,18 @@ static void slow_motion_is_as_slow_at_every_rate(void **state) {
         }
 }
 
+/* Twice as slow at half the rate shows every frame: no pose is interpolated, although it is slow motion. */
+static void slow_motion_interpolates_only_where_it_must(void **state) {
+    (void)state;
+    MomentPlan plan = plan_for(120, (RenderOptions){.fps = 60, .slow = 2});
+    for (int p = 0; p < moments_last(&plan); p++) {
+        Moment moment = moments_at(&plan, p);
+        assert_true(moment.kind == MOMENT_STORED && moment.parts == 1);
+    }
+    plan = plan_for(120, (RenderOptions){.fps = 60, .slow = 4});
+    assert_int_equal(moments_at(&plan, moments_last(&plan) / 2).parts, 2);
+}
+
 static void cards_and_hold_last_as_long_at_every_rate(void **state) {
     (void)state;
     for (int f = 0; f < FILM_RATES; f++) {
@@ -202,6 +214,7 @@ int main(void) {
         cmocka_unit_test(pictures_are_shown_at_their_time),
         cmocka_unit_test(frames_are_picked_where_they_fit),
         cmocka_unit_test(slow_motion_is_as_slow_at_every_rate),
+        cmocka_unit_test(slow_motion_interpolates_only_where_it_must),
         cmocka_unit_test(cards_and_hold_last_as_long_at_every_rate),
         cmocka_unit_test(a_duration_is_that_of_the_whole_film),
         cmocka_unit_test(a_range_plays_in_real_time),
