@@ -79,7 +79,8 @@ static bool encode(const char *path, const RenderOptions *render, const RenderRe
                           .last = result->last,
                           .frame_rate = result->rate,
                           .hashes = result->hashes,
-                          .path = path};
+                          .path = path,
+                          .rate_is_chosen = render->fps > 0};
     const Progress *progress = progress_bar_begin(is_output(path) ? "writing" : "encoding");
     bool ok = is_output(path) ? write_output(&video, progress, error) : video_encode(&video, progress, error);
     progress_bar_end();
