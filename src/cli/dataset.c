@@ -3,6 +3,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/names.h"
+#include "common/output_check.h"
 #include "dataset/dataset.h"
 
 #include <stdio.h>
@@ -72,6 +73,7 @@ static bool record(const Options *options, Error *error) {
 bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!output_check_npz(options.output, "dataset", error)) return false;
     options.dataset.scenes = options.scenes;
     if (options.launches == NULL) return record(&options, error);
     if (options.dataset.bomb_x.count + options.dataset.random > 0)

@@ -22,7 +22,9 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
         Method method;
         VerdictReading reading;
         assert_ok(method_parse(&method, methods[i], &error), error);
-        assert_ok(verdict_run(&reading, scene, &method, true, &converged, &error), error);
+        VerdictRun run = verdict_run_of(scene);
+        run.converged = &converged;
+        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
                      count > 0 ? settings->value : 0, methods[i], verdict_name(reading.verdict), reading.body,
