@@ -74,7 +74,9 @@ static void the_arch_needs_its_iterations(void **state) {
     scene->iterations = 10;
     assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    assert_ok(verdict_run(&reading, scene, &engine, true, &converged, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    run.converged = &converged;
+    assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");
     energy_log_free(&converged);
     scene_destroy(scene);
