@@ -84,6 +84,7 @@ bool output_check_folder(const char *path, Error *error) {
     if (!file_path(folder, sizeof folder - 1, error, "%s", path)) return false;
     size_t length = strlen(folder);
     while (length > 0 && stat(folder, &status) != 0) {
+        if (errno == ENOTDIR) return error_system(error, path, "cannot write: a part of the path is not a folder");
         while (length > 0 && folder[length - 1] == '/') length--;
         while (length > 0 && folder[length - 1] != '/') length--;
         folder[length] = '\0';
