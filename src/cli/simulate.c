@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "simulate/simulate.h"
+#include "simulate/recorder.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,7 +15,7 @@ typedef struct Options {
     int bomb_frame;         /* -1: the scene's */
     int frames, iterations; /* 0: the scene's */
     float dt;               /* s; 0: the scene's */
-    bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
+    bool no_contacts, no_bomb, no_warm_starting, no_accumulate, no_position_correction;
     SceneSettings set;
 } Options;
 
@@ -25,6 +25,8 @@ static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
      OPTION_TEXT(Options, method)},
     {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
+    {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz, which are most of it",
+     OPTION_FLAG(Options, no_contacts)},
     {.help = "Override the scene:"},
     {OPTION_SET(Options, set)},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m",
@@ -77,14 +79,6 @@ static bool ends_with(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-static bool store(const Trajectory *run, const Options *options, Error *error) {
-    bool ok = true;
-    if (options->output != NULL)
-        ok = ends_with(options->output, ".csv") ? trajectory_write_csv(run, options->output, error)
-                                                : trajectory_write(run, options->output, error);
-    return ok && (options->hashes == NULL || trajectory_write_hashes(run, options->hashes, error));
-}
-
 /* What the method solved by simpler means than its own, if anything. */
 static void print_fallbacks(const NetworkFallbacks *fallbacks) {
     const struct {
@@ -98,19 +92,36 @@ static void print_fallbacks(const NetworkFallbacks *fallbacks) {
         if (rows[i].count > 0) printf("    %s: %d\n", rows[i].what, rows[i].count);
 }
 
+static Recorder *create_recorder(const Scene *scene, const Method *method, const Options *options, Error *error) {
+    RecorderOutput outputs[RECORDER_OUTPUTS_MAX];
+    int count = 0;
+    if (options->output != NULL)
+        outputs[count++] =
+            (RecorderOutput){options->output, ends_with(options->output, ".csv") ? TRAJECTORY_CSV : TRAJECTORY_NPZ};
+    if (options->hashes != NULL) outputs[count++] = (RecorderOutput){options->hashes, TRAJECTORY_HASHES};
+    return recorder_create_to(scene, method, outputs, count, options->no_contacts, error);
+}
+
+static bool run_recorded(const Scene *scene, const Method *method, Recorder *recorder, NetworkFallbacks *fallbacks,
+                         Error *error) {
+    const RunWatch watch = {.recorder = recorder, .fallbacks = fallbacks, .progress = progress_bar_begin(scene->name)};
+    bool ok = simulate_watched(scene, method, &watch, error);
+    progress_bar_end();
+    return ok && recorder_finish(recorder, error);
+}
+
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     if (!override_scene(scene, options, error)) return false;
     NetworkFallbacks fallbacks = {0};
-    Trajectory *run = simulate_counting(scene, method, &fallbacks, progress_bar_begin(scene->name), error);
-    progress_bar_end();
-    bool ok = run != NULL && store(run, options, error);
+    Recorder *recorder = create_recorder(scene, method, options, error);
+    bool ok = recorder != NULL && run_recorded(scene, method, recorder, &fallbacks, error);
     if (ok) {
-        printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", run->scene, run->method,
-               run->frames - 1, (double)run->dt, run->bodies, trajectory_frame_hash(run, run->frames - 1),
+        printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", scene->name, method->text,
+               scene->frames, (double)scene->dt, recorder_bodies(recorder), recorder_state_hash(recorder),
                options->output != NULL ? " -> " : "", options->output != NULL ? options->output : "");
         print_fallbacks(&fallbacks);
     }
-    trajectory_destroy(run);
+    recorder_destroy(recorder);
     return ok;
 }
 

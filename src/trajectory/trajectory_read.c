@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
 #include "common/npz.h"
-#include "trajectory/trajectory_arrays.h"
+#include "trajectory/trajectory.h"
 
 #include <limits.h>
 #include <math.h>
@@ -50,6 +50,22 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
            (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
            (t->velocity = npz_read(file, "velocity", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
            (t->angular_velocity = npz_read(file, "angular_velocity", NPZ_FLOAT32, 2, vectors, error)) != NULL;
+}
+
+/* Contacts as stored in files: one array per quantity. */
+typedef struct ContactArrays {
+    int32_t (*bodies)[2]; /* a, b */
+    uint32_t *feature;
+    Vec2 *point, *normal;
+    float (*impulse)[2]; /* normal, tangent */
+} ContactArrays;
+
+static void contact_arrays_free(ContactArrays *arrays) {
+    free(arrays->bodies);
+    free(arrays->feature);
+    free(arrays->point);
+    free(arrays->normal);
+    free(arrays->impulse);
 }
 
 static bool read_contact_arrays(ContactArrays *arrays, NpzFile *file, int64_t count, Error *error) {
