@@ -29,9 +29,9 @@ typedef struct Column {
 
 struct NpzStream {
     char *path;
-    int count;
     ZipWriter zip;
-    Column columns[ZIP_MEMBERS_MAX];
+    int count, most;
+    Column columns[]; /* [most] */
 };
 
 static void column_free(Column *column) {
@@ -43,13 +43,14 @@ static void column_free(Column *column) {
     column->spill = -1;
 }
 
-NpzStream *npz_stream_create(const char *path, Error *error) {
-    NpzStream *stream = calloc(1, sizeof *stream);
+NpzStream *npz_stream_create(const char *path, int most, Error *error) {
+    NpzStream *stream = calloc(1, sizeof *stream + (size_t)most * sizeof *stream->columns);
     if (stream == NULL || (stream->path = strdup(path)) == NULL) {
         free(stream);
         error_memory(error, path);
         return NULL;
     }
+    stream->most = most;
     stream->zip.path = stream->path;
     stream->zip.draft = file_draft(path, error);
     if (stream->zip.draft >= 0) return stream;
@@ -61,6 +62,7 @@ void npz_stream_destroy(NpzStream *stream) {
     if (stream == NULL) return;
     for (int i = 0; i < stream->count; i++) column_free(&stream->columns[i]);
     if (stream->zip.draft >= 0) close(stream->zip.draft);
+    zip_writer_free(&stream->zip);
     free(stream->path);
     free(stream);
 }
@@ -87,7 +89,7 @@ static bool measure(NpzStream *stream, Column *column, Error *error) {
 }
 
 int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
-    assert(stream->count < ZIP_MEMBERS_MAX);
+    assert(stream->count < stream->most);
     assert(array->rank <= NPZ_MAX_RANK && (array->type != NPZ_TEXT || array->rank == 0));
     Column *column = &stream->columns[stream->count++];
     *column = (Column){.head = {.type = array->type, .rank = array->rank}, .data = array->data, .spill = -1};
@@ -192,7 +194,7 @@ bool npz_stream_finish(NpzStream *stream, Error *error) {
 
 bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *error) {
     assert(count > 0);
-    NpzStream *stream = npz_stream_create(path, error);
+    NpzStream *stream = npz_stream_create(path, (int)count, error);
     bool done = stream != NULL;
     for (size_t i = 0; done && i < count; i++) done = npz_stream_add(stream, &arrays[i], error) >= 0;
     done = done && npz_stream_finish(stream, error);

@@ -12,8 +12,8 @@ enum { NPZ_LARGE = 1 << 20 };
 
 typedef struct NpzStream NpzStream;
 
-/* NULL with error set if no file can be written at `path`. */
-NpzStream *npz_stream_create(const char *path, Error *error);
+/* A stream of at most `most` arrays. NULL with error set if no file can be written at `path`. */
+NpzStream *npz_stream_create(const char *path, int most, Error *error);
 
 /* Discards what npz_stream_finish() has not written. */
 void npz_stream_destroy(NpzStream *stream);

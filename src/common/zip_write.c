@@ -2,11 +2,13 @@
 /* The format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
 #include "common/zip_write.h"
 
+#include "common/array.h"
 #include "common/file.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -84,8 +86,16 @@ static bool put(ZipWriter *zip, const void *data, size_t size, Error *error) {
     return add_size(zip, size, error) && file_draft_write(zip->draft, zip->path, data, size, error);
 }
 
+void zip_writer_free(ZipWriter *zip) {
+    free(zip->members);
+    zip->members = NULL;
+}
+
 bool zip_begin(ZipWriter *zip, const char *name, bool deflated, Error *error) {
-    assert(zip->count < ZIP_MEMBERS_MAX);
+    void *members = zip->members;
+    if (!array_reserve(&members, &zip->capacity, zip->count + 1, sizeof *zip->members))
+        return error_memory(error, zip->path);
+    zip->members = members;
     ZipMember *member = &zip->members[zip->count++];
     *member = (ZipMember){.deflated = deflated, .offset = (uint32_t)zip->used};
     int length = snprintf(member->name, sizeof member->name, "%s", name);
@@ -108,7 +118,7 @@ bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed, Error
 
 bool zip_finish(ZipWriter *zip, Error *error) {
     uint64_t start = zip->used;
-    for (int i = 0; i < zip->count; i++) {
+    for (size_t i = 0; i < zip->count; i++) {
         Record entry = directory_entry(&zip->members[i]);
         if (!put(zip, entry.bytes, entry.used, error) ||
             !put(zip, zip->members[i].name, strlen(zip->members[i].name), error))

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { ZIP_NAME_SIZE = 72, ZIP_MEMBERS_MAX = 256 };
+enum { ZIP_NAME_SIZE = 72 };
 
 typedef struct ZipMember {
     char name[ZIP_NAME_SIZE];
@@ -19,12 +19,14 @@ typedef struct ZipMember {
 } ZipMember;
 
 typedef struct ZipWriter {
-    int draft;        /* common/file.h */
-    const char *path; /* for messages */
-    uint64_t used;    /* bytes written */
-    int count;
-    ZipMember members[ZIP_MEMBERS_MAX];
+    int draft;          /* common/file.h */
+    const char *path;   /* for messages */
+    uint64_t used;      /* bytes written */
+    ZipMember *members; /* [count] */
+    size_t count, capacity;
 } ZipWriter;
+
+void zip_writer_free(ZipWriter *zip);
 
 /* Begins a member. Its bytes, as they shall be in the file, are then written to the draft. */
 bool zip_begin(ZipWriter *zip, const char *name, bool deflated, Error *error);

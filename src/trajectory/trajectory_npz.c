@@ -10,6 +10,9 @@
 /* The arrays that grow, in the order of the file. */
 enum { POSITION, ANGLE, VELOCITY, ANGULAR_VELOCITY, CONTACT_START, BODIES, FEATURE, POINT, NORMAL, IMPULSE, GROWING };
 
+/* Those that do not. */
+enum { KNOWN = 9 };
+
 /* Contacts that are split at a time; their arrays stay in the cache. */
 enum { BLOCK = 1024 };
 
@@ -25,7 +28,7 @@ struct TrajectoryNpz {
     NpzStream *stream;
     int array[GROWING];
     int bodies;
-    bool no_contacts;
+    bool no_contacts, begun;
     int64_t contacts; /* so far */
     double bytes;     /* of all arrays so far */
     char path[512];   /* for messages */
@@ -70,7 +73,7 @@ static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
 
 static bool add_arrays(TrajectoryNpz *npz, Error *error) {
     const int64_t bodies = npz->bodies;
-    const NpzArray known[] = {
+    const NpzArray known[KNOWN] = {
         {"version", NPZ_INT32, 0, {0}, &npz->version},   {"scene", NPZ_TEXT, 0, {0}, npz->scene},
         {"method", NPZ_TEXT, 0, {0}, npz->method},       {"scene_hash", NPZ_UINT64, 0, {0}, &npz->scene_hash},
         {"dt", NPZ_FLOAT32, 0, {0}, &npz->dt},           {"bomb", NPZ_INT32, 0, {0}, &npz->bomb},
@@ -89,18 +92,18 @@ static bool add_arrays(TrajectoryNpz *npz, Error *error) {
         [NORMAL] = {"contact_normal", NPZ_FLOAT32, 2, {0, 2}, NULL},
         [IMPULSE] = {"contact_impulse", NPZ_FLOAT32, 2, {0, 2}, NULL},
     };
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    for (int i = 0; i < KNOWN; i++)
         if (npz_stream_add(npz->stream, &known[i], error) < 0) return false;
     for (int i = 0; i < (npz->no_contacts ? CONTACT_START : GROWING); i++)
         if ((npz->array[i] = npz_stream_add(npz->stream, &growing[i], error)) < 0) return false;
-    return npz->no_contacts || npz_stream_append(npz->stream, npz->array[CONTACT_START], &npz->contacts, 1, error);
+    return true;
 }
 
 TrajectoryNpz *trajectory_npz_create(const Trajectory *head, const char *path, Error *error) {
     TrajectoryNpz *npz = calloc(1, sizeof *npz);
     bool done = (npz != NULL && copy_head(npz, head)) || error_memory(error, path);
     if (done) snprintf(npz->path, sizeof npz->path, "%s", path);
-    done = done && (npz->stream = npz_stream_create(path, error)) != NULL && add_arrays(npz, error);
+    done = done && (npz->stream = npz_stream_create(path, KNOWN + GROWING, error)) != NULL && add_arrays(npz, error);
     if (done) return npz;
     trajectory_npz_destroy(npz);
     return NULL;
@@ -128,10 +131,11 @@ static bool add_block(TrajectoryNpz *npz, const TrajectoryContact *contacts, int
 
 static bool add_contacts(TrajectoryNpz *npz, const Trajectory *part, Error *error) {
     const int64_t count = part->contact_start[part->frames];
-    for (int frame = 0; frame < part->frames; frame++) {
-        const int64_t end = npz->contacts + part->contact_start[frame + 1];
-        if (!append(npz, CONTACT_START, &end, 1, error)) return false;
+    for (int frame = npz->begun ? 1 : 0; frame <= part->frames; frame++) {
+        const int64_t start = npz->contacts + part->contact_start[frame];
+        if (!append(npz, CONTACT_START, &start, 1, error)) return false;
     }
+    npz->begun = true;
     for (int64_t i = 0; i < count; i += BLOCK)
         if (!add_block(npz, part->contacts + i, count - i < BLOCK ? count - i : BLOCK, error)) return false;
     npz->contacts += count;
