@@ -10,6 +10,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <libdeflate.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,14 +108,10 @@ int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
     return measure(stream, column, error) ? stream->count - 1 : -1;
 }
 
-static bool stores(const Column *column) {
-    return column->head.type == NPZ_FLOAT32 || column->head.type == NPZ_FLOAT64;
-}
-
 /* What was kept and all that follows goes into a file. */
 static bool spill(NpzStream *stream, Column *column, Error *error) {
     column->spill = file_draft(stream->path, error);
-    if (column->spill < 0 || !npz_pack_begin(&column->pack, !stores(column), column->spill, stream->path, error) ||
+    if (column->spill < 0 || !npz_pack_begin(&column->pack, true, column->spill, stream->path, error) ||
         !npz_pack_put(&column->pack, column->kept, column->used, error))
         return false;
     free(column->kept);
@@ -142,40 +139,40 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
 static bool write_small(NpzStream *stream, Column *column, const char *head, Error *error) {
     NpzPack *pack = &column->pack;
     const void *data = column->data != NULL ? column->data : column->kept;
-    return zip_begin(&stream->zip, column->name, true, error) &&
-           npz_pack_begin(pack, true, stream->zip.draft, stream->path, error) &&
+    return zip_begin(&stream->zip, column->name, error) &&
+           npz_pack_begin(pack, false, stream->zip.draft, stream->path, error) &&
            npz_pack_put(pack, head, column->head.head_size, error) &&
            npz_pack_put(pack, data, column->head.data_size, error) && npz_pack_end(pack, error) &&
            zip_end(&stream->zip, pack->crc, pack->size, pack->packed, error);
 }
 
-/* The header; where the data is deflated, as a deflate block that is stored. */
-static bool write_head(NpzStream *stream, const Column *column, const char *head, uint64_t *packed, Error *error) {
-    const size_t size = column->head.head_size;
-    const unsigned char block[] = {0, (unsigned char)(size & 0xff), (unsigned char)(size >> 8),
-                                   (unsigned char)(~size & 0xff), (unsigned char)(~size >> 8 & 0xff)};
-    const size_t block_size = stores(column) ? 0 : sizeof block;
-    *packed = block_size + size;
-    return file_draft_write(stream->zip.draft, stream->path, block, block_size, error) &&
-           file_draft_write(stream->zip.draft, stream->path, head, size, error);
+static bool copy_spilled(NpzStream *stream, const Column *column, Error *error) {
+    return file_copy(stream->zip.draft, column->spill) ||
+           error_system(error, stream->path, "cannot write: %s", strerror(errno));
 }
 
+/* The header is a block of its own: of rows that were appended, it is known last. */
 static bool write_large(NpzStream *stream, Column *column, const char *head, Error *error) {
-    NpzPack *pack = &column->pack;
-    uint64_t head_packed;
-    bool done = zip_begin(&stream->zip, column->name, !stores(column), error) &&
-                write_head(stream, column, head, &head_packed, error);
-    if (done && column->spill < 0)
-        done = npz_pack_begin(pack, !stores(column), stream->zip.draft, stream->path, error) &&
-               npz_pack_put(pack, column->data, column->head.data_size, error);
-    done = done && npz_pack_end(pack, error);
-    if (done && column->spill >= 0)
-        done = file_copy(stream->zip.draft, column->spill) ||
-               error_system(error, stream->path, "cannot write: %s", strerror(errno));
-    if (!done) return false;
-    const uint32_t head_crc = (uint32_t)crc32(0, (const unsigned char *)head, (unsigned)column->head.head_size);
-    return zip_end(&stream->zip, (uint32_t)crc32_combine(head_crc, pack->crc, (off_t)pack->size),
-                   column->head.head_size + pack->size, head_packed + pack->packed, error);
+    NpzPack whole = {0}, *pack = &whole;
+    const bool spilled = column->spill >= 0;
+    const size_t head_size = column->head.head_size;
+    bool done = zip_begin(&stream->zip, column->name, error) &&
+                npz_pack_begin(&whole, true, stream->zip.draft, stream->path, error) &&
+                npz_pack_put_stored(&whole, head, head_size, error);
+    if (done && spilled) {
+        pack = &column->pack;
+        done = npz_pack_end(pack, error) && copy_spilled(stream, column, error);
+        pack->packed += whole.packed;
+    } else if (done) {
+        done = npz_pack_put(pack, column->data, column->head.data_size, error) && npz_pack_end(pack, error);
+    }
+    if (done) {
+        const uint32_t head_crc = libdeflate_crc32(0, head, head_size);
+        done = zip_end(&stream->zip, (uint32_t)crc32_combine(head_crc, pack->crc, (off_t)pack->size),
+                       head_size + pack->size, pack->packed, error);
+    }
+    npz_pack_free(&whole);
+    return done;
 }
 
 static bool write_column(NpzStream *stream, Column *column, Error *error) {

@@ -5,9 +5,7 @@
 #pragma once
 #include "common/npz.h"
 
-/* From this size on, floats are stored uncompressed, because deflate takes a second per 30 MB to save an eighth of
-   velocities; and an array of whole numbers is deflated without its header, which tells the number of rows and so is
-   known last. */
+/* From this size on, an array is packed while it grows (common/npz_pack.h). */
 enum { NPZ_LARGE = 1 << 20 };
 
 typedef struct NpzStream NpzStream;

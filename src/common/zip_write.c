@@ -16,7 +16,7 @@
 enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
 
 /* What libzip wrote: made by version 6.3 for Unix, a regular file that all may read and write. */
-enum { MADE_BY = 3 << 8 | 63, NEEDS_DEFLATE = 20, NEEDS_STORE = 10 };
+enum { MADE_BY = 3 << 8 | 63, NEEDS_DEFLATE = 20 };
 static const uint32_t ATTRIBUTES = 0100666U << 16;
 
 enum { LOCAL_SIZE = 30, ENTRY_SIZE = 46, END_SIZE = 22, METHOD_DEFLATE = 8 };
@@ -41,9 +41,9 @@ static void put32(Record *record, uint32_t value) {
 
 /* What a member's local header and its entry in the directory share. */
 static void put_common(Record *record, const ZipMember *member) {
-    put16(record, member->deflated ? NEEDS_DEFLATE : NEEDS_STORE);
+    put16(record, NEEDS_DEFLATE);
     put16(record, 0); /* flags */
-    put16(record, member->deflated ? METHOD_DEFLATE : 0);
+    put16(record, METHOD_DEFLATE);
     put16(record, DOS_TIME);
     put16(record, DOS_DATE);
     put32(record, member->crc);
@@ -91,13 +91,13 @@ void zip_writer_free(ZipWriter *zip) {
     zip->members = NULL;
 }
 
-bool zip_begin(ZipWriter *zip, const char *name, bool deflated, Error *error) {
+bool zip_begin(ZipWriter *zip, const char *name, Error *error) {
     void *members = zip->members;
     if (!array_reserve(&members, &zip->capacity, zip->count + 1, sizeof *zip->members))
         return error_memory(error, zip->path);
     zip->members = members;
     ZipMember *member = &zip->members[zip->count++];
-    *member = (ZipMember){.deflated = deflated, .offset = (uint32_t)zip->used};
+    *member = (ZipMember){.offset = (uint32_t)zip->used};
     int length = snprintf(member->name, sizeof member->name, "%s", name);
     assert(length > 0 && length < ZIP_NAME_SIZE);
     (void)length;

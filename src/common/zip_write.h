@@ -12,7 +12,6 @@ enum { ZIP_NAME_SIZE = 72 };
 
 typedef struct ZipMember {
     char name[ZIP_NAME_SIZE];
-    bool deflated;
     uint32_t crc;
     uint32_t offset;       /* in the file */
     uint64_t packed, size; /* bytes in the file, bytes of the data */
@@ -28,8 +27,8 @@ typedef struct ZipWriter {
 
 void zip_writer_free(ZipWriter *zip);
 
-/* Begins a member. Its bytes, as they shall be in the file, are then written to the draft. */
-bool zip_begin(ZipWriter *zip, const char *name, bool deflated, Error *error);
+/* Begins a member, which is deflated. Its bytes, as they shall be in the file, are then written to the draft. */
+bool zip_begin(ZipWriter *zip, const char *name, Error *error);
 
 /* Ends it: checksum and size of its data before compression, and number of bytes written. */
 bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed, Error *error);
