@@ -84,6 +84,7 @@ static bool put_large(NpzPack *pack, const unsigned char *data, size_t size, Err
 }
 
 bool npz_pack_put(NpzPack *pack, const void *data, size_t size, Error *error) {
+    if (size == 0) return true;
     pack->crc = libdeflate_crc32(pack->crc, data, size); /* ten times as fast as zlib's */
     pack->size += size;
     return pack->block != NULL ? put_large(pack, data, size, error) : deflate_all(pack, data, size, Z_NO_FLUSH, error);
