@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/diverge_print.h"
+#include "cli/divergence.h"
+#include "cli/notes.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
-void diverge_print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
+static void print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
     const Trajectory *const runs[] = {a, b};
     for (int i = 0; i < 2; i++)
         printf("run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, runs[i]->scene, runs[i]->method,
                runs[i]->frames, runs[i]->bodies, paths[i]);
-    if (a->scene_hash != b->scene_hash)
+    if (a->scene_hash != b->scene_hash && a->scene_hash != 0 && b->scene_hash != 0)
         printf("different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n", a->scene_hash,
                b->scene_hash);
+    if (!trajectory_both_move(a, b)) printf("only poses are compared: a run has no velocities\n");
     if (a->frames != b->frames)
         printf("different lengths: only the first %d frames are compared\n",
                a->frames < b->frames ? a->frames : b->frames);
 }
 
-static void print_body(const Trajectory *a, const PartedBody *parted) {
+static void print_body(const Trajectory *a, const PartedBody *parted, bool poses_only) {
     const StateDifference *by = &parted->by;
     printf("frame %d, body %d%s: ", parted->frame, parted->body, parted->body == a->bomb ? " (the bomb)" : "");
-    if (by->in_a && by->in_b)
-        printf("%.3g m apart, %.3g rad, %.3g m/s, %.3g rad/s", by->distance, by->angle, by->speed, by->spin);
-    else
-        printf("only in run %d", by->in_a ? 1 : 2);
+    if (by->in_a && by->in_b) printf("%.3g m apart, %.3g rad", by->distance, by->angle);
+    if (by->in_a && by->in_b && !poses_only) printf(", %.3g m/s, %.3g rad/s", by->speed, by->spin);
+    if (!by->in_a || !by->in_b) printf("only in run %d", by->in_a ? 1 : 2);
     if (parted->bodies > 1) printf("; %d bodies in all", parted->bodies);
     printf("\n");
 }
@@ -78,6 +79,9 @@ static void print_cause(const TrajectoryParting *parting) {
             "their impulses:\n  the bodies were moved differently (another kind of step, or another scene)\n",
             frame - 1, contacts->count_a, frame);
         return;
+    case PART_UNKNOWN:
+        printf("cause: unknown, as a run has no contacts\n  all states of frame %d are equal\n", frame - 1);
+        return;
     }
     print_contact(contacts);
 }
@@ -88,7 +92,7 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
         return;
     }
     printf("centres more than %g m apart: ", tolerance);
-    print_body(a, &parting->beyond);
+    print_body(a, &parting->beyond, parting->poses_only);
     if (parting->beyond.frame == 0) return;
     if (parting->beyond.frame == parting->first.frame)
         printf("  all states before that step are equal: the cause above\n");
@@ -98,9 +102,10 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
     print_contact(&parting->beyond_contacts);
 }
 
-void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
+static void print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
     if (parting->first.frame < 0) {
-        printf("equal: %d frames of %d bodies, every bit of pose and velocity\n", parting->frames, a->bodies);
+        printf("equal: %d frames of %d bodies, every bit of pose%s\n", parting->frames, a->bodies,
+               parting->poses_only ? "" : " and velocity");
         if (parting->step >= 0) {
             printf("the states do not show it, but ");
             print_hidden(parting);
@@ -109,7 +114,7 @@ void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting
         return;
     }
     printf("first difference: ");
-    print_body(a, &parting->first);
+    print_body(a, &parting->first, parting->poses_only);
     print_cause(parting);
     if (tolerance > 0) print_beyond(a, parting, tolerance);
 }
@@ -134,12 +139,12 @@ static void print_rate(const Growth *growth, double dt) {
     printf("; scatter: a factor of %.2g\n", exp(growth->scatter));
 }
 
-void diverge_print_growth(const Growth *growth, double dt) {
+static void print_growth(const Growth *growth, double dt) {
     printf("growth of the largest distance: ");
     print_rate(growth, dt);
 }
 
-void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
+static void print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
     static const char *const verdicts[] = {
         [GROWTH_UNKNOWN] = "unknown, one of the two has no rate",
         [GROWTH_NEITHER] = "neither distance doubles in these frames",
@@ -154,4 +159,16 @@ void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth 
     printf("shifted run (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
+}
+
+void diverge_print(const Divergence *d) {
+    const Trajectory *a = d->runs[0], *b = d->runs[1];
+    print_runs(d->paths, a, b);
+    print_parting(a, &d->parting, d->tolerance);
+    if (d->parting.first.frame < 0) return;
+    print_growth(&d->growth, (double)a->dt);
+    if (d->chaos.distance != NULL)
+        print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
+    else if (note_level() > NOTES_QUIET)
+        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
 }

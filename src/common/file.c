@@ -3,6 +3,7 @@
 #include "common/file.h"
 
 #include "common/array.h"
+#include "common/trace.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -73,6 +74,7 @@ static char *read_and_close(int file, const char *path, size_t limit, size_t *si
     else
         data = read_all(file, path, limit, (size_t)status.st_size, size, error);
     close(file);
+    if (data != NULL) trace_line("read %s, %zu bytes", path, *size);
     return data;
 }
 

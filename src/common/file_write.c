@@ -2,6 +2,8 @@
 /* Whole files out. */
 #include "common/file.h"
 
+#include "common/trace.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -160,25 +162,27 @@ static bool put(const char *path, const Contents *contents, bool wait) {
     return realpath(path, target) != NULL && replace(AT_FDCWD, target, contents, wait);
 }
 
+static bool finish(bool written, const char *path, size_t size, Error *error) {
+    if (!written) return error_system(error, path, "cannot write: %s", strerror(errno));
+    trace_line("wrote %s, %zu bytes", path, size);
+    return true;
+}
+
 bool file_append(const char *path, const void *data, size_t size, Error *error) {
-    return write_into(open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666),
-                      &(Contents){data, size, -1}) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
+    return finish(write_into(file, &(Contents){data, size, -1}), path, size, error);
 }
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
-    return put(path, &(Contents){data, size, -1}, true) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(put(path, &(Contents){data, size, -1}, true), path, size, error);
 }
 
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
-    return replace(folder, name, &(Contents){data, size, -1}, true) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(replace(folder, name, &(Contents){data, size, -1}, true), path, size, error);
 }
 
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
-    return put(path, &(Contents){data, size, -1}, false) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(put(path, &(Contents){data, size, -1}, false), path, size, error);
 }
 
 bool file_sync(const char *path, Error *error) {
@@ -224,6 +228,6 @@ bool file_draft_write(int draft, const char *path, const void *data, size_t size
 }
 
 bool file_draft_publish(int draft, const char *path, Error *error) {
-    return put(path, &(Contents){.draft = draft}, true) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    const off_t size = lseek(draft, 0, SEEK_END);
+    return finish(put(path, &(Contents){.draft = draft}, true), path, (size_t)size, error);
 }

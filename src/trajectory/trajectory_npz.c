@@ -28,7 +28,7 @@ struct TrajectoryNpz {
     NpzStream *stream;
     int array[GROWING];
     int bodies;
-    bool no_contacts, begun;
+    bool no_velocities, no_contacts, begun;
     int64_t contacts; /* so far */
     double bytes;     /* of all arrays so far */
     char path[512];   /* for messages */
@@ -67,8 +67,15 @@ static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
     npz->camera[0] = head->camera_center;
     npz->camera[1] = head->camera_size;
     npz->bodies = head->bodies;
+    npz->no_velocities = head->no_velocities;
     npz->no_contacts = head->no_contacts;
     return true;
+}
+
+static bool is_known(const TrajectoryNpz *npz, int array) {
+    return array >= CONTACT_START                           ? !npz->no_contacts
+           : array == VELOCITY || array == ANGULAR_VELOCITY ? !npz->no_velocities
+                                                            : true;
 }
 
 static bool add_arrays(TrajectoryNpz *npz, Error *error) {
@@ -94,8 +101,8 @@ static bool add_arrays(TrajectoryNpz *npz, Error *error) {
     };
     for (int i = 0; i < KNOWN; i++)
         if (npz_stream_add(npz->stream, &known[i], error) < 0) return false;
-    for (int i = 0; i < (npz->no_contacts ? CONTACT_START : GROWING); i++)
-        if ((npz->array[i] = npz_stream_add(npz->stream, &growing[i], error)) < 0) return false;
+    for (int i = 0; i < GROWING; i++)
+        if (is_known(npz, i) && (npz->array[i] = npz_stream_add(npz->stream, &growing[i], error)) < 0) return false;
     return true;
 }
 
@@ -110,7 +117,7 @@ TrajectoryNpz *trajectory_npz_create(const Trajectory *head, const char *path, E
 }
 
 static bool append(TrajectoryNpz *npz, int array, const void *rows, int64_t count, Error *error) {
-    return npz_stream_append(npz->stream, npz->array[array], rows, count, error);
+    return !is_known(npz, array) || npz_stream_append(npz->stream, npz->array[array], rows, count, error);
 }
 
 static bool add_block(TrajectoryNpz *npz, const TrajectoryContact *contacts, int64_t count, Error *error) {
