@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/json_output.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/simulate_print.h"
 #include "simulate/recorder.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
-    const char *scene, *output, *method, *hashes;
+    const char *scene, *output, *method, *hashes, *verdict;
     float bomb_x;           /* m; NaN: the scene's */
     int bomb_frame;         /* -1: the scene's */
     int frames, iterations; /* 0: the scene's */
     float dt;               /* s; 0: the scene's */
-    bool no_contacts, no_bomb, no_warm_starting, no_accumulate, no_position_correction;
+    bool json, no_contacts, no_bomb, no_warm_starting, no_accumulate, no_position_correction;
     SceneSettings set;
 } Options;
 
@@ -25,8 +25,10 @@ static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
      OPTION_TEXT(Options, method)},
     {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
-    {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz, which are most of it",
+    {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_TEXT(Options, verdict)},
+    {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz; they are most of it",
      OPTION_FLAG(Options, no_contacts)},
+    {OPTION_JSON(Options, json)},
     {.help = "Override the scene:"},
     {OPTION_SET(Options, set)},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m",
@@ -47,11 +49,13 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help = "Run a scene with one method and store the trajectory.\v"
-            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help =
+        "Run a scene with one method and store the trajectory.\v"
+        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+        "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
+        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
@@ -79,19 +83,6 @@ static bool ends_with(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/* What the method solved by simpler means than its own, if anything. */
-static void print_fallbacks(const NetworkFallbacks *fallbacks) {
-    const struct {
-        int count;
-        const char *what;
-    } rows[] = {{fallbacks->by_sweeps, "steps solved by sweeps instead"},
-                {fallbacks->beyond_training, "steps without the network, as they are unlike its training"},
-                {fallbacks->not_finite, "outputs of the network that were NaN, infinite or out of bounds"},
-                {fallbacks->outside_cone, "impulses of the network outside the friction cone"}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (rows[i].count > 0) printf("    %s: %d\n", rows[i].what, rows[i].count);
-}
-
 static Recorder *create_recorder(const Scene *scene, const Method *method, const Options *options, Error *error) {
     RecorderOutput outputs[RECORDER_OUTPUTS_MAX];
     int count = 0;
@@ -102,26 +93,44 @@ static Recorder *create_recorder(const Scene *scene, const Method *method, const
     return recorder_create_to(scene, method, outputs, count, options->no_contacts, error);
 }
 
-static bool run_recorded(const Scene *scene, const Method *method, Recorder *recorder, NetworkFallbacks *fallbacks,
-                         Error *error) {
-    const RunWatch watch = {.recorder = recorder, .fallbacks = fallbacks, .progress = progress_bar_begin(scene->name)};
+/* Runs the scene and writes the files; fills the result. */
+static bool record(const Scene *scene, const Method *method, const Options *options, SimulateResult *result,
+                   Error *error) {
+    const StepObserver observer = simulate_verdict_observer(&result->verdict);
+    Recorder *recorder = create_recorder(scene, method, options, error);
+    if (recorder == NULL) return false;
+    const RunWatch watch = {.recorder = recorder,
+                            .observers = &observer,
+                            .observer_count = 1,
+                            .fallbacks = &result->fallbacks,
+                            .progress = progress_bar_begin(scene->name)};
     bool ok = simulate_watched(scene, method, &watch, error);
     progress_bar_end();
-    return ok && recorder_finish(recorder, error);
+    ok = ok && recorder_finish(recorder, error);
+    if (ok) {
+        result->bodies = recorder_bodies(recorder);
+        result->state = recorder_state_hash(recorder);
+    }
+    recorder_destroy(recorder);
+    return ok;
+}
+
+/* A run that ends in a NaN or infinite state has a verdict, too. */
+static bool judge(SimulateResult *result, const Options *options, Error *error) {
+    if (!simulate_verdict_end(&result->verdict, error)) return false;
+    if (!options->json) simulate_verdict_print(&result->verdict);
+    return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }
 
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
-    if (!override_scene(scene, options, error)) return false;
-    NetworkFallbacks fallbacks = {0};
-    Recorder *recorder = create_recorder(scene, method, options, error);
-    bool ok = recorder != NULL && run_recorded(scene, method, recorder, &fallbacks, error);
-    if (ok) {
-        printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", scene->name, method->text,
-               scene->frames, (double)scene->dt, recorder_bodies(recorder), recorder_state_hash(recorder),
-               options->output != NULL ? " -> " : "", options->output != NULL ? options->output : "");
-        print_fallbacks(&fallbacks);
-    }
-    recorder_destroy(recorder);
+    SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
+    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method->text, error))
+        return false;
+    bool ok = record(scene, method, options, &result, error);
+    if (ok && !options->json) simulate_result_print(&result);
+    ok = judge(&result, options, error) && ok;
+    ok = ok && (!options->json || simulate_result_json(&result, error));
+    simulate_verdict_free(&result.verdict);
     return ok;
 }
 
