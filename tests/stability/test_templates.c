@@ -18,12 +18,13 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     scene->frames = STEPS;
     assert_ok(method_parse(&reference, "reference", &error), error);
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    assert_true(run.stands);
+    run.converged = &converged;
     for (int i = 0; i < 3; i++) {
         Method method;
         VerdictReading reading;
         assert_ok(method_parse(&method, methods[i], &error), error);
-        VerdictRun run = verdict_run_of(scene);
-        run.converged = &converged;
         assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
