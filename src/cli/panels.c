@@ -17,6 +17,7 @@ static bool add(Panels *panels, Trajectory *run, const char *input, Error *error
         trajectory_destroy(run);
         return error_input(error, input, "more than %d panels", RENDER_PANELS_MAX);
     }
+    panels->inputs[panels->count] = input;
     panels->runs[panels->count++] = run;
     return true;
 }
