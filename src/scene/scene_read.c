@@ -3,10 +3,13 @@
 #include "scene/scene.h"
 
 #include "common/file.h"
+#include "common/trace.h"
 #include "scene/parameters.h"
 #include "scene/scene_bodies.h"
 #include "scene/scene_bomb.h"
+#include "scene/scene_overlaps.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,6 +93,7 @@ static const Field scene_fields[] = {
     {"accumulate_impulses", field_switch, offsetof(Scene, accumulate_impulses), NULL, false},
     {"position_correction", field_switch, offsetof(Scene, position_correction), NULL, false},
     {"frames", field_int, offsetof(Scene, frames), &range_frames, true},
+    {"overlaps", field_overlaps, offsetof(Scene, overlaps_allowed), NULL, false},
     {"camera", field_camera, 0, NULL, false},
     {"bodies", field_bodies, 0, NULL, true},
     {"bomb", field_bomb, 0, NULL, false},
@@ -100,11 +104,12 @@ static const Field scene_fields[] = {
 static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
-    if (scene->last_body_until > 0)
-        return bodies_check_until(tree, fields_node(scene_fields, nodes, "bodies"), scene, error);
-    return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
-           yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
-                      "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame, scene->frames);
+    const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
+    if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
+    if (scene->bomb.present && scene->bomb.frame > scene->frames)
+        return yaml_error(tree, bomb, error, "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame,
+                          scene->frames);
+    return scene->overlaps_allowed || overlaps_check(tree, bodies, bomb, scene, error);
 }
 
 static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
@@ -129,6 +134,21 @@ static void name_scene(Scene *scene, const char *path) {
 
 Scene *scene_read(const char *path, Error *error) { return scene_read_with(path, NULL, 0, error); }
 
+static const char *on(bool value) { return value ? "on" : "off"; }
+
+static void trace(const Scene *scene) {
+    trace_line("scene %s: %d bodies%s, %d steps of %g s, %d iterations, warm starting %s, accumulated impulses %s, "
+               "position correction %s, hash %016" PRIx64,
+               scene->name, scene->body_count, scene->bomb.present ? " and a bomb" : "", scene->frames,
+               (double)scene->dt, scene->iterations, on(scene->warm_starting), on(scene->accumulate_impulses),
+               on(scene->position_correction), scene_hash(scene));
+    for (int i = 0; i < scene->parameter_count; i++) {
+        const SceneParameter *parameter = &scene->parameters[i];
+        trace_line("scene %s: %s=%g%s%s", scene->name, parameter->name, parameter->value,
+                   parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+    }
+}
+
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error) {
     YamlTree tree;
     if (!yaml_read(&tree, path, error)) return NULL;
@@ -144,6 +164,7 @@ Scene *scene_read_with(const char *path, const SceneSetting *settings, int count
         }
     }
     yaml_free(&tree);
+    if (scene != NULL) trace(scene);
     return scene;
 }
 

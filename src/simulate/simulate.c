@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "simulate/simulate.h"
 
+#include "simulate/launch_check.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +20,8 @@ static void run_end(Run *run) {
 }
 
 static bool run_begin(Run *run, const Scene *scene, const Method *method, Error *error) {
+    const Launch own = launch_of(scene);
+    if (scene->bomb.frame == 0 && !launches_check(scene, &own, 1, error)) return false;
     *run = (Run){.scene = scene, .world = scene_world(scene, error)};
     if (run->world != NULL) run->stepper = stepper_create(method, scene, error);
     if (run->stepper != NULL) return true;
@@ -25,10 +29,18 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
     return false;
 }
 
+/* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the engine's
+   run, too. */
+static bool add_bomb(const Scene *scene, World *world, Error *error) {
+    const Launch own = launch_of(scene);
+    return (launch_is_free(scene, world) || launches_check(scene, &own, 1, error)) &&
+           scene_add_bomb(scene, world, error);
+}
+
 /* The bomb appears, and the last body disappears, after the steps that the scene sets. */
 static bool update_bodies(const Scene *scene, World *world, int frame, Error *error) {
     if (frame == scene->last_body_until) world_remove_last_body(world);
-    return !scene->bomb.present || scene->bomb.frame != frame || scene_add_bomb(scene, world, error);
+    return !scene->bomb.present || scene->bomb.frame != frame || add_bomb(scene, world, error);
 }
 
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
