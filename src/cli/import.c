@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/notes.h"
 #include "cli/options.h"
 #include "trajectory/csv_run.h"
 #include "trajectory/trajectory_name.h"
@@ -50,7 +51,7 @@ static bool import_run(const Options *options, Error *error) {
     if (ok) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);
-        for (int i = 0; i < notes.count; i++) printf("assumed: %s\n", notes.lines[i]);
+        for (int i = 0; i < notes.count; i++) note_print("assumed: %s", notes.lines[i]);
     }
     trajectory_destroy(run);
     return ok;
