@@ -7,3 +7,6 @@
    "scenes/stack.yaml". A name without "/" and "." is a scene's, too: "stack" for "scenes/stack.yaml", of the working
    directory or installed. Valid until the program ends. */
 const char *installed_path(const char *path);
+
+/* Calls found("scenes/stack.yaml", context) for each installed scene that installed_path() finds, in the order of names. */
+void installed_scenes(void (*found)(const char *path, void *context), void *context);
