@@ -12,6 +12,9 @@
 
 enum { TRAJECTORY_VERSION = 1, TRAJECTORY_NAME_SIZE = 128 };
 
+/* Readers accept files of at most 2 GiB, so no larger trajectory is made. */
+#define TRAJECTORY_MAX_BYTES 2147483648.0
+
 typedef struct TrajectoryContact {
     int32_t a, b;          /* body indices, a < b */
     uint32_t feature;      /* four edge bytes (collision/manifold.h) */
@@ -52,8 +55,17 @@ void trajectory_destroy(Trajectory *trajectory);
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
+/* Bytes of all arrays in a file. */
+double trajectory_bytes(const Trajectory *trajectory);
+
 /* Appends a contact of step `frame` (from 1); frames in rising order. */
 bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryContact *contact, Error *error);
+
+/* Appends `count` contacts and returns the first, to be filled. NULL with error set. */
+TrajectoryContact *trajectory_add_contacts(Trajectory *trajectory, int frame, int count, Error *error);
+
+/* Removes all contacts. Contacts of frame 0 can be added then: the trajectory is a part of a longer run. */
+void trajectory_restart_contacts(Trajectory *trajectory);
 
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);
@@ -82,6 +94,9 @@ bool trajectory_write(const Trajectory *trajectory, const char *path, Error *err
    shapes that do not match, contacts out of range or of bodies that did not exist before the step, infinite poses, a
    body that reappears after it was removed, a static body that is removed, dt or a size not positive. */
 Trajectory *trajectory_read(const char *path, Error *error);
+
+/* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */
+bool trajectory_check(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static; in a
    run of one frame, none. */

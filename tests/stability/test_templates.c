@@ -18,8 +18,9 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     scene->frames = STEPS;
     assert_ok(method_parse(&reference, "reference", &error), error);
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    const VerdictRun run = {
-        .gravity = scene->gravity, .dt = scene->dt, .frames = STEPS, .stands = true, .converged = &converged};
+    VerdictRun run = verdict_run_of(scene);
+    assert_true(run.stands);
+    run.converged = &converged;
     for (int i = 0; i < 3; i++) {
         Method method;
         VerdictReading reading;
@@ -74,8 +75,8 @@ static void the_arch_needs_its_iterations(void **state) {
     scene->iterations = 10;
     assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    const VerdictRun run = {
-        .gravity = scene->gravity, .dt = scene->dt, .frames = STEPS, .stands = true, .converged = &converged};
+    VerdictRun run = verdict_run_of(scene);
+    run.converged = &converged;
     assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");
     energy_log_free(&converged);
