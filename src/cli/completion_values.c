@@ -63,9 +63,11 @@ static void find_endings(const char *text, char endings[64]) {
     }
 }
 
-static void offer_scene(const char *path, void *context) {
+/* Paths only where one is being typed: there are as many as names. */
+static void offer_scene(const char *scene, void *context) {
     const CompletionValue *value = context;
-    completion_offer(value->begin, value->typed, path, "", "installed scene");
+    if (strchr(scene, '/') == NULL || strchr(value->typed, '/') != NULL)
+        completion_offer(value->begin, value->typed, scene, "", "scene");
 }
 
 /* Files that an option takes, by the name of its value. */
