@@ -17,8 +17,11 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
-/* The same for a file `name` of the open directory `folder`, without following links: file_read_at() refuses one,
-   file_write_at() replaces it. `path` is used in messages. */
+/* Writes a new file, whole or not at all. ERROR_INPUT if there is one of that name. */
+bool file_create(const char *path, const void *data, size_t size, Error *error);
+
+/* file_read() and file_write() for a file `name` of the open directory `folder`, without following links:
+   file_read_at() refuses one, file_write_at() replaces it. `path` is used in messages. */
 char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error);
 
@@ -35,6 +38,17 @@ bool file_write_soon(const char *path, const void *data, size_t size, Error *err
 
 /* Writes behind what is in the file; creates it if it is missing. */
 bool file_append(const char *path, const void *data, size_t size, Error *error);
+
+/* A file that is written piece by piece: a draft without a name, in the folder of `path`, open for reading and writing.
+   The caller closes it. A program that is killed leaves nothing of it. -1 with error set. */
+int file_draft(const char *path, Error *error);
+bool file_draft_write(int draft, const char *path, const void *data, size_t size, Error *error);
+
+/* Makes the draft that file `path`, atomically, or copies it there if `path` is a pipe or a device. Still to be closed. */
+bool file_draft_publish(int draft, const char *path, Error *error);
+
+/* Copies an open file from its beginning to where the file `to` stands. False with errno set. */
+bool file_copy(int to, int from);
 
 /* Waits until a file, or the entries of a directory, are on the disk. */
 bool file_sync(const char *path, Error *error);
