@@ -11,12 +11,11 @@
 
 static void print_help(FILE *file) {
     fputs("Usage: twinbox COMMAND [OPTION...]\n"
-          "A rigid-box physics engine and a neural network, side by side.\n\n",
+          "A rigid-box physics engine and a neural network, side by side. Help: twinbox help COMMAND\n\n",
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nEach command has its own help and an example: twinbox help COMMAND\n"
-          "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n\n"
+    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }
