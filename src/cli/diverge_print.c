@@ -170,5 +170,5 @@ void diverge_print(const Divergence *d) {
     if (d->chaos.distance != NULL)
         print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
     else if (note_level() > NOTES_QUIET)
-        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
+        printf("shifted run: give --scene SCENE to measure how a shift of 1e-6 m grows\n");
 }

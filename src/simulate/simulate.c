@@ -121,11 +121,18 @@ static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method,
     return trajectory;
 }
 
-static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, const Progress *progress, Error *error) {
+/* Nobody observes if there is no observer. */
+static bool observe(const StepObserver *observer, int frame, const World *world, Error *error) {
+    return observer == NULL || observer->observe(observer->context, frame, world, error);
+}
+
+static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, const StepObserver *observer,
+                   const Progress *progress, Error *error) {
     record_bodies(trajectory, 0, run->world);
     for (int frame = 1; frame <= run->scene->frames; frame++) {
         if (!run_step(run, frame, error) || !record_contacts(trajectory, frame, run->world, error)) return false;
         record_bodies(trajectory, frame, run->world);
+        if (!observe(observer, frame, run->world, error)) return false;
         network_fallbacks_add(sum, &world_solution(run->world)->fallbacks);
         if (!progress_report(progress, frame, run->scene->frames))
             return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
@@ -134,12 +141,12 @@ static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, cons
     return true;
 }
 
-Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum, const Progress *progress,
-                              Error *error) {
+Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum,
+                              const StepObserver *observer, const Progress *progress, Error *error) {
     Run run;
     if (!run_begin(&run, scene, method, error)) return NULL;
     Trajectory *trajectory = trajectory_of_scene(scene, method, error);
-    if (trajectory != NULL && !record(&run, trajectory, sum, progress, error)) {
+    if (trajectory != NULL && !record(&run, trajectory, sum, observer, progress, error)) {
         trajectory_destroy(trajectory);
         trajectory = NULL;
     }
@@ -149,5 +156,5 @@ Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkF
 
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
     NetworkFallbacks unused = {0};
-    return simulate_counting(scene, method, &unused, progress, error);
+    return simulate_counting(scene, method, &unused, NULL, progress, error);
 }
