@@ -40,7 +40,7 @@ for name in $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'); do
     [ "$name" = approve ] && cp -r expected kept
     run "$status" "$name" $arguments
     grep -v " s[,)]" out >normal
-    for level in --quiet -q --verbose -v; do
+    for level in -q --verbose; do
         rm -rf out_of_"$name"*
         [ "$name" = approve ] && rm -rf expected && cp -r kept expected
         run "$status" "$name" $level $arguments
