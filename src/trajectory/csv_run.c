@@ -208,7 +208,9 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
     size_t size;
     CsvImport import = {.path = path, .options = options, .notes = notes};
     notes->count = 0;
-    char *text = file_read(path, MAX_SIZE, &size, error);
+    const bool input = strcmp(path, "-") == 0;
+    if (input) import.path = path = "standard input";
+    char *text = input ? file_read_input(MAX_SIZE, &size, error) : file_read(path, MAX_SIZE, &size, error);
     bool done = text != NULL && (size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 read_text(&import, text, error);
