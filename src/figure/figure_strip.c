@@ -5,7 +5,7 @@
 #include "figure/run_view.h"
 #include "picture/extent.h"
 #include "picture/style.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "picture/style.h"
 #include "sketch/label_place.h"
 #include "sketch/raster.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>

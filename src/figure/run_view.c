@@ -6,7 +6,7 @@
 #include "picture/framing.h"
 #include "picture/style.h"
 #include "simulate/method.h"
-#include "sketch/type.h"
+#include "type/type.h"
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>
