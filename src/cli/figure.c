@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "figure/figure.h"
+#include "type/type_check.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -164,7 +165,7 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
 static bool draw(const FigureKind *kind, const Options *options, Error *error) {
     const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
     Sketch sketch = {0};
-    bool ok = figure_draw(kind, &sketch, &options->figure, error) &&
+    bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
               sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
               sketch_write(&sketch, options->output, &output, error);
     if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
@@ -183,7 +184,8 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
         runs[i] = trajectory_read(options->inputs[i], error);
         figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
         figure->run_count++;
-        ok = runs[i] != NULL;
+        ok = runs[i] != NULL && type_check(runs[i]->scene, options->inputs[i], error) &&
+             type_check(runs[i]->method, options->inputs[i], error);
     }
     figure->progress = progress_bar_begin(kind->name);
     ok = ok && draw(kind, options, error);

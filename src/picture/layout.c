@@ -77,7 +77,10 @@ Layout layout_make(int width, int height, int panels, LayoutRows rows) {
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
     int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     int title = text ? pixels(0.058 * unit) : 0, axis = text ? pixels(0.038 * unit) : 0;
-    int header = text ? layout.header_baseline + pixels(0.006 * unit) : margin;
+    layout.header_lines = rows.title;
+    layout.header_pitch = pixels(0.036 * unit);
+    int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
+    int header = text ? last_line + pixels(0.006 * unit) : margin;
     Rect area = {margin + gutter, header + title, width - margin, height - pixels(0.016 * unit) - axis};
     if (!text) area.bottom = height - margin;
     area = place_rows(&layout, area, unit, rows, title, axis);

@@ -7,8 +7,9 @@
 typedef struct Layout {
     Font scene, status, title, method, axis; /* without glyphs if the picture is too small for text */
     int columns, rows;
-    int left, right; /* inner edges of the margins */
-    int header_baseline;
+    int left, right;                /* inner edges of the margins */
+    int header_baseline;            /* of the first line of the title */
+    int header_lines, header_pitch; /* number of its lines, and the distance between them */
     int title_rise;                 /* from the top of a panel up to the baseline of its title */
     int axis_drop;                  /* from the bottom of a panel down to the baseline of its axis */
     int tick;                       /* length of a tick at the axis */
@@ -21,8 +22,9 @@ typedef struct Layout {
     Rect timeline;                  /* the curves; empty: none */
 } Layout;
 
-/* Optional rows below the panels. */
+/* Rows above and below the panels. */
 typedef struct LayoutRows {
+    int title; /* lines of the header, at least 1 */
     int legend;
     bool timeline;
 } LayoutRows;

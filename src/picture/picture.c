@@ -55,8 +55,11 @@ static Camera fixed_camera(const Picture *picture, int width, int height) {
 /* Sets the panels and their camera. */
 static void arrange(Picture *picture, int width, int height, int legend) {
     picture->panel_count = panels_of(picture->look.compare, picture->count);
-    LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
+    LayoutRows rows = {1, legend, (picture->look.show & LOOK_TIMELINE) != 0};
     picture->layout = layout_make(width, height, picture->panel_count, rows);
+    rows.title = caption_header_title(picture).count;
+    if (rows.title > TEXT_LINES_MAX) rows.title = TEXT_LINES_MAX;
+    if (rows.title > 1) picture->layout = layout_make(width, height, picture->panel_count, rows);
     Rect first = picture->layout.panels[0];
     picture->camera = fixed_camera(picture, first.right - first.left, first.bottom - first.top);
     picture->grid_scale = picture->camera.scale;
@@ -102,20 +105,40 @@ static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *
     return true;
 }
 
+static bool title_fits(const TextLines *lines, const char *option, Error *error) {
+    return lines->count <= TEXT_LINES_MAX ||
+           error_input(error, option, "the text needs %d lines in pictures of this size, but at most %d fit",
+                       lines->count, TEXT_LINES_MAX);
+}
+
+/* The titles that the options set; a scene's name is cut instead. */
+static bool titles_fit(const Picture *picture, Error *error) {
+    const TextLines header = caption_header_title(picture), title = card_head(picture, MOMENT_TITLE),
+                    end = card_head(picture, MOMENT_END);
+    return (picture->title == NULL ||
+            (title_fits(&header, "--title", error) && title_fits(&title, "--title", error))) &&
+           (picture->look.end == NULL || title_fits(&end, "--end", error));
+}
+
 bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error) {
     const RenderLook plain = {0};
     picture->title = options->title;
     for (int i = 0; i < picture->count; i++) {
+        picture->captions[i] = options->captions[i];
         picture->notes[i] = options->notes[i];
         if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
     }
     method_colours_assign(picture->methods, picture->count, picture->colours);
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
-    if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
+    if (memcmp(&picture->look, &plain, sizeof plain) == 0) {
+        arrange(picture, picture->layout.width, picture->layout.height, 0);
+        return titles_fit(picture, error);
+    }
     if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
     picture->events = events_find(picture->runs, picture->count);
-    return arrange_rows(picture, options, error) && plan_path(picture, error) && timeline_plan(picture, error);
+    return arrange_rows(picture, options, error) && titles_fit(picture, error) && plan_path(picture, error) &&
+           timeline_plan(picture, error);
 }
 
 void picture_free(Picture *picture) {
@@ -123,6 +146,14 @@ void picture_free(Picture *picture) {
     free(picture->curves);
     picture->path = NULL;
     picture->curves = NULL;
+}
+
+bool picture_check(const Trajectory *const *runs, int count, const RenderOptions *options, Error *error) {
+    Picture picture;
+    if (!picture_plan(&picture, runs, count, options->width, options->height, error)) return false;
+    const bool ok = picture_apply_options(&picture, options, error);
+    picture_free(&picture);
+    return ok;
 }
 
 int picture_run_frame(const Picture *picture, int run, int frame) {
