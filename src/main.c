@@ -2,6 +2,7 @@
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
    3 the system failed. */
 #include "cli/commands.h"
+#include "cli/notes.h"
 #include "common/names.h"
 
 #include <stdio.h>
@@ -63,6 +64,7 @@ int main(int argc, char **argv) {
     argv[1] = name;
     Error error = {0};
     bool same = command->run(argc - 1, argv + 1, &error);
+    note_end();
     /* Output that could not be written is a failure of the system, not success. */
     if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
         error_system(&error, "standard output", "cannot write");

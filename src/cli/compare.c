@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/compare_options.h"
+#include "cli/compare_json.h"
 #include "cli/compare_print.h"
 #include "cli/compare_watch.h"
+#include "cli/notes.h"
 #include "cli/progress_bar.h"
 #include "common/hash.h"
+#include "common/text_add.h"
 #include "report/regression_github.h"
 #include "report/regression_report.h"
 #include "trajectory/trajectory.h"
@@ -33,24 +36,28 @@ static void print_trajectory_difference(const Trajectory *a, const TrajectoryDif
            difference->max_distance);
 }
 
-static bool compare_trajectories(const char *const paths[2], Error *error) {
+static bool compare_trajectories(const CompareOptions *options, Error *error) {
+    const char *const *paths = options->paths;
     Trajectory *a = trajectory_read(paths[0], error);
     Trajectory *b = a != NULL ? trajectory_read(paths[1], error) : NULL;
     TrajectoryDifference difference = {0};
     if (b != NULL) {
         trajectory_compare(a, b, &difference);
-        print_trajectory_difference(a, &difference);
+        if (options->json)
+            compare_json_runs(paths, a, b, &difference, error);
+        else
+            print_trajectory_difference(a, &difference);
     }
     trajectory_destroy(a);
     trajectory_destroy(b);
-    return difference.equal;
+    return difference.equal && error->kind == ERROR_NONE;
 }
 
 static bool report(Regression *regression, const CompareOptions *options, Error *error) {
     bool ok = regression_report_write(regression, options->report, (size_t)options->megabytes << 20,
                                       progress_bar_begin("report"), error);
     progress_bar_end();
-    if (ok) printf("report -> %s/report.html\n", options->report);
+    if (ok && !options->json) printf("report -> %s/report.html\n", options->report);
     return ok;
 }
 
@@ -86,9 +93,14 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                              progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
-    print(options, &regression);
+    note_verbose("%d frame%s matched, %d %s; limits of the command line: %s; %.3f s", regression.count,
+                 plural(regression.count), regression.run_count,
+                 regression.run_count == 1 ? "trajectory" : "trajectories", tolerance_words(&options->tolerance).text,
+                 regression.seconds);
+    if (!options->json) print(options, &regression);
     ok = regression_passed(&regression);
     if (options->report != NULL && !report(&regression, options, error)) ok = false;
+    if (error->kind == ERROR_NONE && options->json && !compare_json_pictures(&regression, error)) ok = false;
     if (error->kind == ERROR_NONE && !annotate(options, &regression, error)) ok = false;
     regression_free(&regression);
     return ok;
@@ -103,7 +115,7 @@ static bool compare_inputs(const CompareOptions *options, Error *error) {
     if (first && (options->report != NULL || limits || options->annotations != 0))
         return error_input(error, options->paths[0],
                            "--report, --annotations, --rules, masks and tolerances apply to pictures only");
-    return first ? compare_trajectories(options->paths, error) : compare_pictures(options, error);
+    return first ? compare_trajectories(options, error) : compare_pictures(options, error);
 }
 
 static bool compare(const CompareOptions *options, Error *error) {

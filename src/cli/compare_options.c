@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/compare_options.h"
 
+#include "cli/json_output.h"
 #include "cli/options.h"
 #include "report/regression_report.h"
 #include "regression/rules.h"
@@ -54,6 +55,7 @@ static const Option option_table[] = {
     {"--watch", 0, NULL,
      "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
      OPTION_FLAG(CompareOptions, watch)},
+    {OPTION_JSON(CompareOptions, json)},
     {0}};
 
 static const CommandSpec spec = {
@@ -150,7 +152,10 @@ static bool read_antialias(const Option *option, const char *text, void *value, 
 
 bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
     *options = (CompareOptions){.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
-    return options_parse(&spec, argc, argv, options, error);
+    if (!options_parse(&spec, argc, argv, options, error)) return false;
+    if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
+        return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
+    return true;
 }
 
 void compare_options_free(CompareOptions *options) { mask_free(&options->mask); }

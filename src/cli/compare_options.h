@@ -16,7 +16,7 @@ typedef struct CompareOptions {
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
-    bool watch;
+    bool watch, json;
     Mask mask;
 } CompareOptions;
 

@@ -3,6 +3,7 @@
    no watch per folder. */
 #include "cli/compare_watch.h"
 
+#include "cli/notes.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
 #include "common/folder.h"
@@ -76,6 +77,8 @@ static void wait_for_change(const CompareOptions *options, uint64_t before) {
 
 static void print_state(const CompareOptions *options, const Error *error) {
     if (error->kind != ERROR_NONE) fprintf(stderr, "%s\n", error->message);
+    fflush(stdout);
+    if (note_level() == NOTES_QUIET) return;
     char text[16] = "";
     const time_t now = time(NULL);
     struct tm local;

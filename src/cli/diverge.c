@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "cli/diverge_print.h"
+#include "cli/divergence.h"
+#include "cli/json_output.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 
@@ -12,6 +13,7 @@ typedef struct Options {
     int count;
     double tolerance; /* m */
     const char *scene, *csv;
+    bool json;
 } Options;
 
 static const Option option_table[] = {
@@ -26,6 +28,7 @@ static const Option option_table[] = {
      OPTION_PATH(Options, scene)},
     {"--csv", 0, "FILE", "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m",
      OPTION_TEXT(Options, csv)},
+    {OPTION_JSON(Options, json)},
     {0}};
 
 static const CommandSpec spec = {
@@ -37,15 +40,6 @@ static const CommandSpec spec = {
         "step is the cause, and how fast the distance grows from there. Of runs of different lengths, the frames of "
         "the shorter one are compared. Exit status 0: the runs do not diverge beyond the tolerance, 1: they do.\v"
         "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv"};
-
-/* Two runs and the result. */
-typedef struct Divergence {
-    Trajectory *runs[2];
-    TrajectoryParting parting;
-    double *distance; /* [frames of both] */
-    Growth growth, shifted;
-    Chaos chaos; /* distance NULL: no scene given */
-} Divergence;
 
 static bool read_runs(Divergence *d, const Options *options, Error *error) {
     char what[256];
@@ -85,24 +79,15 @@ static bool find(Divergence *d, const Options *options, Error *error) {
     return options->csv == NULL || distance_table_write(&table, options->csv, error);
 }
 
-static void print(const Divergence *d, const Options *options) {
-    const Trajectory *a = d->runs[0], *b = d->runs[1];
-    diverge_print_runs(options->paths, a, b);
-    diverge_print_parting(a, &d->parting, options->tolerance);
-    if (d->parting.first.frame < 0) return;
-    diverge_print_growth(&d->growth, (double)a->dt);
-    if (d->chaos.distance != NULL)
-        diverge_print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
-    else
-        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
-}
-
 bool command_diverge(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    Divergence divergence = {0};
+    Divergence divergence = {.paths = options.paths, .tolerance = options.tolerance};
     bool ok = find(&divergence, &options, error);
-    if (ok) print(&divergence, &options);
+    if (ok && options.json)
+        ok = diverge_print_json(&divergence, error);
+    else if (ok)
+        diverge_print(&divergence);
     bool same = ok && divergence.parting.beyond.frame < 0;
     chaos_free(&divergence.chaos);
     free(divergence.distance);

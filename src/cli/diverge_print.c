@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/diverge_print.h"
+#include "cli/divergence.h"
+#include "cli/notes.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
-void diverge_print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
+static void print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
     const Trajectory *const runs[] = {a, b};
     for (int i = 0; i < 2; i++)
         printf("run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, runs[i]->scene, runs[i]->method,
@@ -98,7 +99,7 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
     print_contact(&parting->beyond_contacts);
 }
 
-void diverge_print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
+static void print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
     if (parting->first.frame < 0) {
         printf("equal: %d frames of %d bodies, every bit of pose and velocity\n", parting->frames, a->bodies);
         if (parting->step >= 0) {
@@ -134,12 +135,12 @@ static void print_rate(const Growth *growth, double dt) {
     printf("; scatter: a factor of %.2g\n", exp(growth->scatter));
 }
 
-void diverge_print_growth(const Growth *growth, double dt) {
+static void print_growth(const Growth *growth, double dt) {
     printf("growth of the largest distance: ");
     print_rate(growth, dt);
 }
 
-void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
+static void print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
     static const char *const verdicts[] = {
         [GROWTH_UNKNOWN] = "unknown, one of the two has no rate",
         [GROWTH_NEITHER] = "neither distance doubles in these frames",
@@ -154,4 +155,16 @@ void diverge_print_chaos(const Chaos *chaos, const Growth *growth, const Growth 
     printf("shifted run (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
     print_rate(shifted, dt);
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
+}
+
+void diverge_print(const Divergence *d) {
+    const Trajectory *a = d->runs[0], *b = d->runs[1];
+    print_runs(d->paths, a, b);
+    print_parting(a, &d->parting, d->tolerance);
+    if (d->parting.first.frame < 0) return;
+    print_growth(&d->growth, (double)a->dt);
+    if (d->chaos.distance != NULL)
+        print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
+    else if (note_level() > NOTES_QUIET)
+        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/draw_panels.h"
 
+#include "cli/notes.h"
 #include "cli/progress_bar.h"
+#include "common/text_add.h"
 #include "render/sink.h"
 #include "render/video.h"
 #include "simulate/method.h"
@@ -57,6 +59,8 @@ bool draw_videos_check(const DrawVideos *videos, int width, int height, Error *e
 
 static bool draw(const Panels *panels, const RenderOptions *render, RenderResult *result, Error *error) {
     const Progress *progress = progress_bar_begin("drawing");
+    note_verbose("drawing %d panel%s, %d x %d pixels, at most %d process%s", panels->count, plural(panels->count),
+                 render->width, render->height, render->jobs, render->jobs == 1 ? "" : "es");
     bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, progress, error);
     progress_bar_end();
     return ok;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/options.h"
 
+#include "cli/notes.h"
+
 #include <argp.h>
 #include <assert.h>
 #include <stdio.h>
@@ -9,12 +11,22 @@
 
 enum { FIRST_KEY = 256 };
 
+/* What every command has, listed with --help. */
+static const struct argp_option common_rows[] = {
+    {.name = "quiet", .key = 'q', .doc = "Print errors and results only: no progress, no notes", .group = -1},
+    {.name = "verbose",
+     .key = 'v',
+     .doc = "Print what is done to get the result: files, settings, programs, threads, time, memory",
+     .group = -1}};
+enum { COMMON_ROWS = sizeof common_rows / sizeof *common_rows };
+
 typedef struct Parsing {
     const CommandSpec *spec;
     char *options;
     Error *error;
     int input_count;
     bool given[OPTIONS_MAX];
+    NoteLevel level;
 } Parsing;
 
 static int key_of(const Option *rows, int i) { return rows[i].letter != 0 ? rows[i].letter : FIRST_KEY + i; }
@@ -48,13 +60,21 @@ static void check_needed(const Parsing *parsing, struct argp_state *state) {
         if (spec->options[i].needed != NULL && !parsing->given[i]) argp_error(state, "%s", spec->options[i].needed);
 }
 
+static void set_level(Parsing *parsing, NoteLevel level, struct argp_state *state) {
+    if (parsing->level != NOTES_NORMAL && parsing->level != level)
+        argp_error(state, "--quiet cannot be combined with --verbose");
+    parsing->level = level;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
     Parsing *parsing = state->input;
     const int i = find_row(parsing->spec->options, key);
     if (i >= 0) {
         parsing->given[i] = true;
         read_value(parsing, &parsing->spec->options[i], text);
-    } else if (key == ARGP_KEY_ARG)
+    } else if (key == 'q' || key == 'v')
+        set_level(parsing, key == 'q' ? NOTES_QUIET : NOTES_VERBOSE, state);
+    else if (key == ARGP_KEY_ARG)
         take_input(parsing, text, state);
     else if (key == ARGP_KEY_END)
         check_needed(parsing, state);
@@ -74,9 +94,9 @@ static char *add_standard(int key, const char *text, void *input) {
     return help;
 }
 
-bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
-    struct argp_option rows[OPTIONS_MAX + 1] = {{0}};
-    for (int i = 0; spec->options[i].help != NULL; i++) {
+static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_MAX + COMMON_ROWS + 1]) {
+    int count = 0;
+    for (int i = 0; spec->options[i].help != NULL; i++, count++) {
         const Option *row = &spec->options[i];
         assert(i < OPTIONS_MAX);
         rows[i] = (struct argp_option){.doc = row->help, .group = row->group};
@@ -85,15 +105,22 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
         rows[i].key = key_of(spec->options, i);
         rows[i].arg = row->value;
     }
-    /* argp leaks if it gets a table without rows. */
-    const struct argp argp = {.options = rows[0].doc != NULL ? rows : NULL,
+    memcpy(rows + count, common_rows, sizeof common_rows);
+}
+
+bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
+    struct argp_option rows[OPTIONS_MAX + COMMON_ROWS + 1] = {{0}};
+    make_rows(spec, rows);
+    const struct argp argp = {.options = rows,
                               .parser = parse,
                               .args_doc = spec->input.value != NULL ? spec->input.value : "",
                               .doc = spec->help,
                               .help_filter = add_standard};
-    Parsing parsing = {.spec = spec, .options = options, .error = error};
+    Parsing parsing = {.spec = spec, .options = options, .error = error, .level = NOTES_NORMAL};
     argp_err_exit_status = ERROR_INPUT;
     const error_t status = argp_parse(&argp, argc, argv, 0, NULL, &parsing);
     if (status != 0 && error->kind == ERROR_NONE) error_memory(error, argv[0]);
+    note_set_level(parsing.level);
+    note_begin(argv[0]);
     return error->kind == ERROR_NONE;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 
+#include "cli/notes.h"
 #include "common/clock.h"
 
 #include <signal.h>
@@ -51,7 +52,7 @@ static void show(double part, double elapsed) {
 static bool report(void *context, double done, double total) {
     (void)context;
     double time = clock_seconds(), pause = bar.terminal ? 0.1 : 5.0;
-    if (time - bar.begun >= 1.0 && time - bar.shown >= pause && done > 0) {
+    if (note_level() > NOTES_QUIET && time - bar.begun >= 1.0 && time - bar.shown >= pause && done > 0) {
         bar.shown = time;
         bar.visible = true;
         show(done < total ? done / total : 1.0, time - bar.begun);

@@ -2,6 +2,7 @@
 #include "cli/train.h"
 
 #include "cli/commands.h"
+#include "cli/notes.h"
 #include "common/names.h"
 
 #include <assert.h>
@@ -112,6 +113,9 @@ bool command_train(int argc, char **argv, Error *error) {
                 "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
                 "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};
     TrainRequest request;
-    return options_parse(&spec, argc, argv, &options, error) && make_request(&options, &request, error) &&
-           request.kind->train(&request, error);
+    if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error)) return false;
+    char command[TEXT_SIZE];
+    train_describe(&request, command, sizeof command);
+    note_verbose("with all options: %s", command);
+    return request.kind->train(&request, error);
 }

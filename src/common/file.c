@@ -3,6 +3,7 @@
 #include "common/file.h"
 
 #include "common/array.h"
+#include "common/trace.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -74,6 +75,7 @@ static char *read_and_close(int file, const char *path, size_t limit, size_t *si
     else
         data = read_all(file, path, limit, (size_t)status.st_size, size, error);
     close(file);
+    if (data != NULL) trace_line("read %s, %zu bytes", path, *size);
     return data;
 }
 
@@ -175,21 +177,27 @@ static bool put(const char *path, const void *data, size_t size, bool wait) {
     return realpath(path, target) != NULL && replace(AT_FDCWD, target, data, size, wait);
 }
 
+static bool finish(bool written, const char *path, size_t size, Error *error) {
+    if (!written) return error_system(error, path, "cannot write: %s", strerror(errno));
+    trace_line("wrote %s, %zu bytes", path, size);
+    return true;
+}
+
 bool file_append(const char *path, const void *data, size_t size, Error *error) {
-    return write_into(open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666), data, size) ||
-           error_system(error, path, "cannot write: %s", strerror(errno));
+    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
+    return finish(write_into(file, data, size), path, size, error);
 }
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
-    return put(path, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(put(path, data, size, true), path, size, error);
 }
 
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
-    return replace(folder, name, data, size, true) || error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(replace(folder, name, data, size, true), path, size, error);
 }
 
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
-    return put(path, data, size, false) || error_system(error, path, "cannot write: %s", strerror(errno));
+    return finish(put(path, data, size, false), path, size, error);
 }
 
 bool file_sync(const char *path, Error *error) {

@@ -6,6 +6,7 @@
 #include "common/utf8.h"
 #include "common/file.h"
 #include "common/lfs_pointer.h"
+#include "common/trace.h"
 #include "common/zip_directory.h"
 
 #include <ctype.h>
@@ -136,6 +137,7 @@ static int open_checked(const char *path, Error *error) {
     else
         done = refuse_pointer(descriptor, path, error) &&
                zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
+    if (done) trace_line("read %s, %jd bytes", path, (intmax_t)status.st_size);
     if (done) return descriptor;
     close(descriptor);
     return -1;

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/process.h"
 
+#include "common/text_add.h"
+#include "common/trace.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -11,6 +14,12 @@
 #include <unistd.h>
 
 extern char **environ;
+
+static void trace(const char *const *argv) {
+    char line[900] = "";
+    for (int i = 0; argv[i] != NULL; i++) text_add(line, sizeof line, " %s", argv[i]);
+    trace_line("started%s", line);
+}
 
 static bool spawn(Process *process, const char *const *argv, int child_input, Error *error) {
     posix_spawn_file_actions_t actions;
@@ -24,6 +33,7 @@ static bool spawn(Process *process, const char *const *argv, int child_input, Er
     if (code != 0)
         return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
                             code == ENOENT ? "; is its package installed?" : "");
+    trace(argv);
     return true;
 }
 

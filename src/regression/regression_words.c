@@ -106,7 +106,10 @@ RegressionText cause_words(const RegressionCause *cause) {
 RegressionText run_words(const RegressionRun *run) {
     RegressionText words = {""};
     const TrajectoryDifference *d = &run->difference;
-    if (d->equal) add(&words, "", "equal states");
+    if (d->equal) {
+        add(&words, "", "equal states");
+        return words;
+    }
     if (d->what[0] != '\0') add(&words, "", "%s", d->what);
     if (d->frame >= 0)
         add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,

@@ -2,6 +2,7 @@
 /* Combines a picture, a context and a canvas. */
 #include "render/renderer.h"
 
+#include "common/trace.h"
 #include "gl/canvas.h"
 #include "gl/context.h"
 #include "gl/damage.h"
@@ -20,12 +21,22 @@ struct Renderer {
     bool *changed;           /* [height] */
 };
 
+static void trace(const Context *context) {
+    enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
+    const GlFunction found = context->kind->find(context->state, "glGetString");
+    const unsigned char *(*get_string)(unsigned);
+    memcpy(&get_string, &found, sizeof get_string);
+    const unsigned char *name = get_string != NULL ? get_string(RENDERER) : NULL;
+    trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
+}
+
 static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
     renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
     if (renderer->changed == NULL) return error_memory(error, "render");
     if (!context_create(&renderer->context, options->context, error)) return false;
     const Context *context = &renderer->context;
     if (!gl_load(&renderer->gl, context->kind->find, context->state, error)) return false;
+    trace(context);
     renderer->canvas = canvas_create(&renderer->gl, options->width, options->height, error);
     return renderer->canvas != NULL;
 }

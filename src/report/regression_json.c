@@ -2,6 +2,7 @@
 /* results.json; also embedded in report.html for its script. */
 #include "common/json_write.h"
 #include "report/regression_parts.h"
+#include "report/regression_report.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -100,27 +101,44 @@ static void write_limits(JsonWriter *json, const Regression *regression) {
     json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
 }
 
+static void write_counts(JsonWriter *json, const Regression *regression) {
+    static const char *const keys[] = {
+        [PIXELS_EQUAL] = "equal",     [PIXELS_WITHIN] = "within_tolerance", [PIXELS_DIFFER] = "different",
+        [PIXELS_RESIZED] = "resized", [PIXELS_MISSING] = "missing",         [PIXELS_EXTRA] = "extra"};
+    json_begin_object(json, "counts", JSON_ONE_LINE);
+    json_put_int(json, "frames", regression->count);
+    for (int i = 0; i <= PIXELS_EXTRA; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
+    json_put_int(json, "trajectories", regression->run_count);
+    json_put_int(json, "trajectories_different", regression->run_failed);
+    json_end(json);
+}
+
+void regression_write_json(JsonWriter *json, const Regression *regression) {
+    json_put_text(json, "expected", regression->sequences[EXPECTED]->folder);
+    json_put_text(json, "actual", regression->sequences[ACTUAL]->folder);
+    json_put_bool(json, "passed", regression_passed(regression));
+    json_put_text(json, "verdict", regression_verdict(regression).text);
+    json_put_text(json, "notes", regression_notes(regression).text);
+    write_counts(json, regression);
+    write_limits(json, regression);
+    json_put_int(json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
+    json_begin_array(json, "causes", JSON_LINES);
+    for (int i = 0; i < regression->cause_count; i++)
+        json_put_text(json, NULL, cause_words(&regression->causes[i]).text);
+    json_end(json);
+    json_begin_array(json, "frames", JSON_LINES);
+    for (int i = 0; i < regression->count; i++) write_frame(json, &regression->frames[i]);
+    json_end(json);
+    json_begin_array(json, "trajectories", JSON_LINES);
+    for (int i = 0; i < regression->run_count; i++) write_run(json, &regression->runs[i]);
+    json_end(json);
+}
+
 void report_write_json(FILE *file, const void *context) {
     const Report *report = context;
-    const Regression *regression = report->regression;
     JsonWriter json = {.out = file};
     json_begin_object(&json, NULL, JSON_LINES);
     json_put_text(&json, "format", "twinbox compare 1");
-    json_put_text(&json, "expected", regression->sequences[EXPECTED]->folder);
-    json_put_text(&json, "actual", regression->sequences[ACTUAL]->folder);
-    json_put_text(&json, "verdict", regression_verdict(regression).text);
-    json_put_text(&json, "notes", regression_notes(regression).text);
-    write_limits(&json, regression);
-    json_put_int(&json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
-    json_begin_array(&json, "causes", JSON_LINES);
-    for (int i = 0; i < regression->cause_count; i++)
-        json_put_text(&json, NULL, cause_words(&regression->causes[i]).text);
-    json_end(&json);
-    json_begin_array(&json, "frames", JSON_LINES);
-    for (int i = 0; i < regression->count; i++) write_frame(&json, &regression->frames[i]);
-    json_end(&json);
-    json_begin_array(&json, "trajectories", JSON_LINES);
-    for (int i = 0; i < regression->run_count; i++) write_run(&json, &regression->runs[i]);
-    json_end(&json);
+    regression_write_json(&json, report->regression);
     json_end(&json);
 }

@@ -2,6 +2,7 @@
 /* The report of a comparison: report.html, a self-contained page; junit.xml and results.tap for CI; results.json for
    programs and for approval (approve.h). */
 #pragma once
+#include "common/json_write.h"
 #include "regression/regression.h"
 
 /* Default limit for the pictures in a report: a browser opens this size in a second or two. */
@@ -13,3 +14,6 @@ enum { REPORT_MEGABYTES = 64 };
    except for the times in junit.xml. */
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error);
+
+/* What results.json has behind its format, into an object that has begun. */
+void regression_write_json(JsonWriter *json, const Regression *regression);

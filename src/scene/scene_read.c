@@ -3,10 +3,12 @@
 #include "scene/scene.h"
 
 #include "common/file.h"
+#include "common/trace.h"
 #include "scene/parameters.h"
 #include "scene/scene_bodies.h"
 #include "scene/scene_bomb.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -129,6 +131,21 @@ static void name_scene(Scene *scene, const char *path) {
 
 Scene *scene_read(const char *path, Error *error) { return scene_read_with(path, NULL, 0, error); }
 
+static const char *on(bool value) { return value ? "on" : "off"; }
+
+static void trace(const Scene *scene) {
+    trace_line("scene %s: %d bodies%s, %d steps of %g s, %d iterations, warm starting %s, accumulated impulses %s, "
+               "position correction %s, hash %016" PRIx64,
+               scene->name, scene->body_count, scene->bomb.present ? " and a bomb" : "", scene->frames,
+               (double)scene->dt, scene->iterations, on(scene->warm_starting), on(scene->accumulate_impulses),
+               on(scene->position_correction), scene_hash(scene));
+    for (int i = 0; i < scene->parameter_count; i++) {
+        const SceneParameter *parameter = &scene->parameters[i];
+        trace_line("scene %s: %s=%g%s%s", scene->name, parameter->name, parameter->value,
+                   parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+    }
+}
+
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error) {
     YamlTree tree;
     if (!yaml_read(&tree, path, error)) return NULL;
@@ -144,6 +161,7 @@ Scene *scene_read_with(const char *path, const SceneSetting *settings, int count
         }
     }
     yaml_free(&tree);
+    if (scene != NULL) trace(scene);
     return scene;
 }
 

@@ -2,6 +2,8 @@
 #include "simulate/method.h"
 
 #include "common/names.h"
+#include "common/text_add.h"
+#include "common/trace.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,6 +48,13 @@ bool method_with_network(Method *method, const char *name, const char *path, Err
                                                  error_input(error, path, "the name is too long for a setting"));
 }
 
+static void trace(const ContactSolverKind *kind, const Settings *settings) {
+    char text[1024] = "";
+    for (int i = 0; i < settings->count; i++)
+        text_add(text, sizeof text, "%s%s=%s", i > 0 ? "," : ":", settings->items[i].key, settings->items[i].value);
+    trace_line("method %s%s", kind->description.name, text);
+}
+
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
     const ContactSolverKind *kind = method->kind->solver;
     if (kind == NULL) return error_input(error, method->text, "is not a contact solver; this needs one");
@@ -63,6 +72,7 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
+    trace(kind, &settings);
     solver->kind = kind;
     solver->state = kind->create(&settings, error);
     return solver->state != NULL;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
 #include "common/npz.h"
+#include "common/trace.h"
 #include "trajectory/trajectory_arrays.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -177,6 +179,9 @@ Trajectory *trajectory_read(const char *path, Error *error) {
     done = done && read_head(t, file, path, error) && read_poses(t, file, path, error) &&
            read_contacts(t, file, path, error) && check(t, path, error);
     npz_close(file);
+    if (done)
+        trace_line("run %s: %s by %s, %d frames of %d bodies, step %g s, scene hash %016" PRIx64, path, t->scene,
+                   t->method, t->frames, t->bodies, (double)t->dt, t->scene_hash);
     if (done) return t;
     trajectory_destroy(t);
     return NULL;

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/notes.h"
+
+#include "cli/progress_bar.h"
+#include "common/clock.h"
+#include "common/trace.h"
+#include "network/kernels.h"
+
+#include <omp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <sys/resource.h>
+
+static NoteLevel chosen = NOTES_NORMAL;
+static double begun; /* s */
+
+/* One call, so that lines of several threads and processes do not mix. */
+static void print_line(const char *line) {
+    progress_bar_clear();
+    fprintf(stderr, "twinbox: %s\n", line);
+}
+
+void note_set_level(NoteLevel level) {
+    chosen = level;
+    trace_listen(level == NOTES_VERBOSE ? print_line : NULL);
+}
+
+NoteLevel note_level(void) { return chosen; }
+
+void note_print(const char *format, ...) {
+    char text[2048];
+    va_list arguments;
+    if (chosen == NOTES_QUIET) return;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    progress_bar_clear();
+    fprintf(stderr, "twinbox: note: %s\n", text);
+}
+
+void note_verbose(const char *format, ...) {
+    char text[2048];
+    va_list arguments;
+    if (chosen != NOTES_VERBOSE) return;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    print_line(text);
+}
+
+void note_begin(const char *command) {
+    const int threads = omp_get_max_threads();
+    begun = clock_seconds();
+    note_verbose("%s, version " TWINBOX_VERSION ", %d thread%s, %s instructions", command, threads,
+                 threads == 1 ? "" : "s", kernels_best()->name);
+}
+
+static double processor_seconds(const struct rusage *usage) {
+    return (double)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
+           1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
+}
+
+void note_end(void) {
+    struct rusage own, children;
+    if (chosen != NOTES_VERBOSE || getrusage(RUSAGE_SELF, &own) != 0 || getrusage(RUSAGE_CHILDREN, &children) != 0)
+        return;
+    const long most = own.ru_maxrss > children.ru_maxrss ? own.ru_maxrss : children.ru_maxrss; /* KiB */
+    note_verbose("%.3f s, %.3f s of processor time, at most %.1f MiB in a process", clock_seconds() - begun,
+                 processor_seconds(&own) + processor_seconds(&children), (double)most / 1024);
+}

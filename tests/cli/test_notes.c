@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What reaches standard error at each level. Time is that of the test: the linker replaces clock_seconds(). */
+#include "testing.h"
+
+#include "cli/notes.h"
+#include "cli/progress_bar.h"
+#include "common/file.h"
+#include "common/trace.h"
+
+static double now; /* s */
+
+double __wrap_clock_seconds(void);
+double __wrap_clock_seconds(void) { return now; }
+
+static void work_for_an_hour(void) {
+    const Progress *progress = progress_bar_begin("work");
+    for (int minute = 1; minute <= 60; minute++) {
+        now += 60;
+        assert_true(progress->report(progress->context, minute, 60));
+    }
+    progress_bar_end();
+}
+
+/* What a level lets through; the caller frees it. */
+static char *print_all(NoteLevel level) {
+    Error error = {0};
+    const char *path = temporary_path("printed");
+    const int before = dup(STDERR_FILENO);
+    assert_non_null(freopen(path, "w", stderr));
+    setvbuf(stderr, NULL, _IONBF, 0);
+    note_set_level(level);
+    work_for_an_hour();
+    note_print("%d is a note", 1);
+    note_verbose("%d is printed only with -v", 2);
+    trace_line("%d comes from below", 3);
+    note_set_level(NOTES_NORMAL);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    size_t size;
+    char *text = file_read(path, 1 << 20, &size, &error);
+    assert_ok(text != NULL, error);
+    return text;
+}
+
+static void quiet_prints_nothing(void **state) {
+    (void)state;
+    char *text = print_all(NOTES_QUIET);
+    assert_string_equal(text, "");
+    free(text);
+}
+
+static void notes_and_progress_are_printed(void **state) {
+    (void)state;
+    char *text = print_all(NOTES_NORMAL);
+    assert_non_null(strstr(text, "work: 100%"));
+    assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\n"));
+    assert_null(strstr(text, "only with -v"));
+    assert_null(strstr(text, "from below"));
+    free(text);
+}
+
+static void verbose_prints_all(void **state) {
+    (void)state;
+    char *text = print_all(NOTES_VERBOSE);
+    assert_non_null(strstr(text, "work: 100%"));
+    assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\ntwinbox: 2 is printed only with -v\n"
+                                 "twinbox: 3 comes from below\n"));
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(quiet_prints_nothing),
+                                       cmocka_unit_test(notes_and_progress_are_printed),
+                                       cmocka_unit_test(verbose_prints_all)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
