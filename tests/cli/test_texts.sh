@@ -52,4 +52,14 @@ complains "at most 255 are allowed"
 for format in svg pdf; do run 0 figure strip "$engine" -o "strip.$format"; done
 grep -q "Übung_Voncilă" strip.svg || fail "the title of the SVG"
 [ "$(wc -c <strip.pdf)" -lt 400000 ] || fail "strip.pdf is large"
+
+# Charts: the same names in tables, SVG and PNG.
+cp "$scenes/single.yaml" "Übung.yaml"
+sed -i "s|networks/|$scenes/networks/|" "Übung.yaml"
+run 0 chart "Übung.yaml" --quick --methods engine:k=10,momentum:k=20 -o charts
+grep -q "Übung" charts/chart.csv || fail "the table has no Übung"
+grep -q ">Speed and accuracy: Übung" charts/chart-Übung.svg || fail "the chart has no Übung"
+run 2 chart "日本.yaml" --quick -o none
+complains "日本.yaml: error: the font has no character '日' (U+65E5)"
+[ ! -e none ] || fail "something was written"
 finish

@@ -83,10 +83,10 @@ static void too_long_a_title_is_an_error(void **state) {
     const RenderOptions title = {.width = 640, .height = 360, .title = text},
                         end = {.width = 640, .height = 360, .look.end = text};
     assert_false(picture_check((const Trajectory *const *)runs, 2, &title, &error));
-    assert_error(error, ERROR_INPUT, "--title: error: the text needs 7 lines");
+    assert_error(error, ERROR_INPUT, "--title: error: the text needs 6 lines");
     error = (Error){0};
     assert_false(picture_check((const Trajectory *const *)runs, 2, &end, &error));
-    assert_error(error, ERROR_INPUT, "--end: error: the text needs 7 lines");
+    assert_error(error, ERROR_INPUT, "--end: error: the text needs 6 lines");
 }
 
 static bool draws(const Drawing *drawing, const Font *font, const char *text) {
