@@ -16,6 +16,9 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
 /* The title in the header: its first line beside the numbers at the right, in any frame. */
 TextLines caption_header_title(const Picture *picture);
 
+/* Pixels that a panel needs for the shortest form of any run's name; or for the whole name beside a distance. */
+int caption_least_width(const Picture *picture, bool whole);
+
 /* Two panels side by side: the header shows their distance, the only one. */
 bool caption_is_pair(const Picture *picture);
 

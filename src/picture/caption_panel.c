@@ -42,6 +42,22 @@ static int name_width(const Picture *picture, int run) {
     return swatch_width(picture, run) + font_width(&picture->layout.title, name);
 }
 
+int caption_least_width(const Picture *picture, bool whole) {
+    const Layout *layout = &picture->layout;
+    const CaptionItem distance = caption_distance_item("", 0);
+    int least = 0;
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_SIZE], note[CAPTION_SIZE];
+        caption_method(picture, run, name, note);
+        snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6");
+        const int width = whole ? name_width(picture, run) + layout->title.pixels / 2 +
+                                      (run > 0 ? caption_item_width(&layout->method, &distance) : 0)
+                                : swatch_width(picture, run) + font_width(&layout->axis, name);
+        if (width > least) least = width;
+    }
+    return least;
+}
+
 /* Room that a name keeps whatever stands beside it: all that it needs; but of very long settings only a part. */
 static int kept_width(const Picture *picture, int run) {
     const Rect *panel = &picture->layout.panels[0];

@@ -14,6 +14,8 @@ typedef struct Layout {
     int axis_drop;                  /* from the bottom of a panel down to the baseline of its axis */
     int tick;                       /* length of a tick at the axis */
     int hairline;                   /* the thinnest line */
+    Rect area;                      /* that the panels share, with the lines between them */
+    int gap, row_gap;               /* between panels */
     Rect panels[RENDER_PANELS_MAX]; /* all of equal size */
     int width, height;              /* of the picture */
     int legend_baseline;            /* of the first row; 0: no legend */
@@ -29,4 +31,11 @@ typedef struct LayoutRows {
     bool timeline;
 } LayoutRows;
 
-Layout layout_make(int width, int height, int panels, LayoutRows rows);
+/* Columns of the grid of 1 to RENDER_PANELS_MAX panels that a picture has unless its scene needs another. */
+int layout_columns(int width, int height, int panels);
+
+/* The panels fill their area. */
+Layout layout_make(int width, int height, int panels, int columns, LayoutRows rows);
+
+/* Makes the panels smaller, in the middle of their area; width and height in pixels. */
+void layout_shrink_panels(Layout *layout, int panels, int width, int height);
