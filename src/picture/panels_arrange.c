@@ -9,7 +9,7 @@
 static const double GAIN = 1.05, GAIN_WITH_CUT_NAMES = 1.5;
 /* Of a panel's width and height: what the scene covers at least, or the panel shrinks until it covers the third share. */
 static const double LEAST_SHARE_X = 0.2, LEAST_SHARE_Y = 0.4, FULL_SHARE = 0.65;
-static const double LEAST_WIDTH = 18, LEAST_HEIGHT = 5; /* ems of the captions, of a panel that shrinks */
+static const double LEAST_WIDTH = 22, LEAST_HEIGHT = 5; /* ems of the captions, of a panel that shrinks */
 
 static int panels_of(LookCompare compare, int count) {
     return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
@@ -65,7 +65,8 @@ static int shrink(int whole, double needed, double share, double least) {
 /* A moving camera comes closer, so its panels stay. The names of an overlay's runs need the whole width. */
 static void shrink_panels(Picture *picture, Vec2 size) {
     Layout *layout = &picture->layout;
-    const double scale = scale_in(layout, size), em = fmax(layout->title.pixels, layout->left);
+    const double scale = scale_in(layout, size),
+                 em = layout->title.glyphs != NULL ? layout->title.pixels : layout->left;
     const int width = width_of(&layout->panels[0]), height = height_of(&layout->panels[0]);
     if (picture->look.camera != LOOK_FIT) return;
     const bool keep_width = picture->look.compare == LOOK_OVERLAY;
