@@ -13,7 +13,7 @@ static void print_help(FILE *file) {
           "A rigid-box physics engine and a neural network, side by side.\n\n",
           file);
     for (const Command *command = commands; command->name != NULL; command++)
-        fprintf(file, "  %-10s %s\n", command->name, command->summary);
+        if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
     fputs("\nEach command has its own help and an example: twinbox help COMMAND\n"
           "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
@@ -35,7 +35,8 @@ static bool is_version(const char *word) { return strcmp(word, "--version") == 0
 static int refuse_command(const char *name) {
     Error error = {0};
     NameList known = {0};
-    for (const Command *command = commands; command->name != NULL; command++) name_list_add(&known, command->name);
+    for (const Command *command = commands; command->name != NULL; command++)
+        if (command->summary != NULL) name_list_add(&known, command->name);
     error_unknown(&error, "twinbox", name, "a command", &known);
     fprintf(stderr, "%s\n", error.message);
     return ERROR_INPUT;

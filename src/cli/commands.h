@@ -3,6 +3,8 @@
 #pragma once
 #include "common/error.h"
 
+#include <stddef.h>
+
 #define COMMANDS(COMMAND)                                                          \
     COMMAND(simulate, "run a scene with one method and store the trajectory")      \
     COMMAND(render, "draw runs side by side as PNG frames and videos")             \
@@ -17,10 +19,11 @@
     COMMAND(stability, "find where each method fails")                             \
     COMMAND(problem, "write the contact problem of one step to a file")            \
     COMMAND(solve, "solve one contact problem with many methods and score them")   \
-    COMMAND(methods, "list the methods and their settings")
+    COMMAND(methods, "list the methods and their settings")                        \
+    COMMAND(completion, NULL)
 
 typedef struct Command {
-    const char *name, *summary;
+    const char *name, *summary; /* summary NULL: not listed */
     /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the error
        and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within argp. */
     bool (*run)(int argc, char **argv, Error *error);

@@ -24,14 +24,17 @@ static bool is_trajectory(const char *path) {
 }
 
 static void print_trajectory_difference(const Trajectory *a, const TrajectoryDifference *difference) {
+    if (difference->poses_only) printf("only poses are compared: a run has no velocities\n");
     if (difference->equal) {
         printf("equal: %d frames of %d bodies\n", a->frames, a->bodies);
         return;
     }
     if (difference->what[0] != '\0') printf("%s\n", difference->what);
     if (difference->frame < 0) return;
-    printf("first difference: frame %d, body %d: %g m apart, %g rad, %g m/s\n", difference->frame, difference->body,
-           difference->distance, difference->angle, difference->speed);
+    printf("first difference: frame %d, body %d: %g m apart, %g rad", difference->frame, difference->body,
+           difference->distance, difference->angle);
+    if (!difference->poses_only) printf(", %g m/s", difference->speed);
+    printf("\n");
     printf("largest distance: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
            difference->max_distance);
 }

@@ -21,7 +21,7 @@ static const Option option_table[] = {
      "Runs diverge where the centres of a body are more than M metres apart (default: 0, any bit of pose or "
      "velocity)",
      OPTION_DOUBLE(Options, tolerance, 0, (double)FLT_MAX)},
-    {"--scene", 0, "FILE",
+    {"--scene", 0, "SCENE",
      "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
      "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
      "last body",

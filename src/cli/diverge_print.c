@@ -11,21 +11,21 @@ static void print_runs(const char *const paths[2], const Trajectory *a, const Tr
     for (int i = 0; i < 2; i++)
         printf("run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, runs[i]->scene, runs[i]->method,
                runs[i]->frames, runs[i]->bodies, paths[i]);
-    if (a->scene_hash != b->scene_hash)
+    if (a->scene_hash != b->scene_hash && a->scene_hash != 0 && b->scene_hash != 0)
         printf("different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n", a->scene_hash,
                b->scene_hash);
+    if (!trajectory_both_move(a, b)) printf("only poses are compared: a run has no velocities\n");
     if (a->frames != b->frames)
         printf("different lengths: only the first %d frames are compared\n",
                a->frames < b->frames ? a->frames : b->frames);
 }
 
-static void print_body(const Trajectory *a, const PartedBody *parted) {
+static void print_body(const Trajectory *a, const PartedBody *parted, bool poses_only) {
     const StateDifference *by = &parted->by;
     printf("frame %d, body %d%s: ", parted->frame, parted->body, parted->body == a->bomb ? " (the bomb)" : "");
-    if (by->in_a && by->in_b)
-        printf("%.3g m apart, %.3g rad, %.3g m/s, %.3g rad/s", by->distance, by->angle, by->speed, by->spin);
-    else
-        printf("only in run %d", by->in_a ? 1 : 2);
+    if (by->in_a && by->in_b) printf("%.3g m apart, %.3g rad", by->distance, by->angle);
+    if (by->in_a && by->in_b && !poses_only) printf(", %.3g m/s, %.3g rad/s", by->speed, by->spin);
+    if (!by->in_a || !by->in_b) printf("only in run %d", by->in_a ? 1 : 2);
     if (parted->bodies > 1) printf("; %d bodies in all", parted->bodies);
     printf("\n");
 }
@@ -79,6 +79,9 @@ static void print_cause(const TrajectoryParting *parting) {
             "their impulses:\n  the bodies were moved differently (another kind of step, or another scene)\n",
             frame - 1, contacts->count_a, frame);
         return;
+    case PART_UNKNOWN:
+        printf("cause: unknown, as a run has no contacts\n  all states of frame %d are equal\n", frame - 1);
+        return;
     }
     print_contact(contacts);
 }
@@ -89,7 +92,7 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
         return;
     }
     printf("centres more than %g m apart: ", tolerance);
-    print_body(a, &parting->beyond);
+    print_body(a, &parting->beyond, parting->poses_only);
     if (parting->beyond.frame == 0) return;
     if (parting->beyond.frame == parting->first.frame)
         printf("  all states before that step are equal: the cause above\n");
@@ -101,7 +104,8 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
 
 static void print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
     if (parting->first.frame < 0) {
-        printf("equal: %d frames of %d bodies, every bit of pose and velocity\n", parting->frames, a->bodies);
+        printf("equal: %d frames of %d bodies, every bit of pose%s\n", parting->frames, a->bodies,
+               parting->poses_only ? "" : " and velocity");
         if (parting->step >= 0) {
             printf("the states do not show it, but ");
             print_hidden(parting);
@@ -110,7 +114,7 @@ static void print_parting(const Trajectory *a, const TrajectoryParting *parting,
         return;
     }
     printf("first difference: ");
-    print_body(a, &parting->first);
+    print_body(a, &parting->first, parting->poses_only);
     print_cause(parting);
     if (tolerance > 0) print_beyond(a, parting, tolerance);
 }
@@ -166,5 +170,5 @@ void diverge_print(const Divergence *d) {
     if (d->chaos.distance != NULL)
         print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
     else if (note_level() > NOTES_QUIET)
-        printf("shifted run: give --scene FILE to measure how a shift of 1e-6 m grows\n");
+        printf("shifted run: give --scene SCENE to measure how a shift of 1e-6 m grows\n");
 }

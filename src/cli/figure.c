@@ -29,7 +29,7 @@ static const Option option_table[] = {
      OPTION_INT(Options, figure.moments, 1, FIGURE_MOMENTS_MAX)},
     {"--camera", 0, "X,Y,W,H", CAMERA_OPTION_VIEW, OPTION_READ(camera_option_read, Options, figure.view)},
     {"--view-from", 0, "RUN", "The view of this run (.npz) instead of the first's", OPTION_PATH(Options, view_from)},
-    {"--scene", 0, "FILE", "divergence: scene of the first run, for the band of chaos",
+    {"--scene", 0, "SCENE", "divergence: scene of the first run, for the band of chaos",
      OPTION_PATH(Options, figure.scene)},
     {"--bodies", 0, "A,B,...",
      "narrow-phase: the pair (default: the bomb's first, else the first to touch); strip: show the part of the world "
@@ -47,7 +47,7 @@ static const Option option_table[] = {
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};
-enum { HELP_SIZE = 4096 };
+enum { HELP_SIZE = 4096, KINDS_MAX = 31 };
 
 /* All kinds, each with an example. */
 static void write_help(char help[HELP_SIZE]) {
@@ -198,10 +198,12 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
 bool command_figure(int argc, char **argv, Error *error) {
     Options options = {.figure = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
     char help[HELP_SIZE];
+    const char *names[KINDS_MAX + 1] = {NULL};
     write_help(help);
+    for (int i = 0; i < KINDS_MAX && figure_kinds()[i] != NULL; i++) names[i] = figure_kinds()[i]->name;
     const CommandSpec spec = {
         .options = option_table,
-        .input = {.value = "KIND RUN...", .needed = "a kind of figure is needed", .read = read_input},
+        .input = {.value = "KIND RUN...", .needed = "a kind of figure is needed", .read = read_input, .names = names},
         .inputs = {1, 1 + FIGURE_RUNS_MAX, "argument"},
         .help = help};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;

@@ -2,8 +2,10 @@
 #include "cli/installed.h"
 
 #include "common/file.h"
+#include "common/folder.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { PATH_SIZE = 4096 };
@@ -38,4 +40,20 @@ const char *installed_path(const char *path) {
     found->next = all_found;
     all_found = found;
     return found->path;
+}
+
+static bool is_scene(const char *name) {
+    const char *ending = strrchr(name, '.');
+    return ending != NULL && strcmp(ending, ".yaml") == 0;
+}
+
+void installed_scenes(void (*found)(const char *path, void *context), void *context) {
+    char folder[PATH_SIZE], path[PATH_SIZE];
+    FolderList list;
+    Error ignored = {0};
+    if (!find(folder, "scenes") || !folder_list(&list, folder, is_scene, true, &ignored)) return;
+    for (size_t i = 0; i < list.count; i++)
+        if (file_path(path, sizeof path, &ignored, "scenes/%s", list.names[i]) && access(path, F_OK) != 0)
+            found(path, context);
+    folder_list_free(&list);
 }

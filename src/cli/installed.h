@@ -6,3 +6,6 @@
    working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
    "scenes/stack.yaml". Valid until the program ends. */
 const char *installed_path(const char *path);
+
+/* Calls found("scenes/stack.yaml", context) for each installed scene that installed_path() finds, in the order of names. */
+void installed_scenes(void (*found)(const char *path, void *context), void *context);

@@ -11,14 +11,19 @@
 
 enum { FIRST_KEY = 256 };
 
-/* What every command has, listed with --help. */
-static const struct argp_option common_rows[] = {
-    {.name = "quiet", .key = 'q', .doc = "Print errors and results only: no progress, no notes", .group = -1},
-    {.name = "verbose",
-     .key = 'v',
-     .doc = "Print what is done to get the result: files, settings, programs, threads, time, memory",
-     .group = -1}};
-enum { COMMON_ROWS = sizeof common_rows / sizeof *common_rows };
+const Option options_of_all[] = {
+    {.name = "--quiet", .letter = 'q', .help = "Print errors and results only: no progress, no notes"},
+    {.name = "--verbose",
+     .letter = 'v',
+     .help = "Print what is done to get the result: files, settings, programs, threads, time, memory"},
+    {0}};
+enum { OPTIONS_OF_ALL = sizeof options_of_all / sizeof *options_of_all - 1, GROUP_OF_HELP = -1 };
+
+/* See options_visit_next(). */
+static struct {
+    OptionsVisit *visit;
+    void *context;
+} visitor;
 
 typedef struct Parsing {
     const CommandSpec *spec;
@@ -94,7 +99,7 @@ static char *add_standard(int key, const char *text, void *input) {
     return help;
 }
 
-static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_MAX + COMMON_ROWS + 1]) {
+static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_MAX + OPTIONS_OF_ALL + 1]) {
     int count = 0;
     for (int i = 0; spec->options[i].help != NULL; i++, count++) {
         const Option *row = &spec->options[i];
@@ -105,11 +110,26 @@ static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_M
         rows[i].key = key_of(spec->options, i);
         rows[i].arg = row->value;
     }
-    memcpy(rows + count, common_rows, sizeof common_rows);
+    for (int i = 0; i < OPTIONS_OF_ALL; i++) {
+        const Option *row = &options_of_all[i];
+        rows[count++] = (struct argp_option){
+            .name = row->name + strlen("--"), .key = row->letter, .doc = row->help, .group = GROUP_OF_HELP};
+    }
+}
+
+void options_visit_next(OptionsVisit *visit, void *context) {
+    visitor.visit = visit;
+    visitor.context = context;
 }
 
 bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
-    struct argp_option rows[OPTIONS_MAX + COMMON_ROWS + 1] = {{0}};
+    if (visitor.visit != NULL) {
+        OptionsVisit *visit = visitor.visit;
+        visitor.visit = NULL;
+        visit(spec, visitor.context);
+        return false;
+    }
+    struct argp_option rows[OPTIONS_MAX + OPTIONS_OF_ALL + 1] = {{0}};
     make_rows(spec, rows);
     const struct argp argp = {.options = rows,
                               .parser = parse,

@@ -3,6 +3,7 @@
 
 #include "cli/notes.h"
 #include "common/clock.h"
+#include "common/time_left.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -16,6 +17,7 @@ static struct {
     char what[192];
     double begun, shown; /* s */
     bool visible, terminal;
+    TimeLeft left;
 } bar;
 
 static void on_interrupt(int signal_number) {
@@ -25,37 +27,34 @@ static void on_interrupt(int signal_number) {
 
 bool progress_interrupted(void) { return interrupted != 0; }
 
-static void format_seconds(char *text, size_t size, double seconds) {
-    int whole = seconds > 359999 ? 359999 : (int)(seconds + 0.5);
-    if (whole < 60)
-        snprintf(text, size, "%d s", whole);
-    else
-        snprintf(text, size, "%d min %02d s", whole / 60, whole % 60);
-}
-
 static void show(double part, double elapsed) {
     enum { WIDTH = 30 };
-    char left[32];
-    format_seconds(left, sizeof left, elapsed / part * (1 - part));
+    char left[TIME_LEFT_TEXT_SIZE] = "";
+    double seconds = 0;
+    const bool known = time_left_estimate(&bar.left, elapsed, part, &seconds);
+    if (known) time_left_text(seconds, left);
+    const char *comma = known ? ", " : "", *behind = known ? " left" : "";
     if (!bar.terminal) {
-        fprintf(stderr, "%s: %.0f%%, %s left\n", bar.what, 100 * part, left);
+        fprintf(stderr, "%s: %.0f%%%s%s%s\n", bar.what, 100 * part, comma, left, behind);
         return;
     }
     char cells[WIDTH + 1];
     memset(cells, '.', WIDTH);
     memset(cells, '#', (size_t)(part * WIDTH));
     cells[WIDTH] = '\0';
-    fprintf(stderr, "\r\033[K%s [%s] %3.0f%%, %s left", bar.what, cells, 100 * part, left);
+    fprintf(stderr, "\r\033[K%s [%s] %3.0f%%%s%s%s", bar.what, cells, 100 * part, comma, left, behind);
     fflush(stderr);
 }
 
 static bool report(void *context, double done, double total) {
     (void)context;
-    double time = clock_seconds(), pause = bar.terminal ? 0.1 : 5.0;
-    if (note_level() > NOTES_QUIET && time - bar.begun >= 1.0 && time - bar.shown >= pause && done > 0) {
+    const double time = clock_seconds(), elapsed = time - bar.begun, pause = bar.terminal ? 0.1 : 5.0;
+    const double part = done < total ? done / total : 1.0;
+    time_left_add(&bar.left, elapsed, part);
+    if (note_level() > NOTES_QUIET && elapsed >= 1.0 && time - bar.shown >= pause && done > 0) {
         bar.shown = time;
         bar.visible = true;
-        show(done < total ? done / total : 1.0, time - bar.begun);
+        show(part, elapsed);
     }
     return !progress_interrupted();
 }
@@ -72,6 +71,7 @@ const Progress *progress_bar_begin(const char *what) {
     progress_bar_end();
     bar.begun = clock_seconds();
     bar.shown = 0;
+    time_left_begin(&bar.left);
     bar.terminal = isatty(STDERR_FILENO) == 1;
     snprintf(bar.what, sizeof bar.what, "%s", what);
     return &progress;

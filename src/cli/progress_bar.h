@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A progress bar with the time left on a terminal, lines of text elsewhere. Ctrl-C requests the work to stop. Work of
-   less than a second shows nothing. There is one bar at a time. */
+/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known (common/time_left.h).
+   Ctrl-C requests the work to stop. Work of less than a second shows nothing. There is one bar at a time. */
 #pragma once
 #include "common/progress.h"
 

@@ -46,7 +46,7 @@ static const Option option_table[] = {
      OPTION_READ(read_png, Options, render.small)},
     {"--jobs", 0, "N", "Number of processes (default: one per core); the frames are the same",
      OPTION_INT(Options, render.jobs, 1, RENDER_JOBS_MAX)},
-    {"--context", 0, "NAME", "osmesa or egl (default: the first that works); the frames are the same",
+    {"--context", 0, "osmesa|egl", "OpenGL without a display (default: the first that works); the frames are the same",
      OPTION_READ(read_context, Options, render.context)},
     {OPTION_SET(Options, set)},
     {.help = "Look:"},

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/simulate_verdict.h"
 #include "simulate/simulate.h"
 
 #include <inttypes.h>
@@ -10,7 +11,7 @@
 #include <string.h>
 
 typedef struct Options {
-    const char *scene, *output, *method, *hashes;
+    const char *scene, *output, *method, *hashes, *verdict;
     float bomb_x;           /* m; NaN: the scene's */
     int bomb_frame;         /* -1: the scene's */
     int frames, iterations; /* 0: the scene's */
@@ -25,6 +26,7 @@ static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
      OPTION_TEXT(Options, method)},
     {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
+    {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_TEXT(Options, verdict)},
     {.help = "Override the scene:"},
     {OPTION_SET(Options, set)},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m",
@@ -45,11 +47,13 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help = "Run a scene with one method and store the trajectory.\v"
-            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help =
+        "Run a scene with one method and store the trajectory.\v"
+        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+        "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
+        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
@@ -98,10 +102,18 @@ static void print_fallbacks(const NetworkFallbacks *fallbacks) {
         if (rows[i].count > 0) printf("    %s: %d\n", rows[i].what, rows[i].count);
 }
 
-static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
-    if (!override_scene(scene, options, error)) return false;
+/* A run that ends in a NaN or infinite state has a verdict, too. */
+static bool judge(SimulateVerdict *verdict, const Options *options, Error *error) {
+    if (!simulate_verdict_end(verdict, error)) return false;
+    simulate_verdict_print(verdict);
+    return options->verdict == NULL || simulate_verdict_write(verdict, options->verdict, error);
+}
+
+static bool record(const Scene *scene, const Method *method, SimulateVerdict *verdict, const Options *options,
+                   Error *error) {
+    const StepObserver observer = simulate_verdict_observer(verdict);
     NetworkFallbacks fallbacks = {0};
-    Trajectory *run = simulate_counting(scene, method, &fallbacks, progress_bar_begin(scene->name), error);
+    Trajectory *run = simulate_counting(scene, method, &fallbacks, &observer, progress_bar_begin(scene->name), error);
     progress_bar_end();
     bool ok = run != NULL && store(run, options, error);
     if (ok) {
@@ -111,6 +123,16 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
         print_fallbacks(&fallbacks);
     }
     trajectory_destroy(run);
+    return ok;
+}
+
+static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
+    SimulateVerdict verdict;
+    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&verdict, scene, method->text, error))
+        return false;
+    bool ok = record(scene, method, &verdict, options, error);
+    ok = judge(&verdict, options, error) && ok;
+    simulate_verdict_free(&verdict);
     return ok;
 }
 

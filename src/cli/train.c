@@ -25,6 +25,7 @@ typedef struct Options {
 /* The texts of the help that are made from the kinds. */
 typedef struct HelpTexts {
     char kind[TEXT_SIZE], headings[KINDS][TEXT_SIZE], usage[TEXT_SIZE];
+    const char *names[KINDS + 1]; /* ended by NULL */
 } HelpTexts;
 
 static bool remember(const Option *option, const char *text, void *value, Error *error) {
@@ -67,8 +68,9 @@ static void make_table(Options *options, HelpTexts *texts) {
     snprintf(texts->kind, TEXT_SIZE, "What to train: %s", name_kinds(NULL).text);
     add_row(options, (Option){"--output", 'o', "NET.npz", "File that the network is written to",
                               OPTION_TEXT(Options, output), .needed = "-o NET.npz is needed"});
-    add_row(options,
-            (Option){"--kind", 0, "NAME", texts->kind, OPTION_TEXT(Options, kind), .standard = train_kinds[0]->name});
+    for (int k = 0; k < KINDS; k++) texts->names[k] = train_kinds[k]->name;
+    add_row(options, (Option){"--kind", 0, "NAME", texts->kind, OPTION_TEXT(Options, kind), .names = texts->names,
+                              .standard = train_kinds[0]->name});
     for (int k = 0; k < KINDS; k++) add_kind(options, texts, k);
 }
 

@@ -17,7 +17,8 @@ static const struct {
 } types[] = {
     [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8}, [NPZ_INT32] = {"<i4", "int32", 4},
     [NPZ_UINT32] = {"<u4", "uint32", 4},   [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
-    [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_TEXT] = {"<U", "text", 4},
+    [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_INT8] = {"|i1", "int8", 1},       [NPZ_INT16] = {"<i2", "int16", 2},
+    [NPZ_UINT16] = {"<u2", "uint16", 2},   [NPZ_BOOL] = {"|b1", "bool", 1},       [NPZ_TEXT] = {"<U", "text", 4},
 };
 
 static const char MAGIC[] = "\x93NUMPY";
@@ -29,6 +30,10 @@ enum {
 };
 
 const char *npy_type_name(NpzType type) { return types[type].name; }
+
+size_t npy_type_size(NpzType type) { return types[type].size; }
+
+size_t npy_count(const NpyHead *head) { return (size_t)head->data_size / types[head->type].size; }
 
 bool npy_measure(NpyHead *head) {
     uint64_t items = head->type == NPZ_TEXT ? (uint64_t)head->characters : 1;
@@ -97,9 +102,14 @@ static bool take_number(const char **text, int64_t *number) {
 }
 
 static bool take_type(const char **text, NpyHead *head) {
-    for (head->type = NPZ_FLOAT32; head->type < NPZ_TEXT; head->type++)
-        if (take(text, types[head->type].code)) return true;
-    return take(text, types[NPZ_TEXT].code) && take_number(text, &head->characters);
+    head->big_endian = **text == '>';
+    for (head->type = NPZ_FLOAT32; head->type <= NPZ_TEXT; head->type++) {
+        const char *code = types[head->type].code, *rest = *text + 1;
+        if ((**text != code[0] && (!head->big_endian || code[0] != '<')) || !take(&rest, code + 1)) continue;
+        *text = rest;
+        return head->type != NPZ_TEXT || take_number(text, &head->characters);
+    }
+    return false;
 }
 
 /* "()", "(3,)", "(3, 2)" */
@@ -121,8 +131,9 @@ static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_RE
         return refuse(reason, "of the unsupported type '%.*s'", length < 32 ? length : 32, type);
     }
     if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged header");
-    if (take(&text, "True")) return refuse(reason, "in Fortran order; expected C order");
-    if (!take(&text, "False, 'shape': ") || !take_shape(&text, head) || !take(&text, ", }"))
+    head->fortran = take(&text, "True");
+    if ((!head->fortran && !take(&text, "False")) || !take(&text, ", 'shape': ") || !take_shape(&text, head) ||
+        !take(&text, ", }"))
         return refuse(reason, "with a damaged header, or of more than %d dimensions", NPZ_MAX_RANK);
     text += strspn(text, " ");
     if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged header");

@@ -34,6 +34,7 @@ struct NpzFile {
     zip_t *archive;
     char *path;
     uint64_t bytes_read; /* inflated so far, against NPZ_MAX_BYTES */
+    bool converts;
     zip_uint64_t count;
     StoredArray arrays[MAX_ARRAYS]; /* in the order of the archive */
 };
@@ -177,9 +178,25 @@ void npz_close(NpzFile *file) {
     free(file);
 }
 
+void npz_convert(NpzFile *file) { file->converts = true; }
+
+const char *npz_name(const NpzFile *file, size_t index) {
+    return index < file->count ? file->arrays[index].name : NULL;
+}
+
 const char *npz_path(const NpzFile *file) { return file->path; }
 
 bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
+
+static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
+    return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
+}
+
+/* Whether npz_read() can make an array of this type and rank of it. */
+static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
+    bool one_number = rank == 0 && head->rank == 1 && head->shape[0] == 1;
+    return (head->type == NPZ_TEXT) == (type == NPZ_TEXT) && (head->rank == rank || one_number);
+}
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
     const StoredArray *array = find(file, name);
@@ -187,15 +204,17 @@ static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType
         error_input(error, file->path, "has no array '%s'", name);
         return NULL;
     }
-    if (array->head.type == type && array->head.rank == rank) return array;
-    error_input(error, file->path, "array '%s' is %s of %d dimensions; expected %s of %d", name,
-                npy_type_name(array->head.type), array->head.rank, npy_type_name(type), rank);
+    const NpyHead *head = &array->head;
+    if (is_stored_as(head, type, rank) || (file->converts && is_convertible(head, type, rank))) return array;
+    error_input(error, file->path, "array '%s' is %s of %d dimensions%s%s; expected %s of %d", name,
+                npy_type_name(head->type), head->rank, head->big_endian ? ", big-endian" : "",
+                head->fortran ? ", in Fortran order" : "", npy_type_name(type), rank);
     return NULL;
 }
 
 bool npz_shape(const NpzFile *file, const char *name, NpzType type, int rank, int64_t *shape, Error *error) {
     const StoredArray *array = find_of(file, name, type, rank, error);
-    if (array != NULL) memcpy(shape, array->head.shape, (size_t)rank * sizeof *shape);
+    for (int i = 0; array != NULL && i < rank; i++) shape[i] = array->head.shape[i];
     return array != NULL;
 }
 
@@ -235,8 +254,30 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     bool done = member != NULL ? inflate_data(file, array, member, data, error)
                                : zip_failed(file, array->name, zip_get_error(file->archive), error);
     if (member != NULL) zip_fclose(member);
+    if (done && array->head.big_endian) npy_swap(&array->head, data);
     if (done) return data;
     free(data);
+    return NULL;
+}
+
+/* Replaces `data`, which it frees, by a block of the type. */
+static void *convert(NpzFile *file, const StoredArray *array, void *data, NpzType type, Error *error) {
+    size_t size = npy_count(&array->head) * npy_type_size(type);
+    char reason[NPY_REASON_SIZE];
+    bool small = size <= NPZ_MAX_BYTES;
+    void *converted = small ? malloc(size > 0 ? size : 1) : NULL;
+    bool done = false;
+    if (!small)
+        error_input(error, file->path, "array '%s' is larger than 2 GiB as %s", array->name, npy_type_name(type));
+    else if (converted == NULL)
+        error_memory(error, file->path);
+    else if (!npy_convert(&array->head, data, type, converted, reason))
+        error_input(error, file->path, "array '%s': %s", array->name, reason);
+    else
+        done = true;
+    free(data);
+    if (done) return converted;
+    free(converted);
     return NULL;
 }
 
@@ -250,7 +291,9 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
                     shape_text(found, rank, array->head.shape), shape_text(wanted, rank, shape));
         return NULL;
     }
-    return read_data(file, array, error);
+    void *data = read_data(file, array, error);
+    return data == NULL || is_stored_as(&array->head, type, array->head.rank) ? data
+                                                                              : convert(file, array, data, type, error);
 }
 
 /* Appends one character; false if it is not one (NUL, surrogate, too large), or has no room with a NUL behind it. */

@@ -16,6 +16,11 @@ typedef enum NpzType {
     NPZ_INT64,
     NPZ_UINT64,
     NPZ_UINT8,
+    /* Only read, and only converted to one of the above (npz_convert). */
+    NPZ_INT8,
+    NPZ_INT16,
+    NPZ_UINT16,
+    NPZ_BOOL,
     NPZ_TEXT
 } NpzType;
 
@@ -39,6 +44,15 @@ typedef struct NpzFile NpzFile;
    not an archive, is truncated, holds a member that is not a .npy of the types above, or a name twice. */
 NpzFile *npz_open(const char *path, Error *error);
 void npz_close(NpzFile *file);
+
+/* From now on, reading accepts arrays that programs write without a thought for the type: any type of number, big-endian,
+   Fortran order, and one number in an array of one dimension as a scalar. It converts them to the type that is read: a
+   float64 is rounded to float32. A value out of that type's range is an error, and so is a fraction read as an integer.
+   Without this call only the type that is read is accepted. */
+void npz_convert(NpzFile *file);
+
+/* The names of all arrays, in the order of the file; NULL from the last on. */
+const char *npz_name(const NpzFile *file, size_t index);
 
 /* The path that the file was opened by. */
 const char *npz_path(const NpzFile *file);

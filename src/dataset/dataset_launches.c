@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dataset/dataset_launches.h"
 
+#include "simulate/launch_check.h"
+
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -54,7 +56,7 @@ static bool choose_launches(const DatasetOptions *options, const Scene *scene, c
     else
         ok = launches_for_training(scene, LAUNCH_GRID, out, error);
     for (int k = 0; ok && k < dataset_launches_each(options); k++) ok = check_launch(scene, &out[k], error);
-    return ok;
+    return ok && launches_check(scene, out, dataset_launches_each(options), error);
 }
 
 static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,

@@ -168,5 +168,6 @@ const FigureKind figure_annotated = {
     .max_runs = MAX_PANELS,
     .takes_times = true,
     .takes_view = true,
+    .needs_contacts = true,
     .draw = draw,
 };

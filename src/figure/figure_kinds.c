@@ -19,8 +19,15 @@ static void append(char title[SKETCH_TEXT_SIZE], const char *before, const char 
     snprintf(title + used, SKETCH_TEXT_SIZE - used, "%s%s", before, part);
 }
 
+static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error *error) {
+    for (int i = 0; kind->needs_contacts && i < spec->run_count; i++)
+        if (spec->runs[i]->no_contacts)
+            return error_input(error, spec->paths[i], "the run has no contacts, which the kind %s shows", kind->name);
+    return true;
+}
+
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
-    if (!kind->draw(sketch, spec, error)) return false;
+    if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
     append(sketch->title, "", kind->name);
     if (spec->network != NULL)
         append(sketch->title, " of ", spec->network + file_folder_length(spec->network));

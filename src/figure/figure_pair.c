@@ -170,5 +170,6 @@ const FigureKind figure_pair = {
     .takes_times = true,
     .min_bodies = 2,
     .max_bodies = 2,
+    .needs_contacts = true,
     .draw = draw,
 };

@@ -3,6 +3,7 @@
 
 #include "impact_training/slot_fit.h"
 #include "impact_training/slot_rollout.h"
+#include "simulate/launch_check.h"
 #include "solvers/momentum.h"
 #include "solvers/scene_net.h"
 #include "solvers/solvers.h"
@@ -164,13 +165,26 @@ static bool hold_out(Trainer *trainer, Error *error) {
     const int count = trainer->training->launches < HELD_OUT_LAUNCHES ? trainer->training->launches : HELD_OUT_LAUNCHES;
     draw_launches(trainer, count);
     trainer->stage.share = 0.02;
-    return record(trainer, &trainer->held_out, BY_MOMENTUM, 0, count, error);
+    return launches_check(trainer->scene, trainer->launches, count, error) &&
+           record(trainer, &trainer->held_out, BY_MOMENTUM, 0, count, error);
+}
+
+/* Draws the launches of all rounds once before the work: the last round must not be the first to be refused. */
+static bool check_rounds(Trainer *trainer, Error *error) {
+    const SceneTraining *training = trainer->training;
+    gsl_rng_set(trainer->generator, (unsigned long)training->seed);
+    bool ok = true;
+    for (int round = 0; ok && round < training->rounds; round++) {
+        draw_launches(trainer, training->launches);
+        ok = launches_check(trainer->scene, trainer->launches, training->launches, error);
+    }
+    return ok;
 }
 
 static bool train(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds;
     const double share = 0.78 / rounds;
-    if (!hold_out(trainer, error)) return false;
+    if (!check_rounds(trainer, error) || !hold_out(trainer, error)) return false;
     gsl_rng_set(trainer->generator, (unsigned long)trainer->training->seed);
     draw_launches(trainer, trainer->training->launches);
     if (!first_round(trainer, error) || !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error))

@@ -19,6 +19,19 @@ static const char *compares(const RenderLook *look) {
     return look->show & LOOK_TIMELINE ? "timeline" : NULL;
 }
 
+/* What was not recorded would look like what did not happen. */
+static bool check_known(const RenderLook *look, const Trajectory *const *runs, int count, Error *error) {
+    for (int i = 0; i < count; i++) {
+        if ((look->show & LOOK_VELOCITIES) != 0 && runs[i]->no_velocities)
+            return error_input(error, "render", "'velocities' cannot be shown: run %d (%s) does not have them", i + 1,
+                               runs[i]->method);
+        if ((look->show & (LOOK_CONTACTS | LOOK_IMPULSES)) != 0 && runs[i]->no_contacts)
+            return error_input(error, "render", "'%s' cannot be shown: run %d (%s) has no contacts",
+                               look->show & LOOK_CONTACTS ? "contacts" : "impulses", i + 1, runs[i]->method);
+    }
+    return true;
+}
+
 bool look_check(const RenderLook *look, const Trajectory *const *runs, int count, Error *error) {
     const char *what = compares(look);
     char difference[256];
@@ -27,6 +40,7 @@ bool look_check(const RenderLook *look, const Trajectory *const *runs, int count
                            look->view.height, look->view.x, look->view.y);
     if (look->camera == LOOK_BOMB && runs[0]->bomb < 0)
         return error_input(error, "render", "the camera cannot follow the bomb: the first run has none");
+    if (!check_known(look, runs, count, error)) return false;
     if (what == NULL) return true;
     if (count < 2) return error_input(error, "render", "'%s' compares runs, but there is only one", what);
     for (int i = 1; i < count; i++)

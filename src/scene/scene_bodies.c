@@ -124,3 +124,15 @@ bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Erro
            yaml_error(tree, until, error, "until %d is after the last frame (frames: %d)", scene->last_body_until,
                       scene->frames);
 }
+
+int bodies_entry(const YamlTree *tree, int node, int index) {
+    int entry = node + 1;
+    for (int64_t last = -1;; entry = tree->nodes[entry].end) {
+        Pattern pattern;
+        int nodes[FIELDS_MAX];
+        Error none = {0};
+        if (!read_entry(tree, entry, &pattern, nodes, &none)) return entry;
+        last += pattern_body_count(&pattern);
+        if (index <= last || tree->nodes[entry].end == tree->nodes[node].end) return entry;
+    }
+}

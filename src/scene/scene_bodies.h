@@ -13,3 +13,6 @@ FieldParser field_bodies;
 /* Checks that a body with `until` is removed within the run, and that there is no bomb, which would take its index.
    node: of the bodies. */
 bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Error *error);
+
+/* The entry of the list `node` that body `index` of the scene comes from. The list must have been read. */
+int bodies_entry(const YamlTree *tree, int node, int index);

@@ -7,6 +7,7 @@
 #include "scene/parameters.h"
 #include "scene/scene_bodies.h"
 #include "scene/scene_bomb.h"
+#include "scene/scene_overlaps.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -92,6 +93,7 @@ static const Field scene_fields[] = {
     {"accumulate_impulses", field_switch, offsetof(Scene, accumulate_impulses), NULL, false},
     {"position_correction", field_switch, offsetof(Scene, position_correction), NULL, false},
     {"frames", field_int, offsetof(Scene, frames), &range_frames, true},
+    {"overlaps", field_overlaps, offsetof(Scene, overlaps_allowed), NULL, false},
     {"camera", field_camera, 0, NULL, false},
     {"bodies", field_bodies, 0, NULL, true},
     {"bomb", field_bomb, 0, NULL, false},
@@ -102,11 +104,12 @@ static const Field scene_fields[] = {
 static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
-    if (scene->last_body_until > 0)
-        return bodies_check_until(tree, fields_node(scene_fields, nodes, "bodies"), scene, error);
-    return !scene->bomb.present || scene->bomb.frame <= scene->frames ||
-           yaml_error(tree, fields_node(scene_fields, nodes, "bomb"), error,
-                      "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame, scene->frames);
+    const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
+    if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
+    if (scene->bomb.present && scene->bomb.frame > scene->frames)
+        return yaml_error(tree, bomb, error, "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame,
+                          scene->frames);
+    return scene->overlaps_allowed || overlaps_check(tree, bodies, bomb, scene, error);
 }
 
 static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {

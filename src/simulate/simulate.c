@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "simulate/simulate.h"
 
+#include "simulate/launch_check.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +20,8 @@ static void run_end(Run *run) {
 }
 
 static bool run_begin(Run *run, const Scene *scene, const Method *method, Error *error) {
+    const Launch own = launch_of(scene);
+    if (scene->bomb.frame == 0 && !launches_check(scene, &own, 1, error)) return false;
     *run = (Run){.scene = scene, .world = scene_world(scene, error)};
     if (run->world != NULL) run->stepper = stepper_create(method, scene, error);
     if (run->stepper != NULL) return true;
@@ -25,10 +29,18 @@ static bool run_begin(Run *run, const Scene *scene, const Method *method, Error 
     return false;
 }
 
+/* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the engine's
+   run, too. */
+static bool add_bomb(const Scene *scene, World *world, Error *error) {
+    const Launch own = launch_of(scene);
+    return (launch_is_free(scene, world) || launches_check(scene, &own, 1, error)) &&
+           scene_add_bomb(scene, world, error);
+}
+
 /* The bomb appears, and the last body disappears, after the steps that the scene sets. */
 static bool update_bodies(const Scene *scene, World *world, int frame, Error *error) {
     if (frame == scene->last_body_until) world_remove_last_body(world);
-    return !scene->bomb.present || scene->bomb.frame != frame || scene_add_bomb(scene, world, error);
+    return !scene->bomb.present || scene->bomb.frame != frame || add_bomb(scene, world, error);
 }
 
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
@@ -109,11 +121,18 @@ static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method,
     return trajectory;
 }
 
-static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, const Progress *progress, Error *error) {
+/* Nobody observes if there is no observer. */
+static bool observe(const StepObserver *observer, int frame, const World *world, Error *error) {
+    return observer == NULL || observer->observe(observer->context, frame, world, error);
+}
+
+static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, const StepObserver *observer,
+                   const Progress *progress, Error *error) {
     record_bodies(trajectory, 0, run->world);
     for (int frame = 1; frame <= run->scene->frames; frame++) {
         if (!run_step(run, frame, error) || !record_contacts(trajectory, frame, run->world, error)) return false;
         record_bodies(trajectory, frame, run->world);
+        if (!observe(observer, frame, run->world, error)) return false;
         network_fallbacks_add(sum, &world_solution(run->world)->fallbacks);
         if (!progress_report(progress, frame, run->scene->frames))
             return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
@@ -122,12 +141,12 @@ static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, cons
     return true;
 }
 
-Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum, const Progress *progress,
-                              Error *error) {
+Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum,
+                              const StepObserver *observer, const Progress *progress, Error *error) {
     Run run;
     if (!run_begin(&run, scene, method, error)) return NULL;
     Trajectory *trajectory = trajectory_of_scene(scene, method, error);
-    if (trajectory != NULL && !record(&run, trajectory, sum, progress, error)) {
+    if (trajectory != NULL && !record(&run, trajectory, sum, observer, progress, error)) {
         trajectory_destroy(trajectory);
         trajectory = NULL;
     }
@@ -137,5 +156,5 @@ Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkF
 
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
     NetworkFallbacks unused = {0};
-    return simulate_counting(scene, method, &unused, progress, error);
+    return simulate_counting(scene, method, &unused, NULL, progress, error);
 }

@@ -23,9 +23,9 @@ bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *erro
    progress requests a stop. */
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 
-/* The same, and adds the fallbacks of all steps to the sum. */
-Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum, const Progress *progress,
-                              Error *error);
+/* The same, and adds the fallbacks of all steps to the sum; the observer may be NULL. */
+Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum,
+                              const StepObserver *observer, const Progress *progress, Error *error);
 
 /* The same run without recording. */
 bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error);

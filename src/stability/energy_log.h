@@ -2,24 +2,15 @@
 /* The energy of a run per frame: the reference for judging other runs of the same scene. */
 #pragma once
 #include "simulate/simulate.h"
+#include "stability/energy_balance.h"
 
 #include <stddef.h>
 
 /* Zero-initialise; free with energy_log_free(); may be begun again. */
 typedef struct EnergyLog {
-    Vec2 gravity;
-    int frames;     /* of the run */
-    double *energy; /* [frames + 1] J: mechanical energy of all dynamic bodies */
-    /* J: energy available to be lost, the larger of two.
-       (a) The energy lost so far: the largest drop below the highest level before. Energy that an added body brings, or
-       that pushing overlapping bodies apart adds, raises the level; energy of a removed body lowers it.
-       (b) The potential energy of all dynamic bodies at the start, and of added ones: m |g| times the height above the
-       lowest dynamic body at the start. So a standing stack has all its height to lose. */
-    double available;
-    double potential; /* J: (b) */
-    double lowest;    /* m: lowest height of a dynamic body at the start; INFINITY: no dynamic body so far */
-    double level;     /* J: energy if none had been lost */
-    int body_count;   /* in the last frame */
+    int frames;            /* of the run */
+    double *energy;        /* [frames + 1] J: as in EnergyBalance */
+    EnergyBalance balance; /* after the last frame */
     size_t capacity;
 } EnergyLog;
 

@@ -3,10 +3,10 @@
 
 #include "common/array.h"
 #include "stability/verdict_checks.h"
-#include "study/world_measures.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const verdict_words[VERDICTS + 2] = {"settles", "sways",    "creeps",     "falls",         "sinks",
                                                  "tunnels", "explodes", "non-finite", "not applicable"};
@@ -17,6 +17,7 @@ bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
+    free(watch->statics);
     *watch = (VerdictWatch){0};
 }
 
@@ -27,22 +28,56 @@ static void store_last(VerdictWatch *watch, const Body *bodies) {
     }
 }
 
+static bool add_static(VerdictWatch *watch, const Body *body, int index, Error *error) {
+    if (!array_reserve((void **)&watch->statics, &watch->static_capacity, (size_t)watch->static_count + 1,
+                       sizeof *watch->statics))
+        return error_memory(error, "verdict");
+    watch->statics[watch->static_count++] = (WatchedStatic){index, cos((double)body->angle), sin((double)body->angle)};
+    return true;
+}
+
 static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
         return error_memory(error, "verdict");
-    for (int i = watch->body_count; i < count; i++)
+    while (watch->static_count > 0 && watch->statics[watch->static_count - 1].body >= count) watch->static_count--;
+    for (int i = count; i < watch->body_count; i++) watch->touched_count -= watch->bodies[i].touched;
+    for (int i = watch->body_count; i < count; i++) {
         watch->bodies[i] =
             (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
+        if (bodies[i].inv_mass == 0 && !add_static(watch, &bodies[i], i, error)) return false;
+    }
     watch->body_count = count;
     return true;
 }
 
+static bool starts_at_rest(const Scene *scene) {
+    for (int i = 0; i < scene->body_count; i++) {
+        const BodyDef *body = &scene->bodies[i];
+        if (body->velocity.x != 0 || body->velocity.y != 0 || body->angular_velocity != 0) return false;
+    }
+    return true;
+}
+
+VerdictRun verdict_run_of(const Scene *scene) {
+    const bool rests = starts_at_rest(scene), bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
+    return (VerdictRun){.gravity = scene->gravity,
+                        .dt = scene->dt,
+                        .frames = scene->frames,
+                        .stands = rests && !bomb,
+                        .until_bomb = rests && bomb};
+}
+
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
-    if (run->converged->frames < run->frames)
+    if (run->converged != NULL && run->converged->frames < run->frames)
         return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
                            run->frames);
-    *watch = (VerdictWatch){.run = *run, .bodies = watch->bodies, .capacity = watch->capacity};
-    watch->kept = bodies_energy(bodies, count, run->gravity);
+    *watch = (VerdictWatch){.run = *run,
+                            .bodies = watch->bodies,
+                            .capacity = watch->capacity,
+                            .statics = watch->statics,
+                            .static_capacity = watch->static_capacity};
+    energy_balance_begin(&watch->own, run->gravity, bodies, count);
+    watch->kept = watch->brought = watch->own.energy;
     return add_bodies(watch, bodies, count, error);
 }
 
@@ -77,6 +112,11 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
     return verdict_watch_step(watch, &step, error);
+}
+
+/* The words of world.c, soft_step.c and avbd.c. */
+bool verdict_is_non_finite(const Error *failure) {
+    return failure->kind == ERROR_INPUT && strstr(failure->message, "NaN or infinite") != NULL;
 }
 
 void verdict_watch_failed(VerdictWatch *watch, int frame) {
@@ -120,7 +160,8 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
                  const EnergyLog *converged, Error *error) {
-    const VerdictRun run = {scene->gravity, scene->dt, scene->frames, stands, converged};
+    const VerdictRun run = {
+        .gravity = scene->gravity, .dt = scene->dt, .frames = scene->frames, .stands = stands, .converged = converged};
     VerdictWatch watch = {0};
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;

@@ -44,12 +44,20 @@ enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_SINK_TIME 1.0
 
 /* Explodes: the energy exceeds its bounds (verdict_watch_step) by more than VERDICT_ENERGY_SHARE of the energy
-   available in the converged run (energy_log.h), taken as at least VERDICT_LEAST_AVAILABLE (J): otherwise rounding
-   would make a scene at rest explode. The bounds use intervals of VERDICT_ENERGY_TIME (s): an impact stores energy in
+   available (energy_balance.h) in the converged run or, without one, in this run, taken as at least
+   VERDICT_LEAST_AVAILABLE (J): otherwise rounding would make a scene at rest explode. The bounds use intervals of VERDICT_ENERGY_TIME (s): an impact stores energy in
    penetration and releases it in far less time. */
 #define VERDICT_ENERGY_SHARE 0.01
 #define VERDICT_ENERGY_TIME 1.0
 #define VERDICT_LEAST_AVAILABLE 1.0
+
+/* Without a converged run: a run that has lost energy may regain VERDICT_REGAIN_SHARE of the available energy, as a stack
+   that sank under its weight does when it is pushed up again; the available energy is at least what lifts all bodies by
+   VERDICT_LEAST_LIFT (m); and the energy of the first second is not judged if bodies
+   overlap by more than VERDICT_START_OVERLAP (m) at the start. */
+#define VERDICT_REGAIN_SHARE 0.05
+#define VERDICT_LEAST_LIFT 0.1
+#define VERDICT_START_OVERLAP 0.0105
 
 /* "settles", ... "non-finite"; then "not applicable", for cells and borders without a verdict; then NULL. */
 extern const char *const verdict_words[VERDICTS + 2];
@@ -82,9 +90,15 @@ typedef struct VerdictRun {
     /* All bodies are meant to stay in place. If false, falling is not judged, and creeping only at the end of the run
        and not for the bomb, which may roll. */
     bool stands;
-    const EnergyLog
-        *converged; /* the same scene run by "reference", with at least as many frames; outlives the watch */
+    bool until_bomb; /* falling is judged until the bomb first touches something */
+    /* The same scene run by "reference", with at least as many frames; outlives the watch. NULL: the run is judged by
+       its own energy alone. */
+    const EnergyLog *converged;
 } VerdictRun;
+
+/* The run of a scene without a converged run. It is meant to stand if all bodies start at rest: to the end without a
+   bomb, or else until the bomb touches something. */
+VerdictRun verdict_run_of(const Scene *scene);
 
 /* A step, as given to the watch. */
 typedef struct VerdictStep {
@@ -100,10 +114,17 @@ typedef struct WatchedBody {
     Vec2 last, stood; /* m: in the last frame; before the step of its first contact */
     float last_angle, stood_angle;
     bool touched; /* has had a contact */
+    bool fallen;  /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
     Vec2 rested;  /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
     Vec2 sample[VERDICT_CREEP_SECONDS]; /* ring buffer, one position per second */
 } WatchedBody;
+
+/* Static bodies never move. */
+typedef struct WatchedStatic {
+    int body;
+    double cosine, sine; /* of its angle */
+} WatchedStatic;
 
 /* Zero-initialise; free with verdict_watch_free(); may be begun again. Internal to the checks
    (stability/verdict_checks.h). */
@@ -111,11 +132,16 @@ typedef struct VerdictWatch {
     VerdictRun run;
     VerdictReading worst; /* so far, from creeps on */
     int frame;            /* the last */
-    int body_count;
+    int body_count, touched_count;
     WatchedBody *bodies;
     size_t capacity;
+    WatchedStatic *statics; /* [static_count] ascending */
+    int static_count;
+    size_t static_capacity;
+    double brought;          /* J: energy at the start and of added bodies; without a converged run, the bound (c) */
     double kept;             /* J: lowest of the energy peaks of all whole seconds, plus the energy of added bodies */
     double peak;             /* J: highest energy in the current second */
+    EnergyBalance own;       /* without a converged run */
     double energy;           /* J: in the last frame */
     double rested;           /* J: energy after VERDICT_CREEP_FROM seconds */
     double kinetic;          /* J: mean of the dynamic bodies */
@@ -144,6 +170,12 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    pushing apart boxes that overlap at the start adds energy in the converged run too. (a) uses peaks, since in an
    impact of any unconverged method boxes penetrate and are pushed out again, like a bounce.
 
+   Explodes, without a converged run: energy can only come from added bodies, so (c) is the energy at the start plus that
+   of all added bodies. It exceeds (c) by more than VERDICT_ENERGY_SHARE, or (a) by more than VERDICT_REGAIN_SHARE, of the
+   available energy, which includes the kinetic energy of the start and of added bodies. If bodies overlap at the start,
+   (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
+   in tests/stability.
+
    Tunnels: the centre of a dynamic body passed through a static box: the straight line from its last position outside
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
@@ -153,6 +185,9 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
 
 /* The same for a world; a StepObserver callback. */
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error);
+
+/* True if a run failed because a body's state became NaN or infinite: that is a verdict, and other failures are not. */
+bool verdict_is_non_finite(const Error *failure);
 
 /* The step to `frame` failed because a body's state became NaN or infinite. Later steps are ignored. */
 void verdict_watch_failed(VerdictWatch *watch, int frame);

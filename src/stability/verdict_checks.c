@@ -17,10 +17,11 @@ int verdict_steps(double seconds, float dt) {
 }
 
 double verdict_distance(Vec2 a, Vec2 b) { return hypot((double)a.x - b.x, (double)a.y - b.y); }
-static double smaller_side(const Body *body) { return fminf(body->size.x, body->size.y); }
+static double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
 
 bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
-    double speed = 0;
+    double most = 0; /* m^2/s^2 */
+    int fastest = -1;
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         if (!isfinite(body->position.x) || !isfinite(body->position.y) || !isfinite(body->angle) ||
@@ -28,9 +29,12 @@ bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
             verdict_note(watch, VERDICT_NON_FINITE, i, watch->speed, "m/s");
             return false;
         }
-        speed = fmax(speed, verdict_distance(body->velocity, vec2(0, 0)));
+        const double x = body->velocity.x, y = body->velocity.y, square = x * x + y * y;
+        if (square <= most) continue;
+        most = square;
+        fastest = i;
     }
-    watch->speed = speed;
+    watch->speed = fastest >= 0 ? verdict_distance(step->bodies[fastest].velocity, vec2(0, 0)) : 0;
     return true;
 }
 
@@ -61,24 +65,51 @@ static double converged_energy(const VerdictRun *run, int frame) {
     return most;
 }
 
+/* The contacts of the first step are those of the start. Bodies that overlap there gain energy as they are pushed
+   apart. */
+static bool overlaps_at_start(const VerdictStep *step) {
+    for (int i = 0; i < step->contact_count; i++)
+        if (-(double)step->contacts[i].separation > VERDICT_START_OVERLAP) return true;
+    return false;
+}
+
+/* J: what exceeds the bounds of verdict_watch_step(); 0 if nothing does. Bound (b) searches two seconds of the
+   converged run; evaluated only if (a) is exceeded, which is rare. */
+static double excess_beside(const VerdictWatch *watch, int frame) {
+    const EnergyLog *converged = watch->run.converged;
+    const double allowed = VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE);
+    if (watch->energy <= watch->kept + allowed) return 0;
+    const double bound = fmax(watch->kept, converged_energy(&watch->run, frame));
+    return watch->energy > bound + allowed ? watch->energy - bound : 0;
+}
+
+/* The same without a converged run. */
+static double excess_alone(const VerdictWatch *watch) {
+    const EnergyBalance *own = &watch->own;
+    const double least = fmax(VERDICT_LEAST_LIFT * own->weight, VERDICT_LEAST_AVAILABLE);
+    const double available = fmax(fmax(own->available, own->potential + own->kinetic), least);
+    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available) return watch->energy - watch->brought;
+    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available ? watch->energy - watch->kept : 0;
+}
+
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     const VerdictRun *run = &watch->run;
-    double energy = bodies_energy(step->bodies, step->body_count, run->gravity);
-    watch->energy = energy;
-    int joined = step->body_count - watch->body_count;
-    double brought = joined > 0 ? bodies_energy(step->bodies + watch->body_count, joined, run->gravity) : 0;
-    watch->kept += brought;
-    watch->peak += brought;
-    if (joined < 0) end_second(watch, energy);
-    double allowed = VERDICT_ENERGY_SHARE * fmax(run->converged->available, VERDICT_LEAST_AVAILABLE);
-    /* Bound (b) searches two seconds of the converged run; evaluated only if (a) is exceeded, which is rare. */
-    if (energy > watch->kept + allowed) {
-        double bound = fmax(watch->kept, converged_energy(run, step->frame));
-        if (energy > bound + allowed) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), energy - bound, "J");
+    const double before = watch->own.brought;
+    energy_balance_step(&watch->own, step->bodies, step->body_count);
+    const double energy = watch->energy = watch->own.energy, change = watch->own.brought - before;
+    watch->brought += change;
+    if (step->body_count > watch->body_count) {
+        watch->kept += change;
+        watch->peak += change;
     }
+    if (step->body_count < watch->body_count) end_second(watch, energy);
+    if (step->frame == 1 && run->converged == NULL && overlaps_at_start(step)) watch->kept = watch->brought = INFINITY;
+    const double gained = run->converged != NULL ? excess_beside(watch, step->frame) : excess_alone(watch);
+    if (gained > 0) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
-    if (watch->peak_steps >= verdict_steps(VERDICT_ENERGY_TIME, run->dt))
-        end_second(watch, fmin(watch->kept, watch->peak));
+    if (watch->peak_steps < verdict_steps(VERDICT_ENERGY_TIME, run->dt)) return;
+    end_second(watch, fmin(watch->kept, watch->peak));
+    if (isinf(watch->brought)) watch->brought = watch->peak;
 }
 
 /* Clips the interval `part` of t to -half < start + t step < half. */
@@ -88,25 +119,34 @@ static void clip(double part[2], double start, double step, double half) {
         return;
     }
     double in = (-half - start) / step, out = (half - start) / step;
-    part[0] = fmax(part[0], fmin(in, out));
-    part[1] = fmin(part[1], fmax(in, out));
+    const double first = in < out ? in : out, last = in < out ? out : in;
+    if (first > part[0]) part[0] = first;
+    if (last < part[1]) part[1] = last;
+}
+
+/* Whether a step from `start` stays on one side of -half .. half. Decides most steps without a division. */
+static bool stays_beside(double start, double step, double half) {
+    return (start >= half && start + step >= half) || (start <= -half && start + step <= -half);
 }
 
 /* Whether the segment between two points (or the point, if they are equal) intersects the interior of the box. In the
    box's axes and in double, so that it is exact far from the origin too. */
-static bool passes(const Body *box, Vec2 from, Vec2 to) {
-    double c = cos((double)box->angle), s = sin((double)box->angle);
+static bool passes(const WatchedStatic *fixed, const Body *box, Vec2 from, Vec2 to) {
+    const double c = fixed->cosine, s = fixed->sine;
     double x = (double)from.x - box->position.x, y = (double)from.y - box->position.y;
     double step_x = (double)to.x - from.x, step_y = (double)to.y - from.y;
+    const double along = c * x + s * y, step_along = c * step_x + s * step_y, half_along = 0.5 * (double)box->size.x;
+    const double up = c * y - s * x, step_up = c * step_y - s * step_x, half_up = 0.5 * (double)box->size.y;
+    if (stays_beside(up, step_up, half_up) || stays_beside(along, step_along, half_along)) return false;
     double part[2] = {0, 1};
-    clip(part, c * x + s * y, c * step_x + s * step_y, 0.5 * (double)box->size.x);
-    clip(part, c * y - s * x, c * step_y - s * step_x, 0.5 * (double)box->size.y);
+    clip(part, along, step_along, half_along);
+    clip(part, up, step_up, half_up);
     return part[0] < part[1];
 }
 
-static bool passes_any(const VerdictStep *step, Vec2 from, Vec2 to) {
-    for (int i = 0; i < step->body_count; i++)
-        if (step->bodies[i].inv_mass == 0 && passes(&step->bodies[i], from, to)) return true;
+static bool passes_any(const VerdictWatch *watch, const VerdictStep *step, Vec2 from, Vec2 to) {
+    for (int i = 0; i < watch->static_count; i++)
+        if (passes(&watch->statics[i], &step->bodies[watch->statics[i].body], from, to)) return true;
     return false;
 }
 
@@ -114,10 +154,12 @@ void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *watched = &watch->bodies[i];
         const Vec2 now = step->bodies[i].position;
-        if (step->bodies[i].inv_mass == 0 || passes_any(step, now, now)) continue;
-        if (passes_any(step, watched->outside, now))
+        if (step->bodies[i].inv_mass == 0) continue;
+        if (passes_any(watch, step, watched->outside, now)) {
+            if (passes_any(watch, step, now, now)) continue;
             verdict_note(watch, VERDICT_TUNNELS, i, verdict_distance(watched->last, now) / (double)watch->run.dt,
                          "m/s");
+        }
         watched->outside = now;
     }
 }
@@ -130,7 +172,7 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
     double share = 1;
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
-        if (!exists(step, contact)) continue;
+        if (!exists(step, contact) || -(double)contact->separation <= VERDICT_SINK_LEAST) continue;
         double side = fmin(smaller_side(&step->bodies[contact->a]), smaller_side(&step->bodies[contact->b]));
         double found = -(double)contact->separation / fmax(VERDICT_SINK_SHARE * side, VERDICT_SINK_LEAST);
         if (found <= share) continue;
@@ -144,35 +186,43 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
 }
 
 /* A body is meant to stay where it was before the step of its first contact. */
-static void note_contact(WatchedBody *body) {
+static void note_contact(VerdictWatch *watch, int index) {
+    WatchedBody *body = &watch->bodies[index];
     if (body->touched) return;
     body->touched = true;
     body->stood = body->last;
     body->stood_angle = body->last_angle;
+    watch->touched_count++;
 }
 
-/* m: descent along gravity. */
-static double lowered(Vec2 from, Vec2 to, Vec2 gravity) {
-    double pull = hypot((double)gravity.x, (double)gravity.y);
-    if (pull == 0) return 0;
-    return (((double)to.x - from.x) * gravity.x + ((double)to.y - from.y) * gravity.y) / pull;
+/* Descent along gravity times its length, m^2/s^2. */
+static double descent(Vec2 from, Vec2 to, Vec2 gravity) {
+    return ((double)to.x - from.x) * gravity.x + ((double)to.y - from.y) * gravity.y;
+}
+
+static bool judges_falls(const VerdictWatch *watch, int bomb) {
+    return watch->run.stands || (watch->run.until_bomb && (bomb < 0 || !watch->bodies[bomb].touched));
 }
 
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
-    if (!watch->run.stands) return;
-    for (int i = 0; i < step->contact_count; i++) {
+    for (int i = 0; i < step->contact_count && watch->touched_count < step->body_count; i++) {
         if (!exists(step, &step->contacts[i])) continue;
-        note_contact(&watch->bodies[step->contacts[i].a]);
-        note_contact(&watch->bodies[step->contacts[i].b]);
+        note_contact(watch, step->contacts[i].a);
+        note_contact(watch, step->contacts[i].b);
     }
+    const bool judged = judges_falls(watch, step->bomb);
+    const double pull = verdict_distance(watch->run.gravity, vec2(0, 0));
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
-        const WatchedBody *watched = &watch->bodies[i];
+        WatchedBody *watched = &watch->bodies[i];
         if (body->inv_mass == 0 || !watched->touched) continue;
-        double lower = lowered(watched->stood, body->position, watch->run.gravity);
-        double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
-        if (lower > VERDICT_FALL_SHARE * smaller_side(body)) verdict_note(watch, VERDICT_FALLS, i, lower, "m");
-        if (turned > VERDICT_FALL_ANGLE) verdict_note(watch, VERDICT_FALLS, i, turned, "deg");
+        const double down = descent(watched->stood, body->position, watch->run.gravity);
+        const double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
+        const bool is_lower = down > VERDICT_FALL_SHARE * smaller_side(body) * pull;
+        const bool is_turned = turned > VERDICT_FALL_ANGLE;
+        watched->fallen = is_lower || is_turned;
+        if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, down / pull, "m");
+        if (judged && is_turned) verdict_note(watch, VERDICT_FALLS, i, turned, "deg");
     }
 }
 

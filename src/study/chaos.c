@@ -113,6 +113,9 @@ static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, in
 static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int body, int frames,
                       const Progress *progress, Error *error) {
     uint64_t hash = scene_hash(scene);
+    if (run->scene_hash == 0)
+        return error_input(error, path, "cannot be run again for the run by %s: that run does not state its scene_hash",
+                           run->method);
     if (hash != run->scene_hash)
         return error_input(error, path,
                            "is not the scene of the run by %s: its hash is %016" PRIx64

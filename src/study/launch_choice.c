@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/launch_choice.h"
 
+#include "simulate/launch_check.h"
+
 #include <stdlib.h>
 
 static void sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
@@ -26,6 +28,7 @@ Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int s
     else if (ok)
         ok = launches_for_scoring(scene, *count, launches, error);
     launches_free(&table);
+    ok = ok && launches_check(scene, launches, *count, error);
     if (ok) return launches;
     free(launches);
     return NULL;

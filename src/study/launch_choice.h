@@ -11,6 +11,7 @@ typedef struct LaunchChoice {
     int count;         /* of the scene's family; 0: not given */
 } LaunchChoice;
 
-/* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller. NULL
-   with error set for a table or a family that does not fit the scene. */
+/* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller.
+   NULL with error set for a table or a family that does not fit the scene, and for launches that launches_check()
+   refuses. */
 Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error);

@@ -36,6 +36,8 @@ typedef struct Trajectory {
     float *angle;                      /* [T, N] */
     Vec2 *velocity;                    /* [T, N] m/s */
     float *angular_velocity;           /* [T, N] rad/s */
+    bool no_velocities;                /* both are unknown: all NaN; files do not have them */
+    bool no_contacts;                  /* contacts were not recorded: none are here, nor in files */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
     size_t contact_capacity;
@@ -69,13 +71,21 @@ Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *erro
 
 /* .npz: version, scene, method, scene_hash, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
-   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. */
+   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. Without the velocities or the
+   contacts where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
-/* NULL with error set (ERROR_INPUT, naming the file) for a file that is damaged, of another version or inconsistent:
+/* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others
+   means. Other types of numbers are converted (npz_convert).
+   NULL with error set (ERROR_INPUT, naming the file) for a file that is damaged, of another version or inconsistent:
+   an array whose name looks like a mistyped one,
    shapes that do not match, contacts out of range or of bodies that did not exist before the step, infinite poses, a
    body that reappears after it was removed, a static body that is removed, dt or a size not positive. */
 Trajectory *trajectory_read(const char *path, Error *error);
+
+/* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static; in a
+   run of one frame, none. */
+void trajectory_guess_fixed(Trajectory *trajectory);
 
 /* `frame,body,x,y,angle,vx,vy,omega`, numbers as %.9g (float32 round-trips), existing dynamic bodies only. */
 bool trajectory_write_csv(const Trajectory *trajectory, const char *path, Error *error);
@@ -85,19 +95,20 @@ bool trajectory_write_hashes(const Trajectory *trajectory, const char *path, Err
 
 /* Where two trajectories differ. */
 typedef struct TrajectoryDifference {
-    bool equal; /* every bit of every pose and velocity */
+    bool equal;      /* every bit of every pose and velocity */
+    bool poses_only; /* the velocities of one or both are unknown, and not compared */
     /* a difference without a distance: "bodies: 12 and 67", "frames: 301 and 481", or a body that exists in one of the
        two only; else empty */
     char what[256];
     int frame, body;         /* the first that differ; -1, -1 if only `what` differs */
     double distance;         /* m, between the two positions there */
     double angle;            /* rad */
-    double speed;            /* m/s, between the two velocities there */
+    double speed;            /* m/s, between the two velocities there; 0 if poses_only */
     int max_frame, max_body; /* where the distance is largest in the frames of both; -1, -1 if nowhere */
     double max_distance;     /* m */
 } TrajectoryDifference;
 
-/* Compares all poses and velocities bit by bit in the frames of both; NaN: the body does not exist. Contacts and names
+/* Compares all poses, and velocities if both have them, bit by bit in the frames of both; NaN: the body does not exist. Contacts and names
    do not count. */
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *difference);
 

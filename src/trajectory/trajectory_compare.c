@@ -18,6 +18,7 @@ static void describe_first(const Trajectory *a, const Trajectory *b, int frame, 
 
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *d) {
     *d = (TrajectoryDifference){.frame = -1, .body = -1, .max_frame = -1, .max_body = -1};
+    d->poses_only = !trajectory_both_move(a, b);
     if (trajectory_different_worlds(a, b, d->what, sizeof d->what)) return;
     int frames = a->frames < b->frames ? a->frames : b->frames;
     for (int frame = 0; frame < frames; frame++) {

@@ -18,6 +18,8 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     to->scene_hash = from->scene_hash;
     to->dt = from->dt * (float)step;
     to->bomb = from->bomb;
+    to->no_velocities = from->no_velocities;
+    to->no_contacts = from->no_contacts;
     to->camera_center = from->camera_center;
     to->camera_size = from->camera_size;
     memcpy(to->size, from->size, (size_t)from->bodies * sizeof *to->size);

@@ -44,6 +44,7 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
     if (frame < 0) return PART_NONE;
     if (frame == 0) return PART_START;
     if (only_launched(a, b, frame)) return PART_LAUNCH;
+    if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
     if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
     if (parting->step < 0) return PART_ELSEWHERE;
     return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
@@ -52,14 +53,17 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
 bool trajectory_part(const Trajectory *a, const Trajectory *b, double tolerance, TrajectoryParting *parting,
                      Error *error) {
     int frames = a->frames < b->frames ? a->frames : b->frames;
-    *parting = (TrajectoryParting){.frames = frames};
+    *parting = (TrajectoryParting){.frames = frames, .poses_only = !trajectory_both_move(a, b)};
     parting->first = find_parted(a, b, 0, frames, 0);
     parting->beyond = parting->first;
     if (tolerance > 0 && parting->first.frame >= 0)
         parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
     int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
-    if (!find_step(a, b, last, parting, error)) return false;
+    bool contacts = !a->no_contacts && !b->no_contacts;
+    parting->step = -1;
+    if (contacts && !find_step(a, b, last, parting, error)) return false;
     parting->cause = find_cause(a, b, parting);
     const PartedBody *beyond = &parting->beyond;
-    return beyond->frame < 1 || contact_difference(a, b, beyond->frame, beyond->body, &parting->beyond_contacts, error);
+    return beyond->frame < 1 || !contacts ||
+           contact_difference(a, b, beyond->frame, beyond->body, &parting->beyond_contacts, error);
 }

@@ -26,13 +26,14 @@ bool contacts_differ(const ContactDifference *difference);
 
 /* The cause of the first difference in any bit. */
 typedef enum PartCause {
-    PART_NONE,     /* no state differs */
-    PART_START,    /* frame 0 differs */
-    PART_LAUNCH,   /* only bodies that did not exist before */
-    PART_HIDDEN,   /* contacts of an earlier step differ, but no state: `step` */
-    PART_CONTACTS, /* equal states, different contacts: collision detection */
-    PART_SOLVER,   /* equal states and contacts, different impulses */
-    PART_ELSEWHERE /* equal states, contacts and impulses */
+    PART_NONE,      /* no state differs */
+    PART_START,     /* frame 0 differs */
+    PART_LAUNCH,    /* only bodies that did not exist before */
+    PART_HIDDEN,    /* contacts of an earlier step differ, but no state: `step` */
+    PART_CONTACTS,  /* equal states, different contacts: collision detection */
+    PART_SOLVER,    /* equal states and contacts, different impulses */
+    PART_ELSEWHERE, /* equal states, contacts and impulses */
+    PART_UNKNOWN    /* equal states; one of the runs does not have its contacts */
 } PartCause;
 
 typedef struct PartedBody {
@@ -43,6 +44,7 @@ typedef struct PartedBody {
 
 typedef struct TrajectoryParting {
     int frames;                        /* that both have */
+    bool poses_only;                   /* the velocities of one or both are unknown */
     PartedBody first;                  /* any bit of pose or velocity */
     PartedBody beyond;                 /* distance above the tolerance, or in one run only */
     PartCause cause;                   /* of the first */

@@ -1,37 +1,106 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
+#include "common/file.h"
 #include "common/npz.h"
 #include "common/trace.h"
+#include "common/utf8.h"
+#include "trajectory/run_arrays.h"
 #include "trajectory/trajectory_arrays.h"
 
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static bool read_version(NpzFile *file, const char *path, Error *error) {
-    int32_t version = 0;
-    if (!npz_has(file, "version") || !npz_has(file, "position")) return error_input(error, path, "not a trajectory");
-    if (!npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error)) return false;
+    int32_t version = TRAJECTORY_VERSION;
+    if (!run_arrays_check(file, error)) return false;
+    if (npz_has(file, "version") && !npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error))
+        return false;
     return version == TRAJECTORY_VERSION ||
            error_input(error, path, "trajectory of version %d; expected version %d", (int)version, TRAJECTORY_VERSION);
 }
 
+/* The stem of the file's name, for a run without names. Bytes that a name must not have become '_'. */
+static void name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]) {
+    const char *file = path + file_folder_length(path), *ending = strrchr(file, '.');
+    size_t length = ending != NULL && ending > file ? (size_t)(ending - file) : strlen(file), used = 0;
+    for (size_t at = 0, width; at < length && used + 4 < TRAJECTORY_NAME_SIZE; at += width > 0 ? width : 1) {
+        uint32_t character;
+        width = utf8_decode(file + at, length - at, &character);
+        if (width == 0 || character < 0x20 || character == 0x7f)
+            name[used++] = '_';
+        else
+            for (size_t i = 0; i < width; i++) name[used++] = file[at + i];
+    }
+    name[used] = '\0';
+}
+
+static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    name_from_path(path, t->scene);
+    name_from_path(path, t->method);
+    return (!npz_has(file, "scene") || npz_read_name(file, "scene", t->scene, sizeof t->scene, error)) &&
+           (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error));
+}
+
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
-    int32_t bomb;
+    int32_t bomb = -1;
     const int64_t two_by_two[] = {2, 2};
-    if (!read_version(file, path, error) || !npz_read_name(file, "scene", t->scene, sizeof t->scene, error) ||
-        !npz_read_name(file, "method", t->method, sizeof t->method, error) ||
-        !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error) ||
+    if (!read_version(file, path, error) || !read_names(t, file, path, error) ||
+        (npz_has(file, "scene_hash") &&
+         !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error)) ||
         !npz_read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
-        !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
+        (npz_has(file, "bomb") && !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error)))
         return false;
     t->bomb = bomb;
+    if (!npz_has(file, "camera")) return true;
     Vec2 *camera = npz_read(file, "camera", NPZ_FLOAT32, 2, two_by_two, error);
     if (camera == NULL) return false;
     t->camera_center = camera[0];
     t->camera_size = camera[1];
     free(camera);
+    return true;
+}
+
+static bool never_moves(const Trajectory *t, int body) {
+    for (int frame = 0; frame < t->frames; frame++) {
+        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body, first = (size_t)body;
+        if (!trajectory_has(t, frame, body) || memcmp(&t->position[i], &t->position[first], sizeof(Vec2)) != 0 ||
+            memcmp(&t->angle[i], &t->angle[first], sizeof(float)) != 0)
+            return false;
+    }
+    return t->frames > 1;
+}
+
+void trajectory_guess_fixed(Trajectory *t) {
+    for (int body = 0; body < t->bodies; body++) t->fixed[body] = never_moves(t, body);
+}
+
+static bool read_fixed(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t per_body[] = {t->bodies};
+    if (npz_has(file, "fixed")) return (t->fixed = npz_read(file, "fixed", NPZ_UINT8, 1, per_body, error)) != NULL;
+    t->fixed = calloc((size_t)t->bodies + 1, sizeof *t->fixed);
+    if (t->fixed == NULL) return error_memory(error, path);
+    trajectory_guess_fixed(t);
+    return true;
+}
+
+/* Both, or NaN. */
+static bool read_velocities(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t vectors[] = {t->frames, t->bodies, 2};
+    t->no_velocities = !npz_has(file, "velocity");
+    if (!t->no_velocities)
+        return (t->velocity = npz_read(file, "velocity", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
+               (t->angular_velocity = npz_read(file, "angular_velocity", NPZ_FLOAT32, 2, vectors, error)) != NULL;
+    size_t poses = (size_t)t->frames * (size_t)t->bodies;
+    t->velocity = malloc((poses + 1) * sizeof *t->velocity);
+    t->angular_velocity = malloc((poses + 1) * sizeof *t->angular_velocity);
+    if (t->velocity == NULL || t->angular_velocity == NULL) return error_memory(error, path);
+    for (size_t i = 0; i < poses; i++) {
+        t->velocity[i] = vec2(NAN, NAN);
+        t->angular_velocity[i] = NAN;
+    }
     return true;
 }
 
@@ -47,11 +116,9 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
     t->bodies = (int)bodies;
     const int64_t vectors[] = {frames, bodies, 2}, per_body[] = {bodies, 2};
     return (t->size = npz_read(file, "size", NPZ_FLOAT32, 2, per_body, error)) != NULL &&
-           (t->fixed = npz_read(file, "fixed", NPZ_UINT8, 1, per_body, error)) != NULL &&
            (t->position = npz_read(file, "position", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
            (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
-           (t->velocity = npz_read(file, "velocity", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
-           (t->angular_velocity = npz_read(file, "angular_velocity", NPZ_FLOAT32, 2, vectors, error)) != NULL;
+           read_fixed(t, file, path, error) && read_velocities(t, file, path, error);
 }
 
 static bool read_contact_arrays(ContactArrays *arrays, NpzFile *file, int64_t count, Error *error) {
@@ -80,6 +147,11 @@ static bool join_contacts(Trajectory *t, const ContactArrays *arrays, size_t cou
 
 static bool read_contacts(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     int64_t shape[2], steps = (int64_t)t->frames + 1;
+    t->no_contacts = !npz_has(file, "contact_start");
+    if (t->no_contacts) {
+        t->contact_start = calloc((size_t)steps, sizeof *t->contact_start);
+        return t->contact_start != NULL || error_memory(error, path);
+    }
     if (!npz_shape(file, "contact_bodies", NPZ_INT32, 2, shape, error)) return false;
     t->contact_start = npz_read(file, "contact_start", NPZ_INT64, 1, &steps, error);
     if (t->contact_start == NULL) return false;
@@ -131,23 +203,24 @@ static bool check_presence(const Trajectory *t, int frame, int body, const char 
     return true;
 }
 
-/* Six finite numbers if the body exists, else six NaN. */
+/* Finite numbers if the body exists, else NaN. */
 static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
     size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
     const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
                            t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
+    const int count = t->no_velocities ? 3 : 6;
     int known = 0, missing = 0;
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < count; k++) {
         known += isfinite(state[k]) != 0;
         missing += isnan(state[k]) != 0;
     }
-    if (known != 6 && missing != 6)
-        return error_input(error, path, "frame %d, body %d: pose and velocity are not all finite", frame, body);
+    if (known != count && missing != count)
+        return error_input(error, path, "frame %d, body %d: %s are not all finite", frame, body,
+                           t->no_velocities ? "position and angle" : "pose and velocity");
     return check_presence(t, frame, body, path, error);
 }
 
 /* A step's contacts are of bodies that existed before it. */
-
 static bool check_contact(const Trajectory *t, int step, int64_t index, const char *path, Error *error) {
     const TrajectoryContact *contact = &t->contacts[index];
     if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies ||
@@ -174,6 +247,7 @@ static bool check(const Trajectory *t, const char *path, Error *error) {
 Trajectory *trajectory_read(const char *path, Error *error) {
     NpzFile *file = npz_open(path, error);
     if (file == NULL) return NULL;
+    npz_convert(file);
     Trajectory *t = calloc(1, sizeof *t);
     bool done = t != NULL || error_memory(error, path);
     done = done && read_head(t, file, path, error) && read_poses(t, file, path, error) &&

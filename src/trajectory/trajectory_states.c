@@ -13,14 +13,20 @@ double point_distance(Vec2 a, Vec2 b) {
     return sqrt(x * x + y * y);
 }
 
+bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
+
+static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, size_t k) {
+    return memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
+           memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0;
+}
+
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
     bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
     if (!in_a || !in_b) return in_a == in_b;
     size_t i = pose(a, frame, body), k = pose(b, frame, body);
     return memcmp(&a->position[i], &b->position[k], sizeof(Vec2)) == 0 &&
            memcmp(&a->angle[i], &b->angle[k], sizeof(float)) == 0 &&
-           memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
-           memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0;
+           (!trajectory_both_move(a, b) || same_velocity(a, i, b, k));
 }
 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
@@ -29,6 +35,7 @@ StateDifference trajectory_state_difference(const Trajectory *a, const Trajector
     size_t i = pose(a, frame, body), k = pose(b, frame, body);
     d.distance = point_distance(a->position[i], b->position[k]);
     d.angle = fabs((double)a->angle[i] - b->angle[k]);
+    if (!trajectory_both_move(a, b)) return d;
     d.speed = point_distance(a->velocity[i], b->velocity[k]);
     d.spin = fabs((double)a->angular_velocity[i] - b->angular_velocity[k]);
     return d;

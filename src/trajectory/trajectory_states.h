@@ -6,10 +6,13 @@
 /* m. Not hypot: square roots are the same on every machine, and squares of floats do not overflow a double. */
 double point_distance(Vec2 a, Vec2 b);
 
+/* True if the velocities of both are known; else only poses are compared. */
+bool trajectory_both_move(const Trajectory *a, const Trajectory *b);
+
 /* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. */
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body);
 
-/* Zeros unless the body exists in both. */
+/* Zeros unless the body exists in both; speed and spin are 0 if the velocities of one are unknown. */
 typedef struct StateDifference {
     bool in_a, in_b;
     double distance; /* m, between the two positions */

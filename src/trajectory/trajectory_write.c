@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 void contact_arrays_free(ContactArrays *arrays) {
     free(arrays->bodies);
@@ -37,11 +38,24 @@ static bool split_contacts(ContactArrays *arrays, const TrajectoryContact *conta
     return true;
 }
 
+static bool is_known(const Trajectory *t, const char *name) {
+    if (strcmp(name, "velocity") == 0 || strcmp(name, "angular_velocity") == 0) return !t->no_velocities;
+    return !t->no_contacts || strncmp(name, "contact_", strlen("contact_")) != 0;
+}
+
+/* Removes what is unknown; returns how many are left. */
+static size_t keep_known(const Trajectory *t, NpzArray *arrays, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (is_known(t, arrays[i].name)) arrays[kept++] = arrays[i];
+    return kept;
+}
+
 static bool write_arrays(const Trajectory *t, const ContactArrays *contact, const char *path, Error *error) {
     int64_t frames = t->frames, bodies = t->bodies, contacts = t->contact_start[t->frames];
     int32_t version = TRAJECTORY_VERSION, bomb = t->bomb;
     Vec2 camera[2] = {t->camera_center, t->camera_size};
-    const NpzArray arrays[] = {
+    NpzArray arrays[] = {
         {"version", NPZ_INT32, 0, {0}, &version},
         {"scene", NPZ_TEXT, 0, {0}, t->scene},
         {"method", NPZ_TEXT, 0, {0}, t->method},
@@ -62,7 +76,7 @@ static bool write_arrays(const Trajectory *t, const ContactArrays *contact, cons
         {"contact_normal", NPZ_FLOAT32, 2, {contacts, 2}, contact->normal},
         {"contact_impulse", NPZ_FLOAT32, 2, {contacts, 2}, contact->impulse},
     };
-    return npz_write(path, arrays, sizeof arrays / sizeof arrays[0], error);
+    return npz_write(path, arrays, keep_known(t, arrays, sizeof arrays / sizeof arrays[0]), error);
 }
 
 bool trajectory_write(const Trajectory *t, const char *path, Error *error) {

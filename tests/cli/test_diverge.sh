@@ -23,7 +23,7 @@ says "first difference: frame 5, body 1:"
 says "cause: the solver"
 says "all states of frame 4 are equal, and so are the 2 contacts of step 5, but the impulses of 2 differ"
 says "contact of bodies 0 and 1, feature 03020000"
-says "shifted run: give --scene FILE"
+says "shifted run: give --scene SCENE"
 grep -q "centres" out && fail "a distance is compared without --tolerance"
 
 run 1 diverge engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv

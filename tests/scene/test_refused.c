@@ -15,10 +15,11 @@ static const Refused keys[] = {
     {BASE GROUND "gravty: 1\n", "7:1: error: 'gravty' is not a key of a scene; did you mean 'gravity'?"},
     {BASE GROUND "colour: red\n", "7:1: error: 'colour' is not a key of a scene; known: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
-                                  "position_correction, frames, camera, bodies, bomb, networks, parameters"},
-    {BASE GROUND "\"a\\eb\": red\n", "7:2: error: 'a?b' is not a key of a scene; known: gravity, dt, iterations, "
-                                     "warm_starting, accumulate_impulses, "
-                                     "position_correction, frames, camera, bodies, bomb, networks, parameters"},
+                                  "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
+    {BASE GROUND "\"a\\eb\": red\n",
+     "7:2: error: 'a?b' is not a key of a scene; known: gravity, dt, iterations, "
+     "warm_starting, accumulate_impulses, "
+     "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
     {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is given twice"},
     {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: a key must be a word"},
@@ -179,7 +180,7 @@ static const Refused yaml[] = {
     {"a: !!float 1\n", "1:12: error: tags (!) are not allowed"},
     {BASE GROUND "<<: {dt: 1}\n", "7:1: error: '<<' is not a key of a scene; known: gravity, dt, iterations, "
                                   "warm_starting, accumulate_impulses, "
-                                  "position_correction, frames, camera, bodies, bomb, networks, parameters"},
+                                  "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
     {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed"},
     {BASE GROUND "---\n" BASE GROUND, "7:1: error: a file must hold one document only"},
     {"a: \"\\0\"\n", "1:5: error: a text must not contain the character \\0"},
@@ -238,13 +239,13 @@ static void excerpt_points_at_the_value(void **state) {
 
 static void excerpt_keeps_tabs_and_counts_characters(void **state) {
     (void)state;
-    expect_refused(
-        "{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
-        "1:3: error: '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80' is not a key of a scene; known: gravity, dt, "
-        "iterations, "
-        "warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, networks, parameters\n"
-        "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
-        "      |   ^");
+    expect_refused("{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+                   "1:3: error: '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80' is not a key of a scene; known: gravity, dt, "
+                   "iterations, "
+                   "warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, bodies, bomb, "
+                   "networks, parameters\n"
+                   "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+                   "      |   ^");
     expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
                                               "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
                                               "      |     \t ^");
@@ -293,7 +294,7 @@ static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
     expect_refused(
         "{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
         "1:10: error: 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...' is not a key of a scene; known: gravity, dt, "
-        "iterations, warm_starting, accumulate_impulses, position_correction, frames, camera, bodies, bomb, "
+        "iterations, warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, bodies, bomb, "
         "networks, parameters\n"
         "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
         "      |          ^");

@@ -165,7 +165,8 @@ static void rows_go_by_their_spacing(void **state) {
     (void)state;
     Scene *scene =
         good_scene(BASE GROUND "  - {pattern: row, count: 100, spacing: [0.3, -0.1], mass: 1, size: [1, 1],\n"
-                               "     position: [0.7, 2], angle: 0.5, velocity: [1, 2], spin: 3}\n");
+                               "     position: [0.7, 2], angle: 0.5, velocity: [1, 2], spin: 3}\n"
+                               "overlaps: allowed\n");
     assert_int_equal(scene->body_count, 101);
     for (int i = 0; i < 100; i++) {
         BodyDef box = unit_box(1, 0.7f + 0.3f * (float)i, 2 + -0.1f * (float)i);
@@ -242,7 +243,7 @@ static uint64_t hash_text(const char *text) {
 
 static uint64_t hash_of(const char *base, const char *body, const char *bomb) {
     char text[1024];
-    snprintf(text, sizeof text, "%sbodies:\n  - %s\n%s%s\n", base, body,
+    snprintf(text, sizeof text, "%soverlaps: allowed\nbodies:\n  - %s\n%s%s\n", base, body,
              bomb == NULL ? "" : "bomb: ", bomb == NULL ? "" : bomb);
     return hash_text(text);
 }

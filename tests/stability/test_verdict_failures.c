@@ -84,7 +84,7 @@ static void tunnelling_reports_the_speed(void **state) {
 static VerdictReading run_with_energy(double own, double converged, double available) {
     Trial trial;
     trial_begin(&trial);
-    trial.converged.available = available;
+    trial.converged.balance.available = available;
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 5;
     trial.energy[101] += converged;
     trial_go(&trial, 100);

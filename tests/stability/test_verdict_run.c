@@ -25,7 +25,7 @@ static void lost_energy_is_available(void **state) {
         else
             energy_log_step(&log, i, bodies, rows[i].count);
         assert_near(log.energy[i], rows[i].energy, 1e-6);
-        assert_near(log.available, rows[i].available, 1e-6);
+        assert_near(log.balance.available, rows[i].available, 1e-6);
     }
     energy_log_free(&log);
 }
@@ -44,21 +44,21 @@ static void the_height_of_a_stack_is_available(void **state) {
     bodies[11].position.y = 9.5f;
     bodies[12].position.y = -3;
     assert_ok(energy_log_begin(&log, vec2(0, -10), 3, bodies, 11, &error), error);
-    assert_near(log.available, 450, 1e-6);
+    assert_near(log.balance.available, 450, 1e-6);
     energy_log_step(&log, 1, bodies, 12);
-    assert_near(log.available, 630, 1e-6);
+    assert_near(log.balance.available, 630, 1e-6);
     energy_log_step(&log, 2, bodies, 13);
-    assert_near(log.available, 630, 1e-6);
+    assert_near(log.balance.available, 630, 1e-6);
     energy_log_step(&log, 3, bodies, 12);
-    assert_near(log.available, 630, 1e-6);
+    assert_near(log.balance.available, 630, 1e-6);
     /* Up is opposite to gravity: along -x here, 2 m/s^2. All boxes but one have the same height. */
     for (int i = 1; i < 11; i++) bodies[i].position = vec2(i == 4 ? -7.0f : 3.0f, (float)i);
     assert_ok(energy_log_begin(&log, vec2(2, 0), 3, bodies, 11, &error), error);
-    assert_near(log.available, 20, 1e-6);
+    assert_near(log.balance.available, 20, 1e-6);
     /* Without dynamic bodies at the start, the first one added is the lowest. */
     assert_ok(energy_log_begin(&log, vec2(0, -10), 3, bodies, 1, &error), error);
     energy_log_step(&log, 1, bodies, 2);
-    assert_near(log.available, 0, 0);
+    assert_near(log.balance.available, 0, 0);
     energy_log_free(&log);
 }
 
@@ -106,8 +106,8 @@ static void a_stack_of_two_settles(void **state) {
     const Scene scene = scene_of(bodies, 3, 1500);
     EnergyLog converged = {0};
     converge(&converged, &scene);
-    assert_near(converged.available, 10, 1e-5);
-    assert_true(converged.level - converged.energy[1500] < 0.3);
+    assert_near(converged.balance.available, 10, 1e-5);
+    assert_true(converged.balance.level - converged.energy[1500] < 0.3);
     VerdictReading reading = judge(&scene, true, &converged);
     assert_verdict(reading, VERDICT_SETTLES);
     assert_true(reading.frame < 60);
@@ -138,7 +138,7 @@ static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
     assert_verdict(judge(&scene, false, &converged), VERDICT_SETTLES);
     /* It starts at 1.5 m with 2 m/s and ends 0.625 m above the centre: 8.75 + 2 J. It penetrates by less than a step at
        its 4.6 m/s: at most 0.8 J more. */
-    assert_near(converged.available, 10.75 + 0.4, 0.4);
+    assert_near(converged.balance.available, 10.75 + 0.4, 0.4);
     energy_log_free(&converged);
 }
 

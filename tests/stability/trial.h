@@ -31,8 +31,12 @@ static inline void trial_begin(Trial *trial) {
     trial->contact_count = 1;
     trial->contacts[0] = (ContactPoint){.a = 0, .b = 1, .separation = -0.01f};
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial->energy[i] = 1e12;
-    trial->converged = (EnergyLog){.frames = TRIAL_FRAMES, .energy = trial->energy, .available = 100};
-    trial->run = (VerdictRun){{0, -10}, 1.0f / 60.0f, TRIAL_FRAMES, true, &trial->converged};
+    trial->converged = (EnergyLog){.frames = TRIAL_FRAMES, .energy = trial->energy, .balance = {.available = 100}};
+    trial->run = (VerdictRun){.gravity = {0, -10},
+                              .dt = 1.0f / 60.0f,
+                              .frames = TRIAL_FRAMES,
+                              .stands = true,
+                              .converged = &trial->converged};
 }
 
 /* Steps up to a frame without moving the bodies; the first call begins the watch. */

@@ -88,10 +88,9 @@ static void expect_refused(const char *change, const char *reason) {
 static void what_does_not_fit_is_refused(void **state) {
     (void)state;
     expect_refused("arrays['version'] = np.int32(2)", "run.npz: error: trajectory of version 2; expected version 1");
-    expect_refused("del arrays['version']", "not a trajectory");
     expect_refused("del arrays['angle']", "has no array 'angle'");
     expect_refused("arrays['angle'] = n((3, 2), 'f4')", "array 'angle' has shape (3, 2); expected (3, 1)");
-    expect_refused("arrays['size'] = n((1, 2))", "array 'size' is float64 of 2 dimensions; expected float32 of 2");
+    expect_refused("arrays['size'] = n((1, 2))", "body 0: its size must be finite");
     expect_refused("arrays['position'] = n((3, 1, 3), 'f4')",
                    "array 'position' has shape (3, 1, 3); expected (3, 1, 2)");
     expect_refused("arrays['position'] = n((0, 1, 2), 'f4')", "0 frames of 1 bodies");

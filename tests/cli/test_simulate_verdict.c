@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which failures of a run are verdicts. */
+#include "testing.h"
+
+#include "cli/simulate_verdict.h"
+#include "common/file.h"
+
+/* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
+static void a_run_that_overflows_has_a_verdict(void **state) {
+    (void)state;
+    Error error = {0};
+    BodyDef body = {.size = {1, 1}, .mass = 1, .position = {0, 1}, .velocity = {3e38f, 0}};
+    const Scene scene = {.name = "fast",
+                         .gravity = {0, -10},
+                         .dt = 1.0f / 60.0f,
+                         .iterations = 10,
+                         .frames = 100,
+                         .body_count = 1,
+                         .bodies = &body};
+    Method method;
+    SimulateVerdict verdict;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
+    const StepObserver observer = simulate_verdict_observer(&verdict);
+    assert_false(simulate_observed(&scene, &method, &observer, &error));
+    assert_error(error, ERROR_INPUT, "is NaN or infinite");
+    assert_true(simulate_verdict_end(&verdict, &error));
+    assert_int_equal(verdict.reading.verdict, VERDICT_NON_FINITE);
+    assert_int_equal(verdict.reading.frame, 69);
+    Error other = {0};
+    size_t size;
+    assert_ok(simulate_verdict_write(&verdict, temporary_path("v.json"), &other), other);
+    char *text = file_read(temporary_path("v.json"), 10000, &size, &other);
+    assert_ok(text != NULL, other);
+    assert_non_null(strstr(text, "\"verdict\": \"non-finite\""));
+    assert_non_null(strstr(text, "\"frame\": 69"));
+    assert_non_null(strstr(text, "\"steps\": 69"));
+    free(text);
+    simulate_verdict_free(&verdict);
+}
+
+static void other_failures_have_none(void **state) {
+    (void)state;
+    Error error = {0};
+    const Scene scene = {.name = "empty", .dt = 1.0f / 60.0f, .frames = 1};
+    SimulateVerdict verdict;
+    assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
+    error_input(&error, "empty", "stopped after step 1 of 10");
+    assert_false(simulate_verdict_end(&verdict, &error));
+    simulate_verdict_free(&verdict);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_run_that_overflows_has_a_verdict),
+                                       cmocka_unit_test(other_failures_have_none)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs of other programs: position, angle, size and dt are enough; what is absent has a meaning; wrong names are named. */
+#include "testing.h"
+
+#include "example.h"
+#include "python.h"
+
+#include <math.h>
+
+/* A ground, a box that falls, and one that comes in frame 1, in NumPy's default types. */
+#define MAKE                                                                                    \
+    "import sys, numpy as np\n"                                                                 \
+    "a = dict(position=np.zeros((3, 3, 2)), angle=np.zeros((3, 3)), size=np.full((3, 2), 2),\n" \
+    "         dt=1 / 60)\n"                                                                     \
+    "a['position'][:, 1, 1] = 3, 2, 1\n"                                                        \
+    "a['position'][0, 2] = a['angle'][0, 2] = np.nan\n"
+#define SAVE "np.savez(sys.argv[1], **a)\n"
+
+static const char *make(const char *name, const char *change) {
+    const char *path = temporary_path(name);
+    char program[2048];
+    snprintf(program, sizeof program, MAKE "%s\n" SAVE, change);
+    run_python(program, path);
+    return path;
+}
+
+static Trajectory *read_changed(const char *name, const char *change) {
+    Error error = {0};
+    Trajectory *t = trajectory_read(make(name, change), &error);
+    assert_ok(t != NULL, error);
+    return t;
+}
+
+static void four_arrays_are_enough(void **state) {
+    (void)state;
+    Trajectory *t = read_changed("v\303\266lker.2.npz", "");
+    assert_string_equal(t->scene, "v\303\266lker.2");
+    assert_string_equal(t->method, "v\303\266lker.2");
+    assert_true(t->scene_hash == 0 && t->bomb == -1 && t->camera_size.x == 0 && t->camera_size.y == 0);
+    assert_true(t->frames == 3 && t->bodies == 3 && t->dt == (float)(1.0 / 60));
+    assert_true(t->size[2].x == 2 && t->position[4].y == 2);
+    assert_true(t->no_velocities && isnan(t->velocity[4].x) && isnan(t->angular_velocity[4]));
+    assert_true(t->no_contacts && t->contact_start[3] == 0);
+    /* The third never moves either, but it comes late. */
+    assert_memory_equal(t->fixed, ((const uint8_t[]){1, 0, 0}), 3);
+    trajectory_destroy(t);
+}
+
+static void what_never_moves_is_static_unless_it_is_stated(void **state) {
+    (void)state;
+    Trajectory *t = read_changed("run.npz", "a['fixed'] = np.array([False, True, False])");
+    assert_memory_equal(t->fixed, ((const uint8_t[]){0, 1, 0}), 3);
+    trajectory_destroy(t);
+    t = read_changed("run.npz", "a['angle'][:, 0] = 0, 0.1, 0");
+    assert_int_equal(t->fixed[0], 0);
+    trajectory_destroy(t);
+    t = read_changed("run.npz", "a['position'] = a['position'][1:2]; a['angle'] = a['angle'][1:2]");
+    assert_memory_equal(t->fixed, ((const uint8_t[]){0, 0, 0}), 3);
+    trajectory_destroy(t);
+}
+
+static void types_and_orders_are_converted(void **state) {
+    (void)state;
+    Trajectory *t = read_changed("run.npz", "a['position'] = np.asfortranarray(a['position'].astype('>f8'))\n"
+                                            "a.update(bomb=[1], fixed=[1., 0., 0.], camera=[[0, 1], [8, 9]],\n"
+                                            "         scene_hash=7, version=np.int64(1))");
+    assert_true(t->position[1].y == 3 && t->position[4].y == 2 && t->position[7].y == 1 && t->position[7].x == 0);
+    assert_true(t->bomb == 1 && t->scene_hash == 7 && t->camera_center.y == 1 && t->camera_size.x == 8);
+    trajectory_destroy(t);
+}
+
+static void long_and_strange_names_of_files_become_names(void **state) {
+    (void)state;
+    char name[200];
+    memset(name, 'x', sizeof name);
+    strcpy(name + 150, ".npz");
+    Trajectory *t = read_changed(name, "");
+    assert_true(strlen(t->scene) >= 120 && strlen(t->scene) < TRAJECTORY_NAME_SIZE);
+    trajectory_destroy(t);
+    t = read_changed("a\377b.npz", "");
+    assert_string_equal(t->scene, "a_b");
+    trajectory_destroy(t);
+}
+
+static void a_run_without_velocities_is_written_without(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = temporary_path("again.npz");
+    Trajectory *t = read_changed("run.npz", "");
+    assert_ok(trajectory_write(t, path, &error), error);
+    run_python("import sys, numpy as np\n"
+               "f = np.load(sys.argv[1])\n"
+               "assert f.files == 'version scene method scene_hash dt bomb camera size fixed position angle'.split()\n",
+               path);
+    Trajectory *again = trajectory_read(path, &error);
+    assert_ok(again != NULL, error);
+    assert_true(again->no_velocities && again->no_contacts);
+    assert_string_equal(again->scene, "run");
+    TrajectoryDifference difference;
+    trajectory_compare(t, again, &difference);
+    assert_true(difference.equal && difference.poses_only);
+    trajectory_destroy(again);
+    trajectory_destroy(t);
+}
+
+/* Unknown velocities are neither equal to known ones nor different from them. */
+static void only_poses_are_compared_with_a_run_without_velocities(void **state) {
+    (void)state;
+    Trajectory *t = read_changed("run.npz", ""),
+               *moving = read_changed("run.npz", "a['velocity'] = a['position'] * 0 + 1\n"
+                                                 "a['angular_velocity'] = a['angle'] * 0");
+    assert_false(moving->no_velocities);
+    TrajectoryDifference difference;
+    trajectory_compare(t, moving, &difference);
+    assert_true(difference.equal && difference.poses_only);
+    moving->angle[4] = 0.5F;
+    trajectory_compare(moving, t, &difference);
+    assert_true(!difference.equal && difference.frame == 1 && difference.body == 1);
+    assert_true(difference.angle == 0.5 && difference.speed == 0);
+    trajectory_destroy(moving);
+    trajectory_destroy(t);
+}
+
+static void expect_refused(const char *change, const char *reason) {
+    Error error = {0};
+    Trajectory *t = trajectory_read(make("run.npz", change), &error);
+    if (t != NULL) fail_msg("taken: %s", change);
+    assert_error(error, ERROR_INPUT, "run.npz: error: ");
+    assert_error(error, ERROR_INPUT, reason);
+}
+
+#define RENAME(from, to) "a['" to "'] = a.pop('" from "')"
+
+static void wrong_names_are_suggested(void **state) {
+    (void)state;
+    expect_refused(RENAME("position", "positions"),
+                   "unknown array 'positions': did you mean 'position'? Rename or remove it");
+    expect_refused(RENAME("position", "pos"), "unknown array 'pos': did you mean 'position'?");
+    expect_refused(RENAME("angle", "rotation"), "unknown array 'rotation': did you mean 'angle'?");
+    expect_refused(RENAME("angle", "theta"), "did you mean 'angle'?");
+    expect_refused(RENAME("size", "sizes"), "did you mean 'size'?");
+    expect_refused(RENAME("size", "Size"), "did you mean 'size'?");
+    expect_refused(RENAME("dt", "timestep"), "did you mean 'dt'?");
+    expect_refused("a['static'] = [1, 0, 0]", "unknown array 'static': did you mean 'fixed'?");
+    expect_refused("a['velocities'] = a['position']", "did you mean 'velocity'?");
+    expect_refused("a['omega'] = a['angle']", "did you mean 'angular_velocity'?");
+}
+
+/* A near name is no mistake where the right one is there, and a far one is none at all. */
+static void other_arrays_are_ignored(void **state) {
+    (void)state;
+    Trajectory *t = read_changed("run.npz", "a.update(sizes=[1], mass=[1, 2, 3], box=1, time=[0, 1], colour='red',\n"
+                                            "         friction=0.5, names='a b', kind=[1, 2, 3])");
+    assert_int_equal(t->bodies, 3);
+    trajectory_destroy(t);
+}
+
+static void what_is_needed_is_told(void **state) {
+    (void)state;
+    expect_refused("del a['position']", "has no array 'position'; a trajectory needs position, angle, size and dt");
+    expect_refused("del a['angle']", "error: has no array 'angle'");
+    expect_refused("del a['size']", "error: has no array 'size'");
+    expect_refused("del a['dt']", "error: has no array 'dt'");
+    expect_refused("a = dict(x=1)", "not a trajectory: has no array 'position'");
+    expect_refused("a['kind'] = 'dataset'", "not a trajectory but a file of kind 'dataset'");
+    expect_refused("a['velocity'] = a['position']",
+                   "has 'velocity' but not 'angular_velocity'; give both, or none of the two");
+    expect_refused("a['contact_start'] = np.zeros(4)", "has 'contact_start' but not 'contact_bodies'");
+    expect_refused("a['contact_point'] = np.zeros((0, 2))", "give both, or none of the six contact arrays");
+    expect_refused("a['version'] = 2", "trajectory of version 2; expected version 1");
+}
+
+static void values_are_checked_as_ever(void **state) {
+    (void)state;
+    expect_refused("a['position'][1, 1, 0] = 1e39", "array 'position': item [1, 1, 0] is 9.99");
+    expect_refused("a['position'][1, 1, 0] = np.nan", "frame 1, body 1: position and angle are not all finite");
+    expect_refused("a['angle'][2, 0] = np.inf", "frame 2, body 0: position and angle are not all finite");
+    expect_refused("a['position'][1] = a['angle'][1] = np.nan", "frame 2, body 0: a removed body must not reappear");
+    expect_refused("a['position'] = a['position'][:, :, :1]",
+                   "array 'position' has shape (3, 3, 1); expected (3, 3, 2)");
+    expect_refused("a['position'] = a['position'][0]",
+                   "array 'position' is float64 of 2 dimensions; expected float32 of 3");
+    expect_refused("a['fixed'] = [0, 0, 2]", "body 2: 'fixed' must be 0 or 1 (got 2)");
+    expect_refused("a['fixed'] = [0, 0, 0.5]", "array 'fixed': item [2] is 0.5, which does not fit into uint8");
+    expect_refused("a['size'][0] = 0", "body 0: its size must be finite and greater than 0 (got 0 x 0)");
+    expect_refused("a['bomb'] = 3", "the bomb is body 3 of 3");
+    expect_refused("a['dt'] = 1e-50", "dt must be finite and greater than 0");
+    expect_refused("a['scene'] = 5", "array 'scene' is int64 of 0 dimensions; expected text of 0");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(four_arrays_are_enough),
+        cmocka_unit_test(what_never_moves_is_static_unless_it_is_stated),
+        cmocka_unit_test(types_and_orders_are_converted),
+        cmocka_unit_test(long_and_strange_names_of_files_become_names),
+        cmocka_unit_test(a_run_without_velocities_is_written_without),
+        cmocka_unit_test(only_poses_are_compared_with_a_run_without_velocities),
+        cmocka_unit_test(wrong_names_are_suggested),
+        cmocka_unit_test(other_arrays_are_ignored),
+        cmocka_unit_test(what_is_needed_is_told),
+        cmocka_unit_test(values_are_checked_as_ever),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
