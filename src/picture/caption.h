@@ -5,12 +5,13 @@
 #include "picture/picture.h"
 #include "picture/text_lines.h"
 
-/* The title, on up to TEXT_LINES_MAX lines, and the slow motion; at the right the frame, the simulated time and, for two panels, their distance. */
+/* The title, on up to TEXT_LINES_MAX lines, and the slow motion; at the right the frame, the simulated time and, for two
+   panels, their distance. */
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing);
 
 /* Above a panel, its method and, if there are more than two runs, its distance from the first run. What does not fit is
-   shortened or left out in this order: the description, the label of the distance, the number of bodies out of view, the
-   distance, the end of the name. */
+   shortened or left out in this order: the description, the label of the distance, the number of bodies out of view (which
+   then stands in the panel), the distance, the end of the name. */
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
 /* The title in the header: its first line beside the numbers at the right, in any frame. */

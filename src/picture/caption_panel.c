@@ -160,6 +160,14 @@ static const char *distance_label(const Picture *picture) {
     return "distance ";
 }
 
+/* In the panel's upper right corner, where the line above it has no room: what cannot be seen must be stated. */
+static void draw_state_inside(const Picture *picture, const Rect *panel, const char *text, Drawing *drawing) {
+    const Font *font = &picture->layout.axis;
+    const int inset = font->pixels / 2;
+    font_add(drawing, font, text, panel->right - inset - font_width(font, text), panel->top + inset + font->pixels,
+             picture->theme->ink_soft);
+}
+
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *rect = &layout->panels[panel];
@@ -188,7 +196,8 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
         right -= font_width(font, text);
         font_add(drawing, font, text, right, baseline, picture->theme->ink_soft);
         right -= gap;
-    }
+    } else if (text[0] != '\0')
+        draw_state_inside(picture, rect, text, drawing);
     const int end = draw_name(picture, run, rect->left, baseline, right - rect->left, drawing);
     draw_notes(picture, run, end + gap, right, baseline, drawing);
 }
