@@ -6,6 +6,8 @@
 #include <stddef.h>
 
 #define COMMANDS(COMMAND)                                                          \
+    COMMAND(new, "write a commented scene to start from")                          \
+    COMMAND(check, "validate a scene and draw its first frame")                    \
     COMMAND(simulate, "run a scene with one method and store the trajectory")      \
     COMMAND(render, "draw runs side by side as PNG frames and videos")             \
     COMMAND(compare, "compare two trajectories or two PNG sequences")              \

@@ -4,11 +4,9 @@
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
 #include "common/text_add.h"
-#include "render/sink.h"
 #include "render/video.h"
 #include "simulate/method.h"
 
-#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,32 +73,24 @@ static bool write_output(VideoOptions *video, const Progress *progress, Error *e
     return ok;
 }
 
-static bool encode(const char *path, const Panels *panels, const RenderOptions *render, const RenderResult *result,
-                   Error *error) {
+static bool encode(const char *path, const RenderOptions *render, const RenderResult *result, Error *error) {
     VideoOptions video = {.directory = render->directory,
                           .first = result->first,
                           .last = result->last,
-                          .frame_rate = 1 / (double)panels->runs[0]->dt,
+                          .frame_rate = result->rate,
                           .hashes = result->hashes,
-                          .path = path};
+                          .path = path,
+                          .rate_is_chosen = render->fps > 0};
     const Progress *progress = progress_bar_begin(is_output(path) ? "writing" : "encoding");
     bool ok = is_output(path) ? write_output(&video, progress, error) : video_encode(&video, progress, error);
     progress_bar_end();
     return ok;
 }
 
-/* Frames of an earlier, longer run would look like frames of this one. */
-static void remove_stale_frames(const RenderOptions *render, int last) {
-    char path[PATH_MAX];
-    for (int frame = last + 1; sink_frame_path(path, sizeof path, render->directory, frame); frame++)
-        if (unlink(path) != 0) return;
-}
-
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderResult *result,
                  Error *error) {
     bool ok = draw(panels, render, result, error);
-    if (ok && result->all) remove_stale_frames(render, result->last);
-    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], panels, render, result, error);
+    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
     free(result->hashes);
     result->hashes = NULL;
     return ok;

@@ -21,7 +21,6 @@ int panels_last_frame(const Panels *panels);
 bool draw_videos_check(const DrawVideos *videos, int width, int height, Error *error);
 bool draw_videos_use_output(const DrawVideos *videos);
 
-/* Draws the frames that `render` selects and encodes the videos. If that is the whole run, frames of an earlier, longer
-   run are removed. `result` owns no memory afterwards. */
+/* Draws the frames that `render` selects and encodes the videos. `result` owns no memory afterwards. */
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderResult *result,
                  Error *error);

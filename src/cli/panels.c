@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/panels.h"
 
+#include "cli/notes.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "scene/launch.h"
 #include "simulate/simulate.h"
 #include "trajectory/trajectory_name.h"
 #include "type/type_check.h"
@@ -20,6 +22,7 @@ static bool add(Panels *panels, Trajectory *run, const char *input, Error *error
         trajectory_destroy(run);
         return error_input(error, input, "more than %d panels", RENDER_PANELS_MAX);
     }
+    panels->inputs[panels->count] = input;
     panels->runs[panels->count++] = run;
     return true;
 }
@@ -34,11 +37,37 @@ bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name,
     return add(panels, run, input, error);
 }
 
+/* Why a scene has one panel, and the commands that give it a second one. */
+static void note_engine_only(const char *input, const Scene *scene) {
+    char method[2 * SCENE_NAME_SIZE] = "scene-net:network=net.npz", train[1024] = "";
+    const char *lacks = "no network";
+    if (scene->network_count > 0) {
+        lacks = "no pair-net";
+        snprintf(method, sizeof method, "%s", scene->networks[0].method);
+    } else if (scene->bomb.present && scene_span_varies(&scene->bomb.x)) {
+        snprintf(train, sizeof train, "    twinbox train --kind scene-net %s -o net.npz\n", input);
+    } else {
+        note_print(
+            "%s names no network, so only the engine is drawn; to train one for it, give it a bomb with a family of "
+            "launches, x: {from: A, to: B}",
+            input);
+        return;
+    }
+    note_print("%s names %s, so only the engine is drawn. To %sdraw a network beside it:\n%s"
+               "    twinbox simulate %s -o engine.npz\n"
+               "    twinbox simulate %s --method %s -o network.npz\n"
+               "    twinbox render engine.npz network.npz -o DIR",
+               input, lacks, train[0] != '\0' ? "train and " : "", train, input, input, method);
+}
+
 static bool add_scene(Panels *panels, const char *input, const SceneSettings *set, Error *error) {
     Scene *scene = scene_read_with(input, set->items, set->count, error);
     bool ok =
         scene != NULL && type_check(scene->name, input, error) && panels_add_run(panels, scene, "engine", input, error);
-    if (ok && scene_network(scene, "pair-net") != NULL) ok = panels_add_run(panels, scene, "pair-net", input, error);
+    if (ok && scene_network(scene, "pair-net") != NULL)
+        ok = panels_add_run(panels, scene, "pair-net", input, error);
+    else if (ok)
+        note_engine_only(input, scene);
     scene_destroy(scene);
     return ok;
 }

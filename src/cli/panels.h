@@ -10,6 +10,7 @@
 typedef struct Panels {
     int count;
     Trajectory *runs[RENDER_PANELS_MAX];
+    const char *inputs[RENDER_PANELS_MAX]; /* the file of each run, or its scene's */
 } Panels;
 
 /* Settings need exactly one scene among the inputs. After an error, panels_free frees what was loaded before it. */

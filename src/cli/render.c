@@ -4,9 +4,11 @@
 #include "cli/draw_panels.h"
 #include "cli/options.h"
 #include "cli/panel_costs.h"
+#include "cli/picture_notes.h"
 #include "common/file.h"
 #include "picture/caption_check.h"
 #include "picture/picture.h"
+#include "render/moments.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -32,6 +34,13 @@ static const Option option_table[] = {
      OPTION_READ(read_frames, Options, render)},
     {"--slow", 0, "K", "K times slower around the bomb's impact, 2 to 16, with poses interpolated between frames",
      OPTION_INT(Options, render.slow, 2, RENDER_SLOW_MAX)},
+    {"--fps", 0, "N",
+     "Pictures per second, 1 to 240, in real time: frames are left out, or poses interpolated between them (default: "
+     "every "
+     "frame of the run)",
+     OPTION_DOUBLE(Options, render.fps, RENDER_FPS_MIN, RENDER_FPS_MAX)},
+    {"--duration", 0, "SECONDS", "Length of the film with its cards; the run is shown faster or slower to fit",
+     OPTION_DOUBLE(Options, render.duration, RENDER_DURATION_MIN, RENDER_DURATION_MAX)},
     {"--hold", 0, "SECONDS", "Hold the last frame for this long",
      OPTION_DOUBLE(Options, render.hold, 0, RENDER_HOLD_MAX)},
     {"--title", 0, "TEXT", "Begin with a title card of two seconds", OPTION_TEXT(Options, render.title)},
@@ -151,23 +160,36 @@ static void print_result(const Options *options, const RenderResult *result) {
     for (int i = 0; i < options->videos.count; i++) fprintf(out, "video -> %s\n", options->videos.paths[i]);
 }
 
+/* Before anything is written. */
+static bool check_moments(const RenderOptions *render, const Panels *panels, Error *error) {
+    const int end = panels_last_frame(panels), last = render->last < 0 ? end : render->last;
+    const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
+    MomentPlan plan;
+    if (render->first > end || last > end)
+        return error_input(error, "--frames", "%d is beyond the last frame, %d",
+                           render->first > end ? render->first : last, end);
+    if (!moments_plan(&plan, runs, panels->count, render->first, last, render, error)) return false;
+    if (render->slow > 1) note_missing_impact(&plan, moments_impact(runs, panels->count));
+    note_different_scenes(runs, panels->count);
+    return true;
+}
+
 static bool render_panels(Options *options, const Panels *panels, Error *error) {
     RenderOptions *render = &options->render;
-    const int last = panels_last_frame(panels);
+    const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PanelCosts costs;
     RenderResult result;
-    if (render->first > last || render->last > last)
-        return error_input(error, "--frames", "%d is beyond the last frame, %d",
-                           render->first > last ? render->first : render->last, last);
     if (options->caption_count > panels->count)
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
                            panels->count == 1 ? "" : "s");
-    if ((options->costs != NULL && !panel_costs_read(&costs, options->costs, panels, &render->look, error)) ||
-        !picture_check((const Trajectory *const *)panels->runs, panels->count, render, error) ||
-        !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+    if (!check_moments(render, panels, error) ||
+        (options->costs != NULL && !panel_costs_read(&costs, options->costs, panels, &render->look, error)) ||
+        !picture_check(runs, panels->count, render, error) || !file_make_directory(render->directory, error) ||
+        !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, &options->videos, &result, error))
         return false;
     print_result(options, &result);
+    note_foreign_files(render->directory, &result, panels);
     return true;
 }
 

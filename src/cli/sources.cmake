@@ -14,3 +14,7 @@ install(CODE "set(zsh_folder site-functions)
               endif()
               file(INSTALL ${completion_folder}/_twinbox
                    DESTINATION \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${zsh_folder})")
+
+# The scenes that `twinbox new` writes, so that it works from any folder.
+twinbox_embed(twinbox_cli templates.c cli/templates.h char template_ ${PROJECT_SOURCE_DIR}/scenes/templates
+              wall.yaml stack.yaml pyramid.yaml arch.yaml dominoes.yaml)

@@ -192,6 +192,19 @@ bool file_write(const char *path, const void *data, size_t size, Error *error) {
     return finish(put(path, data, size, true), path, size, error);
 }
 
+bool file_create(const char *path, const void *data, size_t size, Error *error) {
+    char name[PATH_MAX];
+    int file = create_beside(AT_FDCWD, path, name, sizeof name);
+    if (file < 0) return finish(false, path, size, error);
+    /* A link, unlike a renamed file, does not replace what is there. */
+    bool done = close_after(file, write_all(file, data, size) && fsync(file) == 0) && link(name, path) == 0;
+    int cause = errno;
+    unlink(name);
+    errno = cause;
+    if (!done && errno == EEXIST) return error_input(error, path, "exists already, and is not overwritten");
+    return finish(done && sync_folder(AT_FDCWD, path), path, size, error);
+}
+
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
     return finish(replace(folder, name, data, size, true), path, size, error);
 }

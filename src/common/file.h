@@ -17,8 +17,11 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
-/* The same for a file `name` of the open directory `folder`, without following links: file_read_at() refuses one,
-   file_write_at() replaces it. `path` is used in messages. */
+/* Writes a new file, whole or not at all. ERROR_INPUT if there is one of that name. */
+bool file_create(const char *path, const void *data, size_t size, Error *error);
+
+/* file_read() and file_write() for a file `name` of the open directory `folder`, without following links:
+   file_read_at() refuses one, file_write_at() replaces it. `path` is used in messages. */
 char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error);
 

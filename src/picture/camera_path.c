@@ -113,9 +113,9 @@ Camera *camera_path(const Trajectory *const *runs, int frames, LookCamera kind, 
 }
 
 Camera camera_at(const Camera *path, int frames, Moment moment, int width, int height) {
-    if (!(moment.fraction > 0) || moment.frame + 1 >= frames) return path[moment.frame];
+    if (moment.part == 0 || moment.frame + 1 >= frames) return path[moment.frame];
     View a = view_of(&path[moment.frame], width, height), b = view_of(&path[moment.frame + 1], width, height);
-    View between = {a.x + moment.fraction * (b.x - a.x), a.y + moment.fraction * (b.y - a.y),
-                    a.size + moment.fraction * (b.size - a.size)};
+    const double fraction = moment_fraction(moment);
+    View between = {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y), a.size + fraction * (b.size - a.size)};
     return camera_of(&between, width, height);
 }

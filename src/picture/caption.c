@@ -4,6 +4,7 @@
 #include "common/utf8.h"
 #include "picture/caption_item.h"
 
+#include <math.h>
 #include <stdio.h>
 
 void caption_title(const Picture *picture, char title[CAPTION_SIZE]) {
@@ -16,12 +17,25 @@ void caption_title(const Picture *picture, char title[CAPTION_SIZE]) {
 
 bool caption_is_pair(const Picture *picture) { return picture->count == 2 && picture->panel_count == 2; }
 
+/* "slow motion 1/4, interpolated poses"; false in real time without interpolation. A film of a given length may differ
+   from real time by half a picture. */
+static bool describe_speed(Moment moment, char *text, size_t size) {
+    const double least = 0.01;
+    char speed[48] = "";
+    if (moment.slow > 1 + least)
+        snprintf(speed, sizeof speed, moment.slow == rint(moment.slow) ? "slow motion 1/%.3g" : "%.3g times slower",
+                 moment.slow);
+    if (moment.slow < 1 - least) snprintf(speed, sizeof speed, "%.3g times faster", 1 / moment.slow);
+    snprintf(text, size, "%s%s%s", speed, speed[0] != '\0' && moment.parts > 1 ? ", " : "",
+             moment.parts > 1 ? "interpolated poses" : "");
+    return text[0] != '\0';
+}
+
 /* Shown during the whole slow motion, also in stored frames: otherwise the text would flicker. */
 static void draw_slow(const Picture *picture, Moment moment, int x, int right, int baseline, Drawing *drawing) {
     const Layout *layout = &picture->layout;
-    char text[64];
-    if (moment.slow <= 1) return;
-    snprintf(text, sizeof text, "slow motion 1/%d, interpolated poses", moment.slow);
+    char text[96];
+    if (!describe_speed(moment, text, sizeof text)) return;
     x += layout->status.pixels;
     font_add_fitting(drawing, &layout->status, text, x, baseline, right - x, picture->theme->ink_soft);
 }

@@ -56,7 +56,7 @@ CaptionItem caption_time_item(const Picture *picture, Moment moment) {
     CaptionItem item = {.label = "t = ", .unit = " s"};
     double dt = (double)picture->runs[0]->dt;
     char text[64], longest[64];
-    snprintf(text, sizeof text, "%.3f", (moment.frame + moment.fraction) * dt);
+    snprintf(text, sizeof text, "%.3f", (moment.frame + moment_fraction(moment)) * dt);
     snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
     pad(item.number, sizeof item.number, text, longest);
     return item;

@@ -86,7 +86,7 @@ static void draw_trail(const Picture *picture, int panel, int run, Moment moment
     for (int frame = first, end; frame <= moment.frame; frame = end) {
         end = segment_end(trajectory, moment, body, frame, TOLERANCE / picture->camera.scale);
         Pose a = trail_pose(trajectory, moment, body, frame), b = trail_pose(trajectory, moment, body, end);
-        double age = fmin(1, (moment.frame + moment.fraction - frame) / length);
+        double age = fmin(1, (moment.frame + moment_fraction(moment) - frame) / length);
         Point from = panel_point(picture, panel, a.x, a.y), to = panel_point(picture, panel, b.x, b.y);
         stroke_line(drawing, from, to, marks_line_thickness(picture),
                     theme_mix(theme->panel, color, 1 - (1 - OLDEST_OPACITY) * age), &picture->layout.panels[panel]);

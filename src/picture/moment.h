@@ -12,9 +12,14 @@ typedef enum MomentKind {
 
 typedef struct Moment {
     MomentKind kind;
-    int frame;       /* the frame shown, or the one before */
-    double fraction; /* MOMENT_BETWEEN: position between this frame and the next, 0 < fraction < 1; otherwise 0 */
-    int slow;        /* slow-motion factor; 1: real time */
+    int frame; /* the frame shown, or the one before */
+    int part,
+        parts;   /* MOMENT_BETWEEN: position between this frame and the next, 0 < part < parts; otherwise part is 0, and
+                        parts > 1 if the pictures beside it may be interpolated */
+    double slow; /* times slower than real time; below 1: faster */
 } Moment;
 
-static inline Moment moment_stored(int frame) { return (Moment){MOMENT_STORED, frame, 0, 1}; }
+static inline Moment moment_stored(int frame) { return (Moment){MOMENT_STORED, frame, 0, 1, 1}; }
+
+/* The position between the frame and the next, 0 <= fraction < 1. */
+static inline double moment_fraction(Moment moment) { return (double)moment.part / moment.parts; }

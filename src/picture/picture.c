@@ -175,8 +175,7 @@ static double distance_between(const Trajectory *a, const Trajectory *b, Moment 
 double picture_run_distance(const Picture *picture, int run, Moment moment) {
     const Trajectory *first = picture->runs[0], *other = picture->runs[run];
     if (run == 0 || moment.frame >= first->frames || moment.frame >= other->frames) return NAN;
-    return moment.fraction > 0 ? distance_between(first, other, moment)
-                               : trajectory_distance(first, other, moment.frame);
+    return moment.part > 0 ? distance_between(first, other, moment) : trajectory_distance(first, other, moment.frame);
 }
 
 double picture_distance(const Picture *picture, Moment moment) {

@@ -12,7 +12,7 @@ typedef struct Pose {
 
 /* The moment that a run shows: its last frame after it has ended. */
 static inline Moment pose_moment(const Trajectory *run, Moment moment) {
-    if (moment.frame >= run->frames - 1) moment.frame = run->frames - 1, moment.fraction = 0;
+    if (moment.frame >= run->frames - 1) moment.frame = run->frames - 1, moment.part = 0;
     return moment;
 }
 
@@ -26,10 +26,11 @@ static inline Pose pose_stored(const Trajectory *run, int frame, int body) {
 static inline Pose pose_at(const Trajectory *run, Moment moment, int body) {
     moment = pose_moment(run, moment);
     Pose pose = pose_stored(run, moment.frame, body);
-    if (!(moment.fraction > 0) || !trajectory_has(run, moment.frame + 1, body)) return pose;
-    Pose next = pose_stored(run, moment.frame + 1, body);
-    return (Pose){pose.x + moment.fraction * (next.x - pose.x), pose.y + moment.fraction * (next.y - pose.y),
-                  pose.angle + moment.fraction * (next.angle - pose.angle)};
+    if (moment.part == 0 || !trajectory_has(run, moment.frame + 1, body)) return pose;
+    const Pose next = pose_stored(run, moment.frame + 1, body);
+    const double fraction = moment_fraction(moment);
+    return (Pose){pose.x + fraction * (next.x - pose.x), pose.y + fraction * (next.y - pose.y),
+                  pose.angle + fraction * (next.angle - pose.angle)};
 }
 
 /* m. sqrt is correctly rounded on every machine; hypot is not. */

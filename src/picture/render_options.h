@@ -13,8 +13,13 @@ enum {
     RENDER_SIDE_MAX = 8192,
     RENDER_JOBS_MAX = 256,
     RENDER_SLOW_MAX = 16, /* factor */
-    RENDER_HOLD_MAX = 60  /* s */
+    RENDER_HOLD_MAX = 60, /* s */
+    RENDER_FPS_MIN = 1,
+    RENDER_FPS_MAX = 240,
+    RENDER_DURATION_MAX = 3600 /* s */
 };
+
+#define RENDER_DURATION_MIN 0.01 /* s */
 
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_SIDE_MIN .. RENDER_SIDE_MAX */
@@ -32,6 +37,8 @@ typedef struct RenderOptions {
     RenderLook look;           /* zeros: bodies side by side */
     int slow;                  /* slow-motion factor around the impact; 0, 1: none */
     double hold;               /* s, repeats the last frame */
+    double fps;                /* pictures per second of real time; 0: the run's frames */
+    double duration;           /* s, of the whole film: the run is shown faster or slower; 0: real time */
     bool title_card, end_card; /* before and after the run */
     bool resume;               /* keep the frames that an earlier, equal call has written */
 } RenderOptions;

@@ -241,7 +241,7 @@ void timeline_draw_static(const Picture *picture, Drawing *drawing) {
 void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawing) {
     if (!is_shown(picture)) return;
     const Rect *plot = &picture->layout.timeline;
-    double x = x_at(picture, moment.frame + moment.fraction), radius = 1.6 * thickness(picture);
+    double x = x_at(picture, moment.frame + moment_fraction(moment)), radius = 1.6 * thickness(picture);
     const Rect clip = {plot->left - 8, plot->top - 8, plot->right + 8, plot->bottom + 8};
     stroke_line(drawing, (Point){x, plot->top + lane_height(picture)}, (Point){x, plot->bottom},
                 1.5 * picture->layout.hairline, picture->theme->ink, &clip);

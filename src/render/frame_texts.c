@@ -15,7 +15,7 @@ static void add(FrameTexts *texts, const char *key, const char *value) {
 }
 
 void frame_part_text(char *text, size_t size, Moment moment) {
-    snprintf(text, size, "%.0f/%d", moment.fraction * moment.slow, moment.slow);
+    snprintf(text, size, "%d/%d", moment.part, moment.parts);
 }
 
 void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) {

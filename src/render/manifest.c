@@ -76,6 +76,8 @@ static void write_order(JsonWriter *json, const Manifest *manifest) {
     json_put_int(json, "first", plan->slow_first);
     json_put_int(json, "last", plan->slow_last);
     json_end(json);
+    json_put_number(json, "rate", plan->rate);
+    json_put_number(json, "speed", plan->speed);
     json_put_int(json, "hold", plan->hold);
     json_put_int(json, "end_card", plan->end);
     json_end(json);

@@ -33,9 +33,10 @@ void manifest_close(Manifest *manifest);
 /* Reads the hashes of an earlier call with the same runs and options; otherwise sets `why`. */
 void manifest_recall(Manifest *manifest, char *why, size_t size);
 
-/* Starts the journal with the known pictures and removes a manifest of other pictures. ERROR_INPUT if a file of that
-   name is not a manifest of twinbox. */
-bool manifest_begin(Manifest *manifest, Error *error);
+/* Starts the journal with the known pictures and removes a manifest of other pictures; if the sequence is a whole run,
+   also the frames of an earlier one that would remain (stale.h). ERROR_INPUT if a file of that name is not a manifest of
+   twinbox. */
+bool manifest_begin(Manifest *manifest, bool whole, Error *error);
 
 /* Records a finished picture. */
 bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *error);

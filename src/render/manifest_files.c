@@ -3,6 +3,7 @@
 #include "render/manifest_print.h"
 
 #include "common/file.h"
+#include "render/stale.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -11,8 +12,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-enum { LINE_MAX_SIZE = 640 };
 
 /* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
 enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
@@ -58,12 +57,18 @@ static int index_of(const char *line) {
     return index <= INT32_MAX ? (int)index : -1;
 }
 
+int manifest_line_read(const char *line, size_t length, PictureHashes *hashes) {
+    if (length < PIXELS_FROM_END) return -1;
+    const char *end = line + length;
+    *hashes = (PictureHashes){strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
+    return index_of(line);
+}
+
 /* Takes the hashes from a line, if the line equals the expected one with these hashes. */
 static void recall_line(Manifest *manifest, const char *line, size_t length) {
-    int index = index_of(line);
-    if (index < manifest->first || index > manifest->last || length < PIXELS_FROM_END) return;
-    const char *end = line + length;
-    PictureHashes hashes = {strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
+    PictureHashes hashes;
+    int index = manifest_line_read(line, length, &hashes);
+    if (index < manifest->first || index > manifest->last) return;
     size_t size;
     char *expected = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
     /* `expected` ends with a newline. */
@@ -95,7 +100,7 @@ static int line_of_difference(const char *a, const char *b) {
 static bool recall_file(Manifest *manifest, const char *path, char *why, size_t why_size) {
     Error error = {0};
     size_t size, head = strlen(manifest->head), count = (size_t)(manifest->last - manifest->first) + 1;
-    char *text = file_read(path, head + 2 * (count + 1) * LINE_MAX_SIZE, &size, &error);
+    char *text = file_read(path, head + 2 * (count + 1) * MANIFEST_LINE_SIZE, &size, &error);
     bool same = text != NULL && strncmp(text, manifest->head, head) == 0;
     if (same)
         recall_lines(manifest, text + head);
@@ -128,8 +133,9 @@ static bool check_overwritable(const char *path, Error *error) {
            error_input(error, path, "is not a manifest of twinbox; move it away or choose another folder");
 }
 
-bool manifest_begin(Manifest *manifest, Error *error) {
+bool manifest_begin(Manifest *manifest, bool whole, Error *error) {
     if (!check_overwritable(manifest->path, error) || !check_overwritable(manifest->journal, error)) return false;
+    if (whole) stale_remove(manifest);
     size_t size;
     char *text = file_print(manifest_print_journal, manifest, &size);
     bool ok =

@@ -19,3 +19,10 @@ void manifest_print_line(FILE *out, const void *line);
 void manifest_print_journal(FILE *out, const void *manifest);
 
 void manifest_print_whole(FILE *out, const void *manifest);
+
+/* Bytes of the longest line of a picture. */
+enum { MANIFEST_LINE_SIZE = 640 };
+
+/* The index of the frame that a line, without indentation and comma, lists, and its hashes as far as the line has any;
+   -1: the line lists no frame. */
+int manifest_line_read(const char *line, size_t length, PictureHashes *hashes);

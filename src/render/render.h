@@ -16,6 +16,7 @@ typedef struct PictureHashes {
 typedef struct RenderResult {
     int first, last;       /* indices of the files */
     bool all;              /* the whole run was drawn */
+    double rate;           /* pictures per second of the film */
     int kept;              /* of these, unchanged from an earlier call */
     char why[256];         /* options->resume: why nothing could be kept; otherwise empty */
     PictureHashes *hashes; /* [last - first + 1]; freed by the caller */
@@ -26,6 +27,7 @@ typedef struct RenderResult {
    k is frame k. manifest.json (manifest.h) describes the pictures. Child processes draw, so the caller's environment
    and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are finished and the
    error is "stopped" (ERROR_INPUT). `result` may be NULL.
+   If that is the whole run, frames of an earlier sequence that would remain beside these are removed (stale.h).
    options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
    draws all others. If that call had other runs or options or was another version, it draws all. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,

@@ -140,7 +140,7 @@ static bool make_pictures(WorkerJob *job, Manifest *manifest, RenderResult *resu
     Sequence sequence = {.total = manifest->last - manifest->first + 1, .manifest = manifest};
     sequence.jobs = job->options->jobs < sequence.total ? job->options->jobs : sequence.total;
     if (job->options->resume) manifest_recall(manifest, result->why, sizeof result->why);
-    if (!manifest_begin(manifest, error) || !draw_all(&sequence, job, manifest->first, progress, error) ||
+    if (!manifest_begin(manifest, result->all, error) || !draw_all(&sequence, job, manifest->first, progress, error) ||
         !manifest_end(manifest, error))
         return false;
     result->kept = sequence.kept;
@@ -160,6 +160,7 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
         return false;
     result->first = first;
     result->last = moments_last(&plan);
+    result->rate = plan.rate;
     result->all = first == 0 && last == picture->frames - 1;
     Manifest manifest;
     WorkerJob job = {.picture = picture, .options = options, .plan = &plan, .manifest = &manifest};

@@ -4,9 +4,13 @@
 #include "common/file.h"
 #include "common/hash.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Bytes; far more than the largest picture file. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
 typedef struct PngSink {
     const char *directory;
@@ -22,6 +26,17 @@ bool sink_frame_path(char *path, size_t size, const char *directory, int index) 
     char name[SINK_NAME_SIZE];
     sink_frame_name(name, index);
     return snprintf(path, size, "%s/%s", directory, name) < (int)size;
+}
+
+bool sink_frame_is(const char *directory, int index, uint64_t hash) {
+    char path[PATH_MAX];
+    size_t size;
+    Error ignored = {0};
+    if (!sink_frame_path(path, sizeof path, directory, index)) return false;
+    char *data = file_read(path, MAX_FILE_SIZE, &size, &ignored);
+    const bool same = data != NULL && hash_xxh3(data, size) == hash;
+    free(data);
+    return same;
 }
 
 static bool write_png(void *context, int index, const Image *image, const bool *changed, const ImageText *texts,

@@ -11,6 +11,9 @@ void sink_frame_name(char name[SINK_NAME_SIZE], int index);
 /* The same with its folder; false if it does not fit in `size` bytes. */
 bool sink_frame_path(char *path, size_t size, const char *directory, int index);
 
+/* Whether the file of that picture exists and has these bytes (XXH3). */
+bool sink_frame_is(const char *directory, int index, uint64_t hash);
+
 typedef struct FrameSink {
     /* `changed`: as for png_encode(). *hash: XXH3 of the file. */
     bool (*write)(void *context, int index, const Image *image, const bool *changed, const ImageText *texts, int count,

@@ -19,6 +19,7 @@ typedef struct VideoFormat {
     const char *ending;
     bool subsampled;         /* 4:2:0 subsampling: both sides must be even */
     double max_rate;         /* highest frame rate, Hz; 0: any */
+    double usual_rate;       /* the same unless a rate was chosen */
     const char *encoder[24]; /* arguments for ffmpeg */
 } VideoFormat;
 
@@ -26,14 +27,18 @@ typedef struct VideoFormat {
 #define BT709 \
     "-vf", "scale=out_color_matrix=bt709", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"
 
+/* GIFs are for pages, where 800 pixels are wide, and their bytes grow with every pixel that changes. */
+#define GIF_SCALE "scale=w='min(800,iw)':h='min(800,ih)':force_original_aspect_ratio=decrease:flags=area"
+
 static const VideoFormat formats[] = {
-    {".mp4", true, 0, {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
+    {".mp4", true, 0, 0, {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
     {".webm",
      true,
      0,
+     0,
      {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"}},
-    /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform. */
-    {".gif", false, 50, {"-lavfi", "paletteuse=dither=none", "-fps_mode", "passthrough"}},
+    /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform and small. */
+    {".gif", false, 50, 25, {"-lavfi", GIF_SCALE "[x];[x][1:v]paletteuse=dither=none", "-fps_mode", "passthrough"}},
 };
 
 static const VideoFormat *find_format(const char *path) {
@@ -140,7 +145,8 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
 
 /* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
 static bool run_for_gif(const Encoding *encoding, Error *error) {
-    static const char *const find[] = {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-update", "1", NULL};
+    static const char *const find[] = {"-vf", GIF_SCALE ",palettegen=stats_mode=full", "-frames:v", "1", "-update", "1",
+                                       NULL};
     Arguments use = {0};
     ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
     add(&use, encoding->format->encoder);
@@ -181,9 +187,9 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
         !video_check(options->path, encoding.width, encoding.height, error))
         return false;
     encoding.format = find_format(options->path);
+    const double most = options->rate_is_chosen ? encoding.format->max_rate : encoding.format->usual_rate;
     /* 1e-3: tolerance for rounding of the frame rate. */
-    if (encoding.format->max_rate > 0)
-        encoding.stride = (int)fmax(1, ceil(options->frame_rate / encoding.format->max_rate - 1e-3));
+    if (most > 0) encoding.stride = (int)fmax(1, ceil(options->frame_rate / most - 1e-3));
     snprintf(encoding.part, PATH_MAX, "file:%s.%ld.part%s", options->path, (long)getpid(), encoding.format->ending);
     snprintf(encoding.palette, PATH_MAX, "file:%s.%ld.part.png", options->path, (long)getpid());
     bool ok = encode(&encoding, error);

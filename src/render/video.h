@@ -9,6 +9,7 @@ typedef struct VideoOptions {
     double frame_rate;           /* Hz */
     const PictureHashes *hashes; /* [last - first + 1], as drawn; NULL: not checked */
     const char *path;            /* ends in .mp4, .webm or .gif */
+    bool rate_is_chosen;         /* not just that of the run */
 } VideoOptions;
 
 /* Checks name and size of a video, and creates its folder if missing. ERROR_INPUT or ERROR_SYSTEM states the reason. */
@@ -18,8 +19,8 @@ bool video_check(const char *path, int width, int height, Error *error);
 bool video_check_programs(Error *error);
 
 /* Every picture is decoded and checked here and passed on raw, as ffmpeg skips missing or damaged PNGs. The video's
-   frames are counted before the file appears. A GIF, whose frames last at least 2/100 s, shows every second picture
-   of 60 Hz. */
+   frames are counted before the file appears. A GIF is scaled to at most 800 x 800 pixels and shows every n-th
+   picture, at most 25 per second: every third of 60 Hz; up to 50, what its time unit allows, if the rate is chosen. */
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error);
 
 /* Writes the same pictures as y4m to an open file; options->path is its name in messages. The output is written in

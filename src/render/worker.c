@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/worker.h"
 
-#include "common/file.h"
-#include "common/hash.h"
 #include "render/frame_texts.h"
 #include "render/renderer.h"
 #include "render/sink.h"
@@ -10,9 +8,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-/* Bytes; far more than the largest picture file. */
-static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
 /* State of a worker. */
 typedef struct Worker {
@@ -29,17 +24,9 @@ static bool send(int pipe, const WorkerReport *report) { return write(pipe, repo
 /* Whether the file of an earlier call exists with unchanged bytes. */
 static bool is_unchanged(const Worker *worker, int index, PictureHashes *hashes) {
     const Manifest *manifest = worker->job->manifest;
-    char path[PATH_MAX];
-    size_t size;
-    Error ignored = {0};
-    if (!manifest->known[index - manifest->first] ||
-        !sink_frame_path(path, sizeof path, worker->job->options->directory, index))
-        return false;
+    if (!manifest->known[index - manifest->first]) return false;
     *hashes = manifest->hashes[index - manifest->first];
-    char *data = file_read(path, MAX_FILE_SIZE, &size, &ignored);
-    bool same = data != NULL && hash_xxh3(data, size) == hashes->file;
-    free(data);
-    return same;
+    return sink_frame_is(worker->job->options->directory, index, hashes->file);
 }
 
 static bool prepare(Worker *worker, Error *error) {

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/y4m.h"
 
+#include "render/divisor.h"
+
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 static const char frame_line[] = "FRAME\n";
 enum { FRAME_LINE_SIZE = sizeof frame_line - 1 };
 
-static int greatest_divisor(int a, int b) { return b == 0 ? a : greatest_divisor(b, a % b); }
-
 void y4m_header(char header[Y4M_HEADER_SIZE], int width, int height, double frame_rate) {
-    int rate = (int)(1000 * frame_rate + 0.5), divisor = greatest_divisor(rate, 1000);
-    snprintf(header, Y4M_HEADER_SIZE, "YUV4MPEG2 W%d H%d F%d:%d Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width, height,
-             rate / divisor, 1000 / divisor);
+    const int64_t rate = (int64_t)(1000 * frame_rate + 0.5), divisor = greatest_divisor(rate, 1000);
+    snprintf(header, Y4M_HEADER_SIZE, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C444 XCOLORRANGE=LIMITED\n",
+             width, height, rate / divisor, 1000 / divisor);
 }
 
 size_t y4m_frame_size(int width, int height) { return FRAME_LINE_SIZE + 3 * (size_t)width * (size_t)height; }

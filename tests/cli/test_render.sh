@@ -128,7 +128,7 @@ count() { ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of
 equal "pictures" "$(ls slow | grep -c png)" $wanted
 equal "frames of the pipe" "$(count piped.mp4)" $wanted
 equal "frames of the webm" "$(count slow.webm)" $wanted
-equal "frames of the gif" "$(count slow.gif)" $(((wanted + 1) / 2))
+equal "frames of the gif" "$(count slow.gif)" $(((wanted + 2) / 3))
 equal "rate of the pipe" "$(ffprobe -v error -show_entries stream=avg_frame_rate -of csv=p=0 piped.mp4)" 60/1
 /usr/bin/python3 - $wanted >out <<'PYTHON'
 import json, sys

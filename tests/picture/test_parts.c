@@ -42,7 +42,7 @@ static void check(const RenderLook *look, int count, int width, int height) {
     options.look.costs[0] = options.look.costs[1] = "8 \xC2\xB5s a step";
     assert_ok(picture_plan(&picture, panels, count, width, height, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
-    picture_draw(&picture, (Moment){MOMENT_STORED, 25, 0, 4}, &drawing);
+    picture_draw(&picture, (Moment){MOMENT_STORED, 25, 0, 4, 4}, &drawing);
     const Places places = places_of(&picture);
     for (size_t i = 0; i < drawing.rect_count; i++) assert_in_a_place(&places, drawing.rects[i].rect, "a rectangle");
     for (size_t i = 0; i < drawing.shape_count; i++) {

@@ -110,7 +110,7 @@ static void a_caption_stands_for_the_method(void **state) {
     for (int i = 0; i < 3; i++) {
         Drawing drawing = {0};
         const Font font = kinds[i] == MOMENT_STORED ? picture.layout.title : font_pick(FONT_SEMIBOLD, 0.036 * 540);
-        picture_draw(&picture, (Moment){kinds[i], 5, 0, 1}, &drawing);
+        picture_draw(&picture, (Moment){.kind = kinds[i], .frame = 5, .slow = 1}, &drawing);
         assert_true(draws(&drawing, &font, "our own"));
         assert_false(draws(&drawing, &font, "pair-net"));
         assert_true(draws(&drawing, &font, "engine"));

@@ -30,9 +30,9 @@ static const char *const three[] = {"gallery/stack-reference", "trajectories/sta
 static const char *const one[] = {"trajectories/pyramid-engine", NULL};
 
 #define STORED(frame) \
-    { MOMENT_STORED, frame, 0, 1 }
+    { MOMENT_STORED, frame, 0, 1, 1 }
 #define SLOW \
-    { MOMENT_BETWEEN, 33, 0.5, 4 }
+    { MOMENT_BETWEEN, 33, 2, 4, 4 }
 
 /* Each in both themes, unless one is given. */
 static const struct {
@@ -63,8 +63,8 @@ static const struct {
      false},
     {"slow_motion", near_pair, SLOW, {.show = LOOK_TRAILS | LOOK_TIMELINE}, false},
     {"all", near_pair, STORED(36), {.show = 127, .costs = {"3.8 \xC2\xB5s a step", "8.3 \xC2\xB5s a step"}}, true},
-    {"title", three, {MOMENT_TITLE, 0, 0, 1}, {0}, true},
-    {"end", three, {MOMENT_END, 75, 0, 1}, {0}, true},
+    {"title", three, {MOMENT_TITLE, 0, 0, 1, 1}, {0}, true},
+    {"end", three, {MOMENT_END, 75, 0, 1, 1}, {0}, true},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 

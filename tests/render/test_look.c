@@ -50,7 +50,7 @@ static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
 
 static void poses_between_frames_lie_between(void **state) {
     (void)state;
-    Moment between = {MOMENT_BETWEEN, 4, 0.25, 4};
+    Moment between = {MOMENT_BETWEEN, 4, 1, 4, 4};
     Pose a = pose_stored(runs[0], 4, SECOND_BOX), b = pose_stored(runs[0], 5, SECOND_BOX);
     Pose pose = pose_at(runs[0], between, SECOND_BOX);
     assert_near(pose.angle, 0.75 * a.angle + 0.25 * b.angle, 1e-12);
@@ -67,7 +67,7 @@ static void distances_between_frames_lie_between(void **state) {
     (void)state;
     Picture picture = picture_with_look(2, &(RenderLook){0});
     double before = picture_distance(&picture, moment_stored(9)), after = picture_distance(&picture, moment_stored(10));
-    assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 0.5, 2}), (before + after) / 2, 1e-6);
+    assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 1, 2, 2}), (before + after) / 2, 1e-6);
     assert_true(isnan(picture_run_distance(&picture, 0, moment_stored(9))));
     picture_free(&picture);
 }
@@ -134,7 +134,7 @@ static void cameras_ease(void **state) {
             closest = fmax(closest, at->scale);
         }
         assert_true(closest > 1.9 * picture.camera.scale);
-        Camera halfway = camera_at(picture.path, 400, (Moment){MOMENT_BETWEEN, 100, 0.5, 2}, (int)width, 100);
+        Camera halfway = camera_at(picture.path, 400, (Moment){MOMENT_BETWEEN, 100, 1, 2, 2}, (int)width, 100);
         assert_true(halfway.scale >= fmin(picture.path[100].scale, picture.path[101].scale) - 1e-9);
         if (camera == LOOK_DIVERGENCE) {
             picture.camera = picture.path[205];
@@ -206,12 +206,12 @@ static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
 /* Each option changes the picture, and so do costs and the text of the end card. */
 static void every_option_changes_the_picture(void **state) {
     (void)state;
-    const Moment moment = moment_stored(25), end = {MOMENT_END, FRAMES - 1, 0, 1};
+    const Moment moment = moment_stored(25), end = {MOMENT_END, FRAMES - 1, 0, 1, 1};
     uint64_t plain = hash_of(&(RenderLook){0}, 2, moment);
     for (int bit = 0; bit < 7; bit++) assert_true(hash_of(&(RenderLook){.show = 1u << bit}, 2, moment) != plain);
     assert_true(hash_of(&(RenderLook){.theme = LOOK_DARK}, 2, moment) != plain);
     assert_true(hash_of(&(RenderLook){.costs = {NULL, "8 s"}}, 2, moment) != plain);
-    assert_true(hash_of(&(RenderLook){0}, 2, (Moment){MOMENT_STORED, 25, 0, 4}) != plain); /* slow motion */
+    assert_true(hash_of(&(RenderLook){0}, 2, (Moment){MOMENT_STORED, 25, 0, 4, 4}) != plain); /* slow motion */
     assert_true(hash_of(&(RenderLook){.end = "Over"}, 2, end) != hash_of(&(RenderLook){0}, 2, end));
 }
 

@@ -8,10 +8,10 @@
 #include "render/renderer.h"
 
 static const Moment moments[] = {
-    {MOMENT_TITLE, 0, 0, 1},           {MOMENT_STORED, 0, 0, 1},          {MOMENT_BETWEEN, 1, 0.25, 4},
-    {MOMENT_BETWEEN, 1, 0.75, 4},      {MOMENT_STORED, 2, 0, 4},          {MOMENT_STORED, 19, 0, 1},
-    {MOMENT_STORED, 20, 0, 1},         {MOMENT_BETWEEN, 20, 0.5, 2},      {MOMENT_END, FRAMES - 1, 0, 1},
-    {MOMENT_STORED, FRAMES - 1, 0, 1}, {MOMENT_STORED, FRAMES - 1, 0, 1}, {MOMENT_END, FRAMES - 1, 0, 1},
+    {MOMENT_TITLE, 0, 0, 1, 1},           {MOMENT_STORED, 0, 0, 1, 1},          {MOMENT_BETWEEN, 1, 1, 4, 4},
+    {MOMENT_BETWEEN, 1, 3, 4, 4},         {MOMENT_STORED, 2, 0, 4, 4},          {MOMENT_STORED, 19, 0, 1, 1},
+    {MOMENT_STORED, 20, 0, 1, 1},         {MOMENT_BETWEEN, 20, 1, 2, 2},        {MOMENT_END, FRAMES - 1, 0, 1, 1},
+    {MOMENT_STORED, FRAMES - 1, 0, 1, 1}, {MOMENT_STORED, FRAMES - 1, 0, 1, 1}, {MOMENT_END, FRAMES - 1, 0, 1, 1},
 };
 enum { MOMENTS = sizeof moments / sizeof moments[0] };
 

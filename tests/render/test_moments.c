@@ -66,13 +66,13 @@ static void without_options_a_picture_is_a_frame(void **state) {
         assert_int_equal(moments_last(&plan) + 1, FRAMES);
         for (int i = 0; i < FRAMES; i++) {
             Moment moment = moments_at(&plan, i);
-            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.fraction == 0 && moment.slow == 1);
+            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.part == 0 && moment.slow == 1);
         }
     }
 }
 
 /* Simulated time, in frames. */
-static double time_of(Moment moment) { return moment.frame + moment.fraction; }
+static double time_of(Moment moment) { return moment.frame + moment_fraction(moment); }
 
 static void slow_motion_adds_parts_around_the_impact(void **state) {
     (void)state;
@@ -84,7 +84,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
             Moment moment = moments_at(&plan, i);
             bool inside = moment.frame >= IMPACT - BEFORE && moment.frame < IMPACT + AFTER;
             assert_int_equal(moment.slow, inside ? slow : 1);
-            assert_int_equal(moment.kind, moment.fraction > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
+            assert_int_equal(moment.kind, moment.part > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
             stored += moment.kind == MOMENT_STORED;
             if (i == 0) continue;
             /* The time between two moments is given by the earlier one. */
@@ -126,7 +126,7 @@ static void the_first_impact_of_all_panels_counts(void **state) {
 }
 
 static void assert_same_moment(Moment a, Moment b) {
-    assert_true(a.kind == b.kind && a.frame == b.frame && a.fraction == b.fraction && a.slow == b.slow);
+    assert_true(a.kind == b.kind && a.frame == b.frame && moment_fraction(a) == moment_fraction(b) && a.slow == b.slow);
 }
 
 static void cards_and_hold_stand_around_the_run(void **state) {
@@ -173,7 +173,7 @@ static void a_range_of_frames_is_a_complete_sequence(void **state) {
             for (int held = 0; held <= plan.hold; held++, i++)
                 assert_same_moment(moments_at(&plan, i), moment_stored(last));
             for (; i <= moments_last(&plan); i++)
-                assert_same_moment(moments_at(&plan, i), (Moment){MOMENT_END, last, 0, 1});
+                assert_same_moment(moments_at(&plan, i), (Moment){MOMENT_END, last, 0, 1, 1});
         }
 }
 

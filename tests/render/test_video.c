@@ -37,7 +37,9 @@ static int destroy(void **state) {
     return 0;
 }
 
-static VideoOptions options_for(const char *path) { return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path}; }
+static VideoOptions options_for(const char *path) {
+    return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path, false};
+}
 
 /* Frames, rate and size according to a decoder. */
 static void probe(const char *path, int *frames, double *rate, int *width, int *height) {
@@ -75,9 +77,8 @@ static void each_form_has_all_its_frames(void **state) {
         const char *name;
         double rate, tolerance;
         int frames;
-    } cases[] = {{"a.mp4", 60, 0, FRAMES},
-                 {"a.webm", 60, 0, FRAMES},
-                 {"a.gif", 30, 4, (FRAMES + 1) / 2}}; /* 0.03 or 0.04 s a frame */
+    } cases[] = {
+        {"a.mp4", 60, 0, FRAMES}, {"a.webm", 60, 0, FRAMES}, {"a.gif", 20, 0, (FRAMES + 2) / 3}}; /* 0.05 s a frame */
     for (int i = 0; i < 3; i++) {
         Error error = {0};
         int frames, width, height;
@@ -90,6 +91,51 @@ static void each_form_has_all_its_frames(void **state) {
         assert_near(rate, cases[i].rate, cases[i].tolerance);
     }
     assert_nothing_left(temporary_folder);
+}
+
+/* A GIF of a chosen rate has up to 50 frames per second, of the run's rate up to 25. */
+static void gifs_keep_a_chosen_rate(void **state) {
+    (void)state;
+    static const struct {
+        double rate;
+        bool chosen;
+        double shown;
+    } cases[] = {{50, true, 50}, {50, false, 25}, {25, false, 25}, {100, true, 50}, {20, false, 20}, {75, false, 25}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        int frames, width, height;
+        double rate;
+        VideoOptions options = options_for(temporary_path("rate.gif"));
+        options.frame_rate = cases[i].rate, options.rate_is_chosen = cases[i].chosen;
+        assert_ok(video_encode(&options, NULL, &error), error);
+        probe(options.path, &frames, &rate, &width, &height);
+        const int stride = (int)(cases[i].rate / cases[i].shown);
+        assert_int_equal(frames, (FRAMES + stride - 1) / stride);
+        assert_near(rate, cases[i].shown, 1e-9);
+    }
+}
+
+/* Large pictures are scaled to 800 pixels, in their shape; small ones keep their size. */
+static void gifs_are_small(void **state) {
+    (void)state;
+    static const int sizes[][4] = {
+        {1920, 1080, 800, 450}, {1080, 1920, 450, 800}, {801, 100, 800, 100}, {800, 600, 800, 600}, {96, 64, 96, 64}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        Error error = {0};
+        int frames, width, height;
+        double rate;
+        const char *directory = temporary_path("large");
+        Image *image = image_create(sizes[i][0], sizes[i][1], &error);
+        assert_ok(file_make_directory(directory, &error), error);
+        for (size_t k = 0; k < 4 * (size_t)image->width * (size_t)image->height; k++)
+            image->pixels[k] = (uint8_t)(k % 251);
+        assert_ok(image_write_png(image, frame_path(directory, 0), NULL, 0, &error), error);
+        VideoOptions options = {.directory = directory, .frame_rate = 60, .path = temporary_path("small.gif")};
+        assert_ok(video_encode(&options, NULL, &error), error);
+        probe(options.path, &frames, &rate, &width, &height);
+        assert_true(frames == 1 && width == sizes[i][2] && height == sizes[i][3]);
+        image_destroy(image);
+    }
 }
 
 /* No name is taken for a pattern, an option or a URL. */
@@ -272,6 +318,7 @@ static void a_reader_that_has_gone_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gifs_keep_a_chosen_rate),        cmocka_unit_test(gifs_are_small),
         cmocka_unit_test(each_form_has_all_its_frames),   cmocka_unit_test(any_file_name_works),
         cmocka_unit_test(a_damaged_frame_makes_no_video), cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
         cmocka_unit_test(missing_programs_are_told),      cmocka_unit_test(a_video_can_be_stopped),

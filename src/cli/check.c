@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/draw_panels.h"
+#include "cli/options.h"
+#include "common/file.h"
+#include "common/text_add.h"
+#include "simulate/scene_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 1280, HEIGHT = 720 };
+
+/* s after the bomb is added in which it has struck: the view of the picture shows its way (picture/framing.h). */
+static const double way = 3;
+
+typedef struct Options {
+    const char *scene, *output; /* output: NULL for NAME-first-frame.png */
+} Options;
+
+static const Option option_table[] = {
+    {"--output", 'o', "FILE.png", "Picture of the first frame (default: NAME-first-frame.png in the working folder)",
+     OPTION_TEXT(Options, output)},
+    {0}};
+
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
+    .inputs = {1, 1, "scene"},
+    .help =
+        "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
+        "names, and each parameter at both ends. Prints a summary and draws the first frame.\v"
+        "Example: twinbox check scenes/stack.yaml -o first.png"};
+
+static void print_bodies(const Scene *scene) {
+    double mass = 0;
+    int fixed = 0;
+    for (int i = 0; i < scene->body_count; i++) {
+        fixed += scene->bodies[i].fixed;
+        mass += scene->bodies[i].fixed ? 0 : (double)scene->bodies[i].mass;
+    }
+    const int boxes = scene->body_count - fixed;
+    printf("    bodies: %d box%s of %.6g kg together, and %d static\n", boxes, boxes == 1 ? "" : "es", mass, fixed);
+    printf("    duration: %d steps of %.6g s, %.6g s; %d iterations per step\n", scene->frames, (double)scene->dt,
+           scene->frames * (double)scene->dt, scene->iterations);
+    if (scene->overlaps_allowed) printf("    overlaps: allowed\n");
+}
+
+/* ", x from -5 to 5 m": behind the family so far. */
+static void add_family(char *text, size_t size, const char *name, const SceneSpan *span, const char *unit) {
+    if (scene_span_varies(span))
+        text_add(text, size, "%s%s from %.6g to %.6g %s", text[0] != '\0' ? ", " : "", name, (double)span->from,
+                 (double)span->to, unit);
+}
+
+static void print_bomb(const Scene *scene) {
+    const SceneBomb *bomb = &scene->bomb;
+    const BodyDef body = scene_bomb_body(scene);
+    char family[256] = "";
+    if (!bomb->present) {
+        printf("    bomb: none\n");
+        return;
+    }
+    printf("    bomb: %.6g kg, added after step %d at (%.6g, %.6g) m with (%.6g, %.6g) m/s\n", (double)body.mass,
+           bomb->frame, (double)body.position.x, (double)body.position.y, (double)body.velocity.x,
+           (double)body.velocity.y);
+    add_family(family, sizeof family, "x", &bomb->x, "m");
+    add_family(family, sizeof family, "rotation", &bomb->rotation, "rad");
+    add_family(family, sizeof family, "spin", &bomb->spin, "rad/s");
+    add_family(family, sizeof family, "mass", &bomb->mass, "kg");
+    printf("    launches: %s\n", family[0] != '\0' ? family : "one");
+}
+
+static void print_lists(const Scene *scene) {
+    for (int i = 0; i < scene->parameter_count; i++) {
+        const SceneParameter *parameter = &scene->parameters[i];
+        printf("    parameter %s: %.9g, from %.9g to %.9g%s%s\n", parameter->name, parameter->value, parameter->from,
+               parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+    }
+    for (int i = 0; i < scene->network_count; i++)
+        printf("    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
+}
+
+static bool draw(const Trajectory *run, const char *path, Error *error) {
+    RenderOptions render = draw_panels_defaults(NULL);
+    render.width = WIDTH;
+    render.height = HEIGHT;
+    Renderer *renderer = renderer_create(&run, 1, &render, error);
+    Image *image = renderer != NULL ? image_create(WIDTH, HEIGHT, error) : NULL;
+    const bool ok =
+        image != NULL && renderer_draw(renderer, 0, image, error) && image_write_png(image, path, NULL, 0, error);
+    image_destroy(image);
+    renderer_destroy(renderer);
+    return ok;
+}
+
+/* Runs the engine until the bomb has struck, as far as the scene goes, because the view depends on it. */
+static bool draw_first_frame(const Scene *scene, const char *path, Error *error) {
+    Scene shown = *scene;
+    Panels panels = {0};
+    const double frames = scene->bomb.present ? scene->bomb.frame + ceil(way / (double)scene->dt) : 1;
+    if (frames < shown.frames) shown.frames = (int)frames;
+    const bool ok = panels_add_run(&panels, &shown, "engine", path, error) && draw(panels.runs[0], path, error);
+    panels_free(&panels);
+    if (ok) printf("first frame -> %s\n", path);
+    return ok;
+}
+
+static bool check(const char *path, const Scene *scene, const char *output, Error *error) {
+    char standard[SCENE_NAME_SIZE + 32];
+    snprintf(standard, sizeof standard, "%s-first-frame.png", scene->name);
+    file_name_clean(standard);
+    if (!scene_check_launches(scene, error) || !scene_check_networks(scene, error) ||
+        !scene_check_ends(path, scene, error))
+        return false;
+    printf("%s is valid\n", path);
+    print_bodies(scene);
+    print_bomb(scene);
+    print_lists(scene);
+    fflush(stdout);
+    return draw_first_frame(scene, output != NULL ? output : standard, error);
+}
+
+bool command_check(int argc, char **argv, Error *error) {
+    Options options = {0};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    Scene *scene = scene_read(options.scene, error);
+    const bool ok = scene != NULL && check(options.scene, scene, options.output, error);
+    scene_destroy(scene);
+    return ok;
+}

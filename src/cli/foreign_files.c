@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files in the folder of a sequence that could be mistaken for a part of it. */
+#include "cli/notes.h"
+#include "cli/picture_notes.h"
+#include "common/array.h"
+#include "common/text_add.h"
+#include "render/sink.h"
+#include "trajectory/trajectory_name.h"
+
+#include <dirent.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { SHOWN_MAX = 5, TEXT_SIZE = 1024 };
+
+typedef struct Names {
+    char **list;
+    size_t count, capacity;
+} Names;
+
+/* The number of a frame's file, or -1. */
+static int frame_of(const char *name) {
+    int index = -1;
+    char own[SINK_NAME_SIZE];
+    if (sscanf(name, "frame_%9d.png", &index) != 1 || index < 0) return -1;
+    sink_frame_name(own, index);
+    return strcmp(name, own) == 0 ? index : -1;
+}
+
+static bool ends_with(const char *name, const char *ending) {
+    const size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
+}
+
+static bool is_of_sequence(const char *name, const RenderResult *result, const Panels *panels) {
+    const int frame = frame_of(name);
+    if (frame >= 0) return frame >= result->first && frame <= result->last;
+    for (int i = 0; i < panels->count; i++) {
+        char own[TRAJECTORY_FILE_NAME_SIZE];
+        trajectory_file_name((const Trajectory *const *)panels->runs, i, own);
+        if (strcmp(name, own) == 0) return true;
+    }
+    return false;
+}
+
+static bool is_input(const char *directory, const char *name, const Panels *panels) {
+    char path[PATH_MAX];
+    struct stat file, input;
+    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || stat(path, &file) != 0)
+        return false;
+    for (int i = 0; i < panels->count; i++)
+        if (stat(panels->inputs[i], &input) == 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino)
+            return true;
+    return false;
+}
+
+static bool add(Names *names, const char *name) {
+    char *copy = strdup(name);
+    if (copy != NULL && array_reserve((void **)&names->list, &names->capacity, names->count + 1, sizeof *names->list)) {
+        names->list[names->count++] = copy;
+        return true;
+    }
+    free(copy);
+    return false;
+}
+
+static void collect(Names *names, const char *directory, const RenderResult *result, const Panels *panels) {
+    DIR *folder = opendir(directory);
+    if (folder == NULL) return;
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+        const char *name = entry->d_name;
+        if (name[0] == '.' || (!ends_with(name, ".png") && !ends_with(name, ".npz")) ||
+            is_of_sequence(name, result, panels) || is_input(directory, name, panels))
+            continue;
+        if (!add(names, name)) break;
+    }
+    closedir(folder);
+}
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+/* Frames that follow each other are named by the first and the last. */
+static size_t end_of_range(const Names *names, size_t first) {
+    size_t last = first;
+    const int frame = frame_of(names->list[first]);
+    while (frame >= 0 && last + 1 < names->count && frame_of(names->list[last + 1]) == frame + (int)(last + 1 - first))
+        last++;
+    return last;
+}
+
+static void describe(const Names *names, char text[TEXT_SIZE]) {
+    size_t i = 0;
+    for (int shown = 0; shown < SHOWN_MAX && i < names->count; shown++) {
+        const size_t last = end_of_range(names, i);
+        text_add(text, TEXT_SIZE, "%s%.100s", shown > 0 ? ", " : "", names->list[i]);
+        if (last > i) text_add(text, TEXT_SIZE, "%s%s", last > i + 1 ? " ... " : ", ", names->list[last]);
+        i = last + 1;
+    }
+    if (i < names->count) text_add(text, TEXT_SIZE, " and %zu more", names->count - i);
+}
+
+void note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels) {
+    Names names = {0};
+    char text[TEXT_SIZE] = "";
+    collect(&names, directory, result, panels);
+    if (names.count > 0) {
+        qsort(names.list, names.count, sizeof *names.list, by_name);
+        describe(&names, text);
+        note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
+                   plural((int)names.count), names.count > 1 ? "are" : "is", text);
+    }
+    for (size_t i = 0; i < names.count; i++) free(names.list[i]);
+    free(names.list);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/templates.h"
+#include "common/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define TEMPLATE_NAME(name) #name,
+#define TEMPLATE_TEXT(name) template_##name##_yaml,
+static const char *const names[] = {TEMPLATES(TEMPLATE_NAME) NULL};
+static const char *const texts[] = {TEMPLATES(TEMPLATE_TEXT) NULL};
+
+typedef struct Options {
+    const char *path;
+    unsigned like; /* index of names */
+} Options;
+
+static const Option option_table[] = {{"--like", 0, "KIND", "wall, stack, pyramid, arch or dominoes",
+                                       OPTION_ENUM(Options, like, names), .needed = "--like KIND is needed"},
+                                      {0}};
+
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "SCENE.yaml", .needed = "the name of the scene to write is needed", OPTION_TEXT(Options, path)},
+    .inputs = {1, 1, "scene"},
+    .help =
+        "Write a scene to start from: a structure, a bomb with a family of launches, and parameters, with comments. "
+        "Never overwrites a file.\v"
+        "Example: twinbox new wall.yaml --like wall"};
+
+static bool ends_with(const char *text, const char *ending) {
+    const size_t length = strlen(text), tail = strlen(ending);
+    return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+bool command_new(int argc, char **argv, Error *error) {
+    Options options = {0};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!ends_with(options.path, ".yaml"))
+        return error_input(error, options.path, "the name of a scene must end in .yaml");
+    const char *text = texts[options.like];
+    if (!file_create(options.path, text, strlen(text), error)) return false;
+    printf("%s -> %s\nnext: twinbox check %s\n", names[options.like], options.path, options.path);
+    return true;
+}

@@ -1,0 +1,88 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# twinbox check: a summary and the first frame of a scene in order; what is wrong with any other.
+. "$(dirname "$0")/checks.sh"
+
+# scene LINE...: a stack with a bomb, the lines behind it.
+scene() {
+    cat >tower.yaml <<'END'
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+frames: 120
+bodies:
+  - {static: true, size: [100, 20], position: [0, -10]}
+  - {pattern: stack, count: $height, spacing: [0, 1], mass: 2, size: [1, 1], position: [0, 0.5]}
+END
+    printf '%s\n' "$@" >>tower.yaml
+}
+height='parameters: {height: {value: 5, from: 1, to: 20, unit: boxes, whole: on}}'
+bomb() { echo "bomb: {x: {from: -5, to: 5, value: 4}, y: $1, size: [1, 1], mass: 20, frame: 30, velocity: {times_position: -1.5}}"; }
+
+# size FILE: width and height of a PNG.
+size() { python3 -c "import struct,sys; d = open(sys.argv[1], 'rb').read(); assert d[:4] == b'\x89PNG'; print(*struct.unpack('>II', d[16:24]))" "$1"; }
+
+scene "$(bomb 25)" "$height"
+run 0 check tower.yaml
+cat >expected <<'END'
+tower.yaml is valid
+    bodies: 5 boxes of 10 kg together, and 1 static
+    duration: 120 steps of 0.0166667 s, 2 s; 10 iterations per step
+    bomb: 20 kg, added after step 30 at (4, 25) m with (-6, -37.5) m/s
+    launches: x from -5 to 5 m
+    parameter height: 5, from 1 to 20 boxes
+first frame -> tower-first-frame.png
+END
+cmp -s out expected || fail "the summary: $(diff out expected)"
+equal "size of the picture" "$(size tower-first-frame.png)" "1280 720"
+run 0 check tower.yaml -o first.png
+cmp -s first.png tower-first-frame.png || fail "-o changes the picture"
+
+# The picture is what render draws of that frame, in the same view.
+run 0 render tower.yaml -o frames --frames 0 --size 1280x720
+run 0 compare first.png frames/frame_000000.png
+run 0 check "$scenes/stack.yaml" -o stack.png
+says "    network of pair-net: "
+
+# wrong MESSAGE: the scene is refused with it, and nothing is drawn or said to be valid.
+wrong() {
+    rm -f *.png
+    run 2 check tower.yaml
+    complains "$1"
+    equal "output of a wrong scene" "$(cat out)" ""
+    equal "pictures of a wrong scene" "$(ls | grep -c png)" 0
+}
+scene "massa: 3" "$height"
+wrong "tower.yaml:8:1: error: 'massa' is not a key of a scene"
+scene "  - {mass: 1, size: [1, 1], position: [0.5, 0.5]}" "$height"
+wrong "tower.yaml:8:5: error: body 6 starts 0.5 m inside body 1 (line 7)"
+# The bomb has room over 5 boxes for the value of x, but not beside them, or not over 20.
+scene "$(bomb 2)" "$height"
+wrong "tower: error: launch 82 at x = -0.95 m"
+wrong "free x: -5 to -0.99, 1 to 5"
+scene "$(bomb 12)" "$height"
+wrong "tower: error: launch 82 at x = -0.95 m"
+wrong "(with height = 20, an end of its range)"
+# Parameters that are not valid at an end.
+scene "camera: {center: [0, 0], size: [\$width, 1]}" "parameters: {height: {value: 5, from: 0, to: 6}, width: {value: 1, from: 1, to: 2}}"
+wrong "tower.yaml:7:29: error: count must be a whole number from 1 to 10000 (got 0, from \$height with height = 0)"
+# Networks that are missing, for another scene, or of a method without one.
+scene "networks: {pair-net: missing.npz}" "$height"
+wrong "missing.npz: error: "
+scene "$(bomb 25)" "networks: {scene-net: $scenes/networks/scene-stack.npz}" "$height"
+wrong "scene-net: error: the network is for the scene stack of 11 bodies; this one has 6"
+scene "networks: {pair-net: $scenes/networks/interior-net.npz}" "$height"
+wrong "interior-net.npz: error: "
+scene "networks: {engine: $scenes/networks/pair-net.npz}" "$height"
+wrong "pair-net.npz: error: the method engine has no network"
+scene "networks: {pear-net: $scenes/networks/pair-net.npz}" "$height"
+wrong "did you mean 'pair-net'?"
+
+run 2 check
+complains "a scene file is needed"
+run 2 check missing.yaml
+complains "missing.yaml: error: cannot open"
+
+# Scenes of the repository are in order (tests/scene/test_stability.c and tests/simulate/test_launch_check.c read them all).
+for file in "$scenes"/*.yaml "$scenes"/families/g*.yaml "$scenes"/stability/{arch,overlap}.yaml; do run 0 check "$file" -o first.png; done
+finish

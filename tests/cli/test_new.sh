@@ -1,0 +1,41 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# twinbox new: scenes to start from, in any folder; tests/stability/test_templates.c tests that they stand.
+. "$(dirname "$0")/checks.sh"
+
+for kind in wall stack pyramid arch dominoes; do
+    run 0 new "my $kind.yaml" --like $kind
+    says "$kind -> my $kind.yaml"
+    says "twinbox check my $kind.yaml"
+    cmp -s "my $kind.yaml" "$scenes/templates/$kind.yaml" || fail "my $kind.yaml is not the file in scenes/templates"
+    [ "$(grep -c '^ *#' "my $kind.yaml")" -ge 12 ] || fail "$kind has few comments"
+    run 0 check "my $kind.yaml" -o first.png
+    says "    launches: x from "
+    [ "$(grep -c '^    parameter ' out)" -ge 1 ] && [ "$(grep -c '^    parameter ' out)" -le 2 ] || fail "$kind: parameters"
+    run 0 simulate "my $kind.yaml" -o run.npz
+done
+equal "templates" "$(ls "$scenes/templates" | wc -l)" 5
+
+# Nothing that exists is overwritten: a file, a link, a link to nothing.
+echo mine >mine.yaml
+ln -s mine.yaml link.yaml
+ln -s nothing.yaml nowhere.yaml
+for name in mine link nowhere; do
+    run 2 new $name.yaml --like wall
+    complains "$name.yaml: error: exists already, and is not overwritten"
+done
+equal "mine.yaml" "$(cat mine.yaml)" mine
+[ ! -e nothing.yaml ] || fail "a link was followed"
+equal "temporary files" "$(ls -A | grep -c tmp)" 0
+
+run 2 new other.yaml --like wal
+complains "did you mean 'wall'?"
+run 2 new other.yaml
+complains "--like KIND is needed"
+run 2 new --like wall
+complains "the name of the scene to write is needed"
+run 2 new other --like wall
+complains "other: error: the name of a scene must end in .yaml"
+run 3 new missing/other.yaml --like wall
+complains "missing/other.yaml: error: cannot write: No such file or directory"
+finish
