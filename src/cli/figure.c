@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "figure/figure.h"
+#include "picture/caption_check.h"
 #include "type/type_check.h"
 
 #include <stdio.h>
@@ -12,7 +13,7 @@
 
 typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
-    int input_count;
+    int input_count, caption_count;
     FigureSpec figure;
     bool transparent, outlines;
     const char *view_from; /* RUN.npz, or NULL */
@@ -44,6 +45,10 @@ static const Option option_table[] = {
     {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
      OPTION_DOUBLE(Options, figure.points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX)},
     {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
+    {"--caption", 0, "TEXT",
+     "Caption of a run, instead of its method's name (may be repeated: one per run, in their order; \"\" keeps the "
+     "name)",
+     OPTION_TEXTS(Options, figure.captions, caption_count)},
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};
@@ -140,10 +145,22 @@ static bool check_inputs(const FigureKind *kind, const Options *options, Error *
                        options->input_count);
 }
 
+static bool check_captions(const FigureKind *kind, const Options *options, Error *error) {
+    if (options->caption_count > 0 && kind->max_runs == 0) return refuse("--caption", kind, error);
+    if (options->caption_count > options->input_count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
+                           options->input_count == 1 ? "" : "s");
+    for (int i = 0; i < options->caption_count; i++)
+        if (!caption_check(options->figure.captions[i], "--caption", error)) return false;
+    return true;
+}
+
 static bool check_options(const FigureKind *kind, const Options *options, Error *error) {
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
-    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
+    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error) ||
+        !check_captions(kind, options, error))
+        return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
     if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);

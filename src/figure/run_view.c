@@ -153,8 +153,13 @@ void text_fit(char *words, size_t size, double points, double width) {
     memcpy(words + (end - words), ellipsis, sizeof ellipsis);
 }
 
-RunName run_name(const Trajectory *run) {
+RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;
+    for (int i = 0; i < spec->run_count; i++) {
+        if (spec->runs[i] != run || spec->captions[i] == NULL || spec->captions[i][0] == '\0') continue;
+        snprintf(name.text, sizeof name.text, "%s", spec->captions[i]);
+        return name;
+    }
     method_name(name.text, sizeof name.text, run->method);
     return name;
 }

@@ -53,6 +53,17 @@ for format in svg pdf; do run 0 figure strip "$engine" -o "strip.$format"; done
 grep -q "Übung_Voncilă" strip.svg || fail "the title of the SVG"
 [ "$(wc -c <strip.pdf)" -lt 400000 ] || fail "strip.pdf is large"
 
+run 0 figure strip "$engine" "$net" -o named.svg --caption "Moteur" --caption "Сеть → Δx"
+for words in "Moteur" "Сеть → Δx"; do grep -qF ">$words</text>" named.svg || fail "no caption '$words' in the figure"; done
+grep -q ">engine</text>" named.svg && fail "the name beside its caption"
+run 2 figure strip "$engine" -o none.svg --caption a --caption b
+complains "--caption: error: 2 captions for 1 run"
+run 2 figure network "$scenes/networks/pair-net.npz" -o none.svg --caption a
+complains "--caption: error: does not apply to the kind network"
+run 2 figure strip "$engine" -o none.svg --caption "日"
+complains "--caption: error: the font has no character"
+[ ! -e none.svg ] || fail "something was written"
+
 # Charts: the same names in tables, SVG and PNG.
 cp "$scenes/single.yaml" "Übung.yaml"
 sed -i "s|networks/|$scenes/networks/|" "Übung.yaml"
