@@ -2,7 +2,6 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "common/names.h"
 #include "dataset/dataset.h"
 
 #include <stdio.h>
@@ -13,11 +12,7 @@ typedef struct Options {
     const char *output, *launches;
 } Options;
 
-static bool read_view(const Option *option, const char *text, void *value, Error *error) {
-    NameList known = {0};
-    for (int v = 0; v < PAIR_VIEWS; v++) name_list_add(&known, pair_views[v].name);
-    return pair_view_find(text, value) || error_unknown(error, option->name, text, "a valid value", &known);
-}
+static const char *view_names[PAIR_VIEWS + 1]; /* of pair_views, in the order of PairView */
 
 static const Option option_table[] = {
     {"--output", 'o', "DATA.npz", "Dataset to write", OPTION_TEXT(Options, output), .needed = "-o DATA.npz is needed"},
@@ -33,7 +28,7 @@ static const Option option_table[] = {
     {"--inputs", 0, "NAME",
      "Inputs of a pair: relative (default); raw; raw-unturned, without rotations; contact, in the frame of its contact "
      "after the warm start; neighbours, the same and the next impulses of neighbouring contacts",
-     OPTION_READ(read_view, Options, dataset.view)},
+     OPTION_ENUM(Options, dataset.view, view_names)},
     {"--target", 0, "NAME",
      "What to record: pair (default), velocity changes by the pair's own impulses in the step; net, by all impulses on "
      "its bodies; impulse, by one visit of the pair in one sweep; points (with contact or neighbours), impulses at its "
@@ -71,6 +66,7 @@ static bool record(const Options *options, Error *error) {
 
 bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
+    for (int v = 0; v < PAIR_VIEWS; v++) view_names[v] = pair_views[v].name;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     options.dataset.scenes = options.scenes;
     if (options.launches == NULL) return record(&options, error);

@@ -3,26 +3,46 @@
 
 #include "cli/progress_bar.h"
 #include "common/clock.h"
+#include "common/hash.h"
 #include "common/trace.h"
 #include "network/kernels.h"
 
 #include <omp.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/resource.h>
 
 static NoteLevel chosen = NOTES_NORMAL;
 static double begun; /* s */
 
-/* One call, so that lines of several threads and processes do not mix. */
+/* One call, so that lines of several processes do not mix. */
 static void print_line(const char *line) {
     progress_bar_clear();
     fprintf(stderr, "twinbox: %s\n", line);
 }
 
+/* What is done again and again, such as reading one network for each of many runs, is printed once. */
+static bool is_new(const char *line) {
+    enum { REMEMBERED = 4096 };
+    static uint64_t hashes[REMEMBERED];
+    static int count;
+    const uint64_t hash = hash_xxh3(line, strlen(line));
+    for (int i = 0; i < count; i++)
+        if (hashes[i] == hash) return false;
+    if (count < REMEMBERED) hashes[count++] = hash;
+    return true;
+}
+
+static void print_trace(const char *line) {
+#pragma omp critical(print_trace)
+    if (is_new(line)) print_line(line);
+}
+
 void note_set_level(NoteLevel level) {
     chosen = level;
-    trace_listen(level == NOTES_VERBOSE ? print_line : NULL);
+    trace_listen(level == NOTES_VERBOSE ? print_trace : NULL);
 }
 
 NoteLevel note_level(void) { return chosen; }

@@ -6,7 +6,7 @@
 
 typedef enum NoteLevel { NOTES_QUIET, NOTES_NORMAL, NOTES_VERBOSE } NoteLevel;
 
-/* With NOTES_VERBOSE, the lines of common/trace.h are printed, too. */
+/* With NOTES_VERBOSE, the lines of common/trace.h are printed, too, equal ones once. */
 void note_set_level(NoteLevel level);
 NoteLevel note_level(void);
 

@@ -14,11 +14,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720 };
+/* One parameter more than can be varied, which stability_own_make() then refuses. */
+enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, VARY_TEXTS = STABILITY_MAX_VARY + 1 };
 
 typedef struct Options {
     StabilityOptions study;
-    const char *clip; /* or NULL */
+    const char *clip;  /* or NULL */
+    const char *scene; /* or NULL */
+    int vary_count;
+    const char *vary[VARY_TEXTS];
 } Options;
 
 static const Option option_table[] = {
@@ -29,12 +33,16 @@ static const Option option_table[] = {
      "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
      "does not report as left out)",
      OPTION_TEXT(Options, study.methods)},
+    {"--vary", 0, "NAME[=FROM:TO]",
+     "Parameter of SCENE to vary, by default between its bounds; two parameters give their map, too",
+     OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count)},
     {"--scenes", 0, "DIR",
      "Folder whose subfolder stability/ has the scenes (default: scenes, or the installed scenes)",
      OPTION_TEXT(Options, study.scenes)},
-    {"--quick", 0, NULL, "Few studies, small maps: under two minutes", OPTION_FLAG(Options, study.quick)},
+    {"--quick", 0, NULL, "Few studies, small maps: under two minutes; of SCENE: few values",
+     OPTION_FLAG(Options, study.quick)},
     {"--clip", 0, "CELL",
      "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map",
      OPTION_TEXT(Options, clip)},
@@ -42,25 +50,34 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
+    .input = {.value = "[SCENE]", OPTION_PATH(Options, scene)},
+    .inputs = {0, 1, "scene"},
     .help =
         "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, ...): "
         "every border between holding and failing, and how it fails there. Over two parameters: maps. A run holds if "
         "it settles, sways or creeps. Takes up to twenty minutes on two cores. An interrupted run continues where it "
-        "stopped.\v"
+        "stopped.\n"
+        "With SCENE: the same along one or two of the parameters of that scene. A parameter takes 13 runs of every "
+        "method and about ten more for each border, a map 100, each as long as the scene's frames.\v"
         "Example: twinbox stability -o out/stability\n"
+        "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
         "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
         "         twinbox stability -o out/stability --clip height_iterations:engine:15,5"};
 
 static bool make_clip(const Options *options, Error *error) {
-    char(*paths)[STABILITY_PATH_SIZE] = malloc((size_t)stability_map_count * sizeof *paths);
-    ClipMap *maps = malloc((size_t)stability_map_count * sizeof *maps);
+    const StabilityOwn *own = options->study.own;
+    const StabilityMap *table = own != NULL ? own->maps : stability_maps;
+    const int count = own != NULL ? own->map_count : stability_map_count;
+    char(*paths)[STABILITY_PATH_SIZE] = malloc(((size_t)count + 1) * sizeof *paths);
+    ClipMap *maps = malloc(((size_t)count + 1) * sizeof *maps);
     bool ok = (paths != NULL && maps != NULL) || error_memory(error, options->clip);
-    for (int i = 0; ok && i < stability_map_count; i++) {
-        const StabilityMap *map = &stability_maps[i];
-        ok = stability_path(paths[i], &(StabilityPlace){options->study.scenes, map->scene}, error);
+    for (int i = 0; ok && i < count; i++) {
+        const StabilityMap *map = &table[i];
+        const StabilityPlace place = {options->study.scenes, map->scene, map->file};
+        ok = stability_path(paths[i], &place, error);
         maps[i] = (ClipMap){map->name, paths[i], map->x.parameter, map->y.parameter};
     }
-    const ClipOptions clip = {options->study.folder, options->clip, maps, stability_map_count, CLIP_WIDTH, CLIP_HEIGHT};
+    const ClipOptions clip = {options->study.folder, options->clip, maps, count, CLIP_WIDTH, CLIP_HEIGHT};
     if (ok) ok = stability_clip(&clip, error);
     free(paths);
     free(maps);
@@ -77,8 +94,24 @@ static bool study(const StabilityOptions *options, Error *error) {
     return ok;
 }
 
+/* SCENE and --vary go together, and neither with what chooses studies of the table. */
+static bool check_options(const Options *options, Error *error) {
+    if (options->scene == NULL)
+        return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
+    if (options->vary_count == 0)
+        return error_input(error, options->scene, "--vary NAME is needed: the parameter of the scene to vary");
+    return options->study.name_count == 0 ||
+           error_input(error, "--study", "is for the studies without SCENE; '%s' is given", options->scene);
+}
+
 bool command_stability(int argc, char **argv, Error *error) {
     Options options = {.study.scenes = installed_path("scenes")};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    StabilityOwn own;
+    if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
+    if (options.scene != NULL) {
+        if (!stability_own_make(&own, options.scene, options.vary, options.vary_count, options.study.quick, error))
+            return false;
+        options.study.own = &own;
+    }
     return options.clip != NULL ? make_clip(&options, error) : study(&options.study, error);
 }

@@ -16,15 +16,6 @@ const PairViewInfo pair_views[PAIR_VIEWS] = {
                          "next_an next_at next_aw next_bn next_bt next_bw "
                          "done_an done_at done_aw done_bn done_bt done_bw"}};
 
-bool pair_view_find(const char *name, PairView *view) {
-    for (PairView v = 0; v < PAIR_VIEWS; v++) {
-        if (strcmp(pair_views[v].name, name) != 0) continue;
-        *view = v;
-        return true;
-    }
-    return false;
-}
-
 bool pair_view_of_inputs(const char *inputs, PairView *view) {
     for (PairView v = 0; v < PAIR_VIEWS; v++) {
         if (strcmp(pair_views[v].inputs, inputs) != 0) continue;

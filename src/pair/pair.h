@@ -51,8 +51,7 @@ typedef enum PairTarget {
 
 extern const char *const pair_target_names[PAIR_TARGETS + 1]; /* ends in NULL */
 
-/* Finds the view by its name or its inputs; false if there is none. */
-bool pair_view_find(const char *name, PairView *view);
+/* Finds the view by its inputs; false if there is none. */
 bool pair_view_of_inputs(const char *inputs, PairView *view);
 
 /* Fills inputs[pair_views[view].count] of the pair whose contacts begin at `first`. now: velocities and impulses so

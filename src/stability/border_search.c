@@ -183,9 +183,13 @@ static bool list_borders(const Search *search, BorderList *list, Error *error) {
 }
 
 bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *probe, Error *error) {
-    Search search = {.scan = scan, .probe = probe};
+    BorderScan turned = *scan;
+    Search search = {.scan = &turned, .probe = probe};
     list->count = 0;
-    bool ok = scan_coarsely(&search, error) && refine(&search, error) && list_borders(&search, list, error);
+    bool ok = scan_coarsely(&search, error);
+    if (ok && scan->either)
+        turned.fails_low = search.samples[0].side == SIDE_FAILS && search.samples[search.count - 1].side == SIDE_HOLDS;
+    ok = ok && refine(&search, error) && list_borders(&search, list, error);
     free(search.samples);
     return ok;
 }

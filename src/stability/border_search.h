@@ -17,6 +17,7 @@ typedef struct BorderScan {
     int points;      /* 2 .. BORDER_POINTS_MAX, including both ends */
     bool logarithmic, whole;
     bool fails_low; /* expected to fail at low values; reverses the order of the list */
+    bool either;    /* fails_low is set if the lowest value of the coarse scan fails and the highest holds */
 } BorderScan;
 
 typedef struct BorderProbe {

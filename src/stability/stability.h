@@ -5,6 +5,7 @@
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
+#include "stability/stability_own.h"
 
 #include <stdbool.h>
 
@@ -17,6 +18,7 @@ typedef struct StabilityOptions {
     bool quick;          /* few studies, small maps */
     int name_count;      /* of studies and maps to run; 0: all */
     const char *names[STABILITY_MAX_NAMES];
+    const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
 } StabilityOptions;
 
 /* Runs the studies and maps and writes the tables. An interrupted run is resumed at the unfinished study or map. The

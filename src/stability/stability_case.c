@@ -11,12 +11,24 @@
 static const float shift = 1e-6f; /* m */
 
 bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error) {
+    if (place->file != NULL) return file_path(path, STABILITY_PATH_SIZE, error, "%s", place->file);
     return file_path(path, STABILITY_PATH_SIZE, error, "%s/stability/%s.yaml", place->scenes, place->scene);
 }
 
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error) {
     char path[STABILITY_PATH_SIZE];
     return stability_path(path, place, error) ? scene_read_with(path, settings, count, error) : NULL;
+}
+
+VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
+                                 const EnergyLog *converged) {
+    VerdictRun run = verdict_run_of(scene);
+    if (place->file == NULL) {
+        run.stands = stands;
+        run.until_bomb = false;
+    }
+    run.converged = converged;
+    return run;
 }
 
 const char *stability_unit(const Scene *scene, const char *parameter) {

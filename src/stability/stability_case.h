@@ -11,13 +11,19 @@ enum { STABILITY_PATH_SIZE = 4096 };
 typedef struct StabilityPlace {
     const char *scenes; /* the folder that contains stability/ */
     const char *scene;  /* file name without folder and extension */
+    const char *file;   /* or this file, if not NULL */
 } StabilityPlace;
 
-/* "scenes/stability/SCENE.yaml". ERROR_INPUT if it is too long. */
+/* "scenes/stability/SCENE.yaml", or the file. ERROR_INPUT if it is too long. */
 bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error);
 
 /* Reads the scene with these parameter values. The caller frees it. */
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
+
+/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by the
+   table of studies, or follows from the scene if it is a file. */
+VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
+                                 const EnergyLog *converged);
 
 /* The unit of a parameter of the scene, or "". */
 const char *stability_unit(const Scene *scene, const char *parameter);

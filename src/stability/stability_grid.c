@@ -20,8 +20,12 @@ typedef struct Run {
     RunCounter counter;
 } Run;
 
+static StabilityPlace place_of(const StabilityGrid *grid) {
+    return (StabilityPlace){grid->scenes, grid->map->scene, grid->map->file};
+}
+
 static Scene *read_scene(const StabilityGrid *grid, const SceneSetting *settings, int count, Error *error) {
-    const StabilityPlace place = {grid->scenes, grid->map->scene};
+    const StabilityPlace place = place_of(grid);
     return stability_scene(&place, settings, count, error);
 }
 
@@ -32,16 +36,23 @@ static Scene *scene_at(const StabilityGrid *grid, double x, double y, Error *err
     return read_scene(grid, settings, 2, error);
 }
 
+static bool judge_scene(Run *run, int cell, const Scene *scene, const EnergyLog *converged, Error *error) {
+    const StabilityPlace place = place_of(run->grid);
+    const VerdictRun judged = stability_verdict_run(&place, scene, run->grid->map->stands, converged);
+    const int cells = run->x_count * run->y_count;
+    for (int i = 0; i < run->method_count; i++)
+        if (!verdict_run(&run->readings[i * cells + cell], scene, &run->methods[i]->method, &judged, error) ||
+            !run_counter_add(&run->counter, run->grid->map->name, error))
+            return false;
+    return true;
+}
+
 static bool judge_cell(void *context, int cell, Error *error) {
     Run *run = context;
     EnergyLog converged = {0};
-    const int cells = run->x_count * run->y_count;
     Scene *scene = scene_at(run->grid, run->x[cell % run->x_count], run->y[cell / run->x_count], error);
-    bool ok = scene != NULL && converged_run_once(&converged, scene, error);
-    for (int i = 0; ok && i < run->method_count; i++)
-        ok = verdict_run(&run->readings[i * cells + cell], scene, &run->methods[i]->method, run->grid->map->stands,
-                         &converged, error) &&
-             run_counter_add(&run->counter, run->grid->map->name, error);
+    bool ok = scene != NULL && converged_run_once(&converged, scene, error) &&
+              judge_scene(run, cell, scene, &converged, error);
     energy_log_free(&converged);
     scene_destroy(scene);
     return ok;

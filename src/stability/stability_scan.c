@@ -40,11 +40,22 @@ typedef struct Run {
     Result *results; /* [methods] */
 } Run;
 
+static StabilityPlace place_of(const StabilityScan *scan) {
+    return (StabilityPlace){scan->scenes, scan->study->scene, scan->study->file};
+}
+
 static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
-    const StabilityPlace place = {scan->scenes, scan->study->scene};
+    const StabilityPlace place = place_of(scan);
     SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
     snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
     return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
+}
+
+static bool judge(const StabilityScan *scan, const Scene *scene, const Method *method, const EnergyLog *log,
+                  VerdictReading *reading, Error *error) {
+    const StabilityPlace place = place_of(scan);
+    const VerdictRun run = stability_verdict_run(&place, scene, scan->study->stands, log);
+    return verdict_run(reading, scene, method, &run, error);
 }
 
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
@@ -53,7 +64,7 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
     if (scene != NULL) stability_shift(scene, seed);
     if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
-    bool ok = log != NULL && verdict_run(reading, scene, method, scan->study->stands, log, error);
+    bool ok = log != NULL && judge(scan, scene, method, log, reading, error);
     scene_destroy(scene);
     return ok;
 }
@@ -187,7 +198,8 @@ bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Err
     const StabilityStudy *study = run.scan->study;
     const ParallelWork work = {study_method, &run};
     run.counter.expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER);
-    run.typical = stability_scene(&(StabilityPlace){run.scan->scenes, study->scene}, NULL, 0, error);
+    const StabilityPlace place = place_of(run.scan);
+    run.typical = stability_scene(&place, NULL, 0, error);
     run.results = calloc((size_t)methods, sizeof *run.results);
     bool ok = run.typical != NULL;
     if (ok && run.results == NULL) ok = error_memory(error, study->name);

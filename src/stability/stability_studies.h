@@ -17,6 +17,7 @@ typedef struct StabilityStudy {
     bool rests;         /* also records drift and energy of every run */
     bool quick;         /* part of a quick run */
     double weight;      /* s for all methods on two cores, approximately */
+    const char *file;   /* path of another scene instead; `stands` then follows from each scene (verdict_run_of) */
 } StabilityStudy;
 
 typedef struct StabilityAxis {
@@ -31,6 +32,7 @@ typedef struct StabilityMap {
     StabilityAxis x, y;
     bool stands, iterations, quick; /* as above */
     double weight;
+    const char *file; /* as above */
 } StabilityMap;
 
 extern const StabilityStudy stability_studies[];

@@ -158,14 +158,12 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
     return failure.kind == ERROR_INPUT;
 }
 
-bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
-                 const EnergyLog *converged, Error *error) {
-    const VerdictRun run = {
-        .gravity = scene->gravity, .dt = scene->dt, .frames = scene->frames, .stands = stands, .converged = converged};
+bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
+                 Error *error) {
     VerdictWatch watch = {0};
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
-    bool ok = stepper != NULL && verdict_watch_begin(&watch, &run, world_bodies(world), world_body_count(world), error);
+    bool ok = stepper != NULL && verdict_watch_begin(&watch, run, world_bodies(world), world_body_count(world), error);
     NetworkFallbacks fallbacks = {0};
     for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);

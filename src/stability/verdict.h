@@ -200,5 +200,5 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
 /* Runs the scene with the method until the verdict is final. A NaN or infinite state is a verdict, not an error. False
    with error set if the method cannot be created or memory is short. */
-bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, bool stands,
-                 const EnergyLog *converged, Error *error);
+bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
+                 Error *error);

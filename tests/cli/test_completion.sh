@@ -79,6 +79,7 @@ twinbox simulate height.yaml --set hei<TAB>|twinbox simulate height.yaml --set h
 twinbox figure nar<TAB>|twinbox figure narrow-phase 
 twinbox figure strip engine.npz -o fig<TAB>|twinbox figure strip engine.npz -o figure.svg 
 twinbox train --kind sce<TAB>|twinbox train --kind scene-net 
+twinbox dataset --inputs nei<TAB>|twinbox dataset --inputs neighbours 
 twinbox completion fi<TAB>|twinbox completion fish 
 END
 cut -d'|' -f1 alike >keys

@@ -71,7 +71,8 @@ done
 for name in $formats; do
     line=$(grep "^$name|" "$manuals/pages.txt")
     IFS='|' read -r _ _ file intro _ wanted <<<"$line"
-    awk -v intro="$intro" -v sections="$wanted" -f "$manuals/page.awk" "$sources/$file" >markdown
+    awk -v intro="$intro" -v sections="$wanted" -f "$manuals/page.awk" "$sources/$file" >markdown ||
+        fail "src/cli/manuals/pages.txt: not all sections of $name are in $file"
     shown "$pages/man5/$name.5" >page
     while IFS= read -r code; do
         checks=$((checks + 1))

@@ -32,7 +32,7 @@ static char *print_all(NoteLevel level) {
     work_for_an_hour();
     note_print("%d is a note", 1);
     note_verbose("%d is printed only with -v", 2);
-    trace_line("%d comes from below", 3);
+    for (int i = 0; i < 3; i++) trace_line("%d comes from below", 3);
     note_set_level(NOTES_NORMAL);
     dup2(before, STDERR_FILENO);
     close(before);
@@ -65,6 +65,7 @@ static void verbose_prints_all(void **state) {
     assert_non_null(strstr(text, "work: 100%"));
     assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\ntwinbox: 2 is printed only with -v\n"
                                  "twinbox: 3 comes from below\n"));
+    assert_string_equal(strstr(text, "twinbox: 3"), "twinbox: 3 comes from below\n");
     free(text);
 }
 

@@ -11,7 +11,9 @@ run 0 render engine.npz --frames 0:1 --size 64x64 -o expected
 run 0 render momentum.npz --frames 0:1 --size 64x64 -o actual
 
 # COMMAND STATUS ARGUMENT...: one line for each command; what is written goes to out_of_COMMAND.
-lines="simulate 0 scenes/single.yaml -o out_of_simulate.npz
+lines="new 0 out_of_new.yaml --like wall
+check 0 scenes/single.yaml -o out_of_check.png
+simulate 0 scenes/single.yaml -o out_of_simulate.npz
 render 0 engine.npz --frames 0:1 --size 64x64 -o out_of_render
 compare 1 expected actual --report out_of_compare
 approve 0 out_of_compare

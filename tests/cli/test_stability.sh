@@ -74,7 +74,7 @@ complains "scenes/stability/bomb_speed.yaml"
 run 2 stability
 complains "-o DIR is needed"
 run 2 stability stack_height -o none
-complains "'stack_height' is not expected"
+complains "stack_height: error: --vary NAME is needed"
 [ -e none ] && fail "what was refused has left a folder"
 run 3 stability --scenes "$scenes" --study bomb_speed --methods engine -o /proc/none
 finish

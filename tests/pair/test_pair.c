@@ -45,9 +45,7 @@ static void views_show_what_they_are_named_for(void **state) {
     for (int i = 0; i < 10; i++) assert_near(inputs[i], raw[i], 0);
     assert_near(inputs[10], 77, 0);
     PairView view = PAIR_RELATIVE;
-    assert_true(pair_view_find("raw-unturned", &view) && view == PAIR_RAW_UNTURNED);
     assert_true(pair_view_of_inputs(pair_views[PAIR_RAW].inputs, &view) && view == PAIR_RAW);
-    assert_false(pair_view_find("raw ", &view));
     assert_false(pair_view_of_inputs("", &view));
 }
 

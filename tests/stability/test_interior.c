@@ -9,7 +9,8 @@ static VerdictReading judge(const Scene *scene, const char *text, bool stands, c
     Method method;
     VerdictReading reading;
     assert_ok(method_parse(&method, text, &error), error);
-    assert_ok(verdict_run(&reading, scene, &method, stands, converged, &error), error);
+    const VerdictRun run = beside(scene, stands, converged);
+    assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
     return reading;
 }
 

@@ -23,7 +23,7 @@ static void assert_fits(const Scene *scene, const char *name, const BorderScan *
 
 static Scene *read_scene(const char *name) {
     Error error = {0};
-    Scene *scene = stability_scene(&(StabilityPlace){scenes, name}, NULL, 0, &error);
+    Scene *scene = stability_scene(&(StabilityPlace){.scenes = scenes, .scene = name}, NULL, 0, &error);
     assert_ok(scene != NULL, error);
     return scene;
 }

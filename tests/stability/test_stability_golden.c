@@ -43,7 +43,7 @@ static bool check_side(Golden *golden, int i, const StabilityScan *scan, bool ho
 static bool check_refusal(const Golden *golden, int i, const StabilityScan *scan, Error *error) {
     Method method;
     Error reason = {0};
-    const StabilityPlace place = {scenes, scan->study->scene};
+    const StabilityPlace place = {.scenes = scenes, .scene = scan->study->scene};
     Scene *scene = stability_scene(&place, NULL, 0, error);
     bool ok = scene != NULL && method_of(&golden->table.rows[i], &method, error);
     if (ok && stability_applies(&method, scene, &reason))

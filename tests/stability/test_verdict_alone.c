@@ -115,7 +115,7 @@ static Scene *scene_at(const StabilityStudy *study, double value) {
     Error error = {0};
     SceneSetting settings[2] = {{.value = value}, study->fixed};
     snprintf(settings[0].name, sizeof settings[0].name, "%s", study->parameter);
-    const StabilityPlace place = {SOURCE_DIR "/scenes", study->scene};
+    const StabilityPlace place = {.scenes = SOURCE_DIR "/scenes", .scene = study->scene};
     Scene *scene = stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, &error);
     assert_ok(scene != NULL, error);
     return scene;
@@ -135,12 +135,13 @@ static void scenes_without_bomb_and_speed_stand(void **state) {
 static void judge_both(const Scene *scene, const char *text, bool stands, const EnergyLog *converged, int found[2]) {
     Error error = {0};
     Method method;
-    VerdictReading alone, beside;
+    VerdictReading alone, converging;
     assert_ok(method_parse(&method, text, &error), error);
-    assert_ok(verdict_run(&beside, scene, &method, stands, converged, &error), error);
-    assert_ok(verdict_run(&alone, scene, &method, stands, NULL, &error), error);
-    found[0] += beside.verdict >= VERDICT_EXPLODES;
-    found[1] += alone.verdict != beside.verdict;
+    const VerdictRun runs[2] = {beside(scene, stands, converged), beside(scene, stands, NULL)};
+    assert_ok(verdict_run(&converging, scene, &method, &runs[0], &error), error);
+    assert_ok(verdict_run(&alone, scene, &method, &runs[1], &error), error);
+    found[0] += converging.verdict >= VERDICT_EXPLODES;
+    found[1] += alone.verdict != converging.verdict;
 }
 
 /* In three studies, a third of the runs explode, and the verdicts with and without a converged run are the same. */

@@ -79,7 +79,8 @@ static VerdictReading judge(const Scene *scene, bool stands, const EnergyLog *co
     Method method;
     VerdictReading reading;
     parse(&method, "engine");
-    assert_ok(verdict_run(&reading, scene, &method, stands, converged, &error), error);
+    const VerdictRun run = beside(scene, stands, converged);
+    assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
     return reading;
 }
 

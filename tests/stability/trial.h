@@ -61,6 +61,15 @@ static inline VerdictReading trial_end(Trial *trial) {
     return reading;
 }
 
+/* The run of a scene beside its converged run (or NULL). */
+static inline VerdictRun beside(const Scene *scene, bool stands, const EnergyLog *converged) {
+    VerdictRun run = verdict_run_of(scene);
+    run.stands = stands;
+    run.until_bomb = false;
+    run.converged = converged;
+    return run;
+}
+
 #define assert_verdict(reading, expected)                                                                    \
     do {                                                                                                     \
         const VerdictReading reading_ = (reading);                                                           \

@@ -1,0 +1,105 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Borders and maps of a scene file: the figures of the table's studies, the slope's law, resumed runs, refused input.
+. "$(dirname "$0")/checks.sh"
+ramp=$scenes/stability/friction_ramp.yaml
+
+# A study of the table has the same borders as its scene on its own with the same values.
+run 0 stability --scenes "$scenes" --study heavy_on_one --methods engine:k=4,momentum,scene-net -o table
+run 0 stability "$scenes/stability/heavy_on_one.yaml" --vary ratio=1:1000 --methods engine:k=4,momentum,scene-net -o own
+says "heavy_on_one_ratio: ratio, holds | fails"
+for file in stability refusals; do
+    cmp -s <(cut -d, -f2- table/$file.csv) <(cut -d, -f2- own/$file.csv) || fail "$file.csv is not that of the table's study"
+done
+equal "files" "$(ls own)" "$(ls table)"
+
+# A box of friction 0.2 stands on a slope up to 0.2, and on one of 0.3 from a friction of 0.3 on. Without a range a
+# parameter varies between its bounds.
+run 0 stability "$ramp" --vary slope --vary friction=0.05:0.6 --quick --methods engine -o ramp
+/usr/bin/python3 - <<'PYTHON' || fail "the borders of the slope and of the friction"
+import csv
+slope, friction = csv.DictReader(open("ramp/stability.csv"))
+assert slope["study"] == "friction_ramp_slope" and friction["parameter"] == "friction"
+assert slope["verdict"] == friction["verdict"] == "falls"
+holds, fails = float(slope["holds_at"]), float(slope["fails_at"])
+assert holds <= 0.2 <= fails + 1e-9 and fails - holds < 0.013, slope
+holds, fails = float(friction["holds_at"]), float(friction["fails_at"])
+assert fails <= 0.15 <= holds + 1e-9 and holds - fails < 0.012, friction # fails low: found, not given
+cells = list(csv.DictReader(open("ramp/maps.csv")))
+assert len(cells) == 16 and {cell["map"] for cell in cells} == {"friction_ramp_slope_friction"}
+for cell in cells:
+    gap = float(cell["y"]) - float(cell["x"])
+    if abs(gap) > 0.01:
+        assert (cell["verdict"] in ("settles", "sways")) == (gap > 0), cell
+PYTHON
+equal "figures" "$(cd ramp && echo *.png)" "borders.png map-friction_ramp_slope_friction.png"
+
+# A map's cell as a video.
+run 0 stability "$ramp" --vary slope --vary friction=0.05:0.6 -o ramp --clip friction_ramp_slope_friction:engine:0.6,0.05
+says "friction_ramp_slope_friction:engine:0.6,0.05: falls at "
+
+# A run that is interrupted continues, and another range begins again.
+two="--vary ratio=1:50 --vary friction --methods engine:k=4,engine:k=10,momentum"
+cat >five.yaml <<'YAML'
+parameters: {ratio: {value: 5, from: 1, to: 100}, friction: {value: 0.4, from: 0.2, to: 0.8}}
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+frames: 900
+bodies:
+  - {static: true, size: [100, 20], position: [0, -10], friction: $friction}
+  - {pattern: stack, count: 5, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.5], friction: $friction}
+  - {mass: $ratio, size: [1, 1], position: [0, 5.5], friction: $friction}
+YAML
+run 0 stability five.yaml $two -o whole
+"$twinbox" stability five.yaml $two -o part >out 2>err </dev/null &
+for _ in $(seq 6000); do
+    ls part/parts-*/five_ratio >/dev/null 2>&1 && break
+    sleep 0.01
+done
+kill -INT $!
+wait $!
+equal "exit status of an interrupted study" $? 2
+complains "stopped; finished parts are kept"
+sed -i 's/engine,k=10,ratio,,[0-9.]*/engine,k=10,ratio,,1.5/' part/parts-*/five_ratio
+run 0 stability five.yaml $two -o part
+equal "a finished part is kept" "$(grep -c 'k=10,ratio,,1.5,' part/stability.csv)" 1
+cmp -s whole/maps.csv part/maps.csv || fail "an interrupted run ends with another map"
+
+# Refused before the work, so that no folder is made.
+refused() {
+    local message=$1
+    shift
+    run 2 stability "$@" -o none
+    complains "$message"
+}
+cat >walls.yaml <<'YAML'
+parameters:
+  gap: {value: 2, from: 0.5, to: 3, unit: m}
+  rows: {value: 2, from: 1, to: 4, unit: m², whole: on}
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+frames: 60
+bodies:
+  - {static: true, size: [100, 20], position: [0, -10]}
+  - {mass: 1, size: [1, 1], position: [0, 0.5]}
+  - {pattern: stack, count: $rows, spacing: [0, 1], mass: 1, size: [1, 1], position: [$gap, 0.5]}
+YAML
+refused "'gab' is not a parameter of the scene; did you mean 'gap'?" walls.yaml --vary gab
+refused "'height' is not a parameter of the scene; known: gap, rows" walls.yaml --vary height
+refused "'gap=0:2' is not within the scene's bounds of gap: 0.5 to 3 m" walls.yaml --vary gap=0:2
+refused "'gap=2:4' is not within" walls.yaml --vary gap=2:4
+refused "'gap=2' is not NAME=FROM:TO" walls.yaml --vary gap=2
+refused "with FROM less than TO" walls.yaml --vary gap=2:2
+refused "the unit 'm²' of rows cannot stand in a table" walls.yaml --vary rows
+refused "this is the scene for --vary with gap = 0.5" walls.yaml --vary gap
+refused "the parameter 'gap' is given twice" walls.yaml --vary gap=1:2 --vary gap=1:3
+refused "at most 2 parameters" "$ramp" --vary slope --vary friction --vary slope
+refused "the scene 'stack' has no parameters" "$scenes/stack.yaml" --vary height
+refused "--vary NAME is needed" "$ramp"
+refused "a scene is needed" --vary slope
+refused "is for the studies without SCENE" "$ramp" --vary slope --study at_rest
+refused "nowhere.yaml: error:" nowhere.yaml --vary slope
+[ -e none ] && fail "what was refused has left a folder"
+finish
