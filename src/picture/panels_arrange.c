@@ -36,10 +36,12 @@ static double scale_in(const Layout *layout, Vec2 size) {
     return fmin(width_of(panel) / (double)size.x, height_of(panel) / (double)size.y);
 }
 
+/* A moving camera comes closer than the fixed view: it has the usual panels. */
 static Layout choose_grid(const Picture *picture, Vec2 size, int width, int height, LayoutRows rows) {
     const int count = picture->panel_count, usual = layout_columns(width, height, count);
     Layout best = layout_make(width, height, count, usual, rows);
     const double usual_scale = scale_in(&best, size);
+    if (picture->look.camera != LOOK_FIT) return best;
     double largest = 0;
     for (int columns = 1; columns <= count; columns++) {
         const int lines = (count + columns - 1) / columns;
@@ -62,7 +64,7 @@ static int shrink(int whole, double needed, double share, double least) {
     return (int)fmin(whole, ceil(fmax(needed / FULL_SHARE, least)));
 }
 
-/* A moving camera comes closer, so its panels stay. The names of an overlay's runs need the whole width. */
+/* The names of an overlay's runs need the whole width. */
 static void shrink_panels(Picture *picture, Vec2 size) {
     Layout *layout = &picture->layout;
     const double scale = scale_in(layout, size),
