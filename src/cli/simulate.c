@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/json_output.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "cli/simulate_verdict.h"
-#include "simulate/simulate.h"
+#include "cli/simulate_print.h"
+#include "simulate/recorder.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
@@ -16,7 +15,7 @@ typedef struct Options {
     int bomb_frame;         /* -1: the scene's */
     int frames, iterations; /* 0: the scene's */
     float dt;               /* s; 0: the scene's */
-    bool no_bomb, no_warm_starting, no_accumulate, no_position_correction;
+    bool json, no_contacts, no_bomb, no_warm_starting, no_accumulate, no_position_correction;
     SceneSettings set;
 } Options;
 
@@ -27,6 +26,9 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, method)},
     {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
     {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_TEXT(Options, verdict)},
+    {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz; they are most of it",
+     OPTION_FLAG(Options, no_contacts)},
+    {OPTION_JSON(Options, json)},
     {.help = "Override the scene:"},
     {OPTION_SET(Options, set)},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m",
@@ -81,58 +83,54 @@ static bool ends_with(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-static bool store(const Trajectory *run, const Options *options, Error *error) {
-    bool ok = true;
+static Recorder *create_recorder(const Scene *scene, const Method *method, const Options *options, Error *error) {
+    RecorderOutput outputs[RECORDER_OUTPUTS_MAX];
+    int count = 0;
     if (options->output != NULL)
-        ok = ends_with(options->output, ".csv") ? trajectory_write_csv(run, options->output, error)
-                                                : trajectory_write(run, options->output, error);
-    return ok && (options->hashes == NULL || trajectory_write_hashes(run, options->hashes, error));
+        outputs[count++] =
+            (RecorderOutput){options->output, ends_with(options->output, ".csv") ? TRAJECTORY_CSV : TRAJECTORY_NPZ};
+    if (options->hashes != NULL) outputs[count++] = (RecorderOutput){options->hashes, TRAJECTORY_HASHES};
+    return recorder_create_to(scene, method, outputs, count, options->no_contacts, error);
 }
 
-/* What the method solved by simpler means than its own, if anything. */
-static void print_fallbacks(const NetworkFallbacks *fallbacks) {
-    const struct {
-        int count;
-        const char *what;
-    } rows[] = {{fallbacks->by_sweeps, "steps solved by sweeps instead"},
-                {fallbacks->beyond_training, "steps without the network, as they are unlike its training"},
-                {fallbacks->not_finite, "outputs of the network that were NaN, infinite or out of bounds"},
-                {fallbacks->outside_cone, "impulses of the network outside the friction cone"}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (rows[i].count > 0) printf("    %s: %d\n", rows[i].what, rows[i].count);
-}
-
-/* A run that ends in a NaN or infinite state has a verdict, too. */
-static bool judge(SimulateVerdict *verdict, const Options *options, Error *error) {
-    if (!simulate_verdict_end(verdict, error)) return false;
-    simulate_verdict_print(verdict);
-    return options->verdict == NULL || simulate_verdict_write(verdict, options->verdict, error);
-}
-
-static bool record(const Scene *scene, const Method *method, SimulateVerdict *verdict, const Options *options,
+/* Runs the scene and writes the files; fills the result. */
+static bool record(const Scene *scene, const Method *method, const Options *options, SimulateResult *result,
                    Error *error) {
-    const StepObserver observer = simulate_verdict_observer(verdict);
-    NetworkFallbacks fallbacks = {0};
-    Trajectory *run = simulate_counting(scene, method, &fallbacks, &observer, progress_bar_begin(scene->name), error);
+    const StepObserver observer = simulate_verdict_observer(&result->verdict);
+    Recorder *recorder = create_recorder(scene, method, options, error);
+    if (recorder == NULL) return false;
+    const RunWatch watch = {.recorder = recorder,
+                            .observers = &observer,
+                            .observer_count = 1,
+                            .fallbacks = &result->fallbacks,
+                            .progress = progress_bar_begin(scene->name)};
+    bool ok = simulate_watched(scene, method, &watch, error);
     progress_bar_end();
-    bool ok = run != NULL && store(run, options, error);
+    ok = ok && recorder_finish(recorder, error);
     if (ok) {
-        printf("%s by %s: %d steps of %g s, %d bodies, state %016" PRIx64 "%s%s\n", run->scene, run->method,
-               run->frames - 1, (double)run->dt, run->bodies, trajectory_frame_hash(run, run->frames - 1),
-               options->output != NULL ? " -> " : "", options->output != NULL ? options->output : "");
-        print_fallbacks(&fallbacks);
+        result->bodies = recorder_bodies(recorder);
+        result->state = recorder_state_hash(recorder);
     }
-    trajectory_destroy(run);
+    recorder_destroy(recorder);
     return ok;
 }
 
+/* A run that ends in a NaN or infinite state has a verdict, too. */
+static bool judge(SimulateResult *result, const Options *options, Error *error) {
+    if (!simulate_verdict_end(&result->verdict, error)) return false;
+    if (!options->json) simulate_verdict_print(&result->verdict);
+    return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
+}
+
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
-    SimulateVerdict verdict;
-    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&verdict, scene, method->text, error))
+    SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
+    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method->text, error))
         return false;
-    bool ok = record(scene, method, &verdict, options, error);
-    ok = judge(&verdict, options, error) && ok;
-    simulate_verdict_free(&verdict);
+    bool ok = record(scene, method, options, &result, error);
+    if (ok && !options->json) simulate_result_print(&result);
+    ok = judge(&result, options, error) && ok;
+    ok = ok && (!options->json || simulate_result_json(&result, error));
+    simulate_verdict_free(&result.verdict);
     return ok;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whole files in and out. */
+/* Whole files in. */
 #include "common/file.h"
 
 #include "common/array.h"
@@ -15,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 bool file_open_error(const char *path, Error *error) {
@@ -85,136 +84,6 @@ char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
 
 char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error) {
     return read_and_close(openat(folder, name, OPEN_TO_READ | O_NOFOLLOW), path, limit, size, error);
-}
-
-static bool write_all(int file, const char *data, size_t size) {
-    while (size > 0) {
-        ssize_t written = write(file, data, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return false;
-        data += written;
-        size -= (size_t)written;
-    }
-    return true;
-}
-
-/* Creates a file in the folder of path (relative to the directory `at`) and returns its name in `name`. Not mkstemp:
-   its files are readable by their owner only, whatever the umask. */
-static int create_beside(int at, const char *path, char *name, size_t name_size) {
-    for (unsigned attempt = 0;; attempt++) {
-        struct timespec now;
-        clock_gettime(CLOCK_REALTIME, &now);
-        int length = snprintf(name, name_size, "%.*s.twinbox-%ld-%lx-%u.tmp", (int)file_folder_length(path), path,
-                              (long)getpid(), (unsigned long)now.tv_nsec, attempt);
-        if (length < 0 || (size_t)length >= name_size) {
-            errno = ENAMETOOLONG;
-            return -1;
-        }
-        int file = openat(at, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0 || errno != EEXIST || attempt == 100) return file;
-    }
-}
-
-/* An entry that cannot be opened or does not support fsync counts as synced. */
-static bool sync_entry(const char *path) {
-    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return true;
-    bool done = fsync(file) == 0 || errno == EINVAL;
-    int cause = errno;
-    close(file);
-    errno = cause;
-    return done;
-}
-
-/* Also the directory entry must survive a power cut. */
-static bool sync_folder(int at, const char *path) {
-    char folder[PATH_MAX];
-    if (at != AT_FDCWD) return fsync(at) == 0 || errno == EINVAL;
-    int length = (int)file_folder_length(path);
-    snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
-    return sync_entry(folder);
-}
-
-/* Closes also after a failure, and keeps errno of the first failure. */
-static bool close_after(int file, bool done) {
-    int cause = errno;
-    if (close(file) != 0 && done) return false;
-    errno = cause;
-    return done;
-}
-
-static bool replace(int at, const char *path, const void *data, size_t size, bool wait) {
-    char name[PATH_MAX];
-    int file = create_beside(at, path, name, sizeof name);
-    if (file < 0) return false;
-    bool done = close_after(file, write_all(file, data, size) && (!wait || fsync(file) == 0));
-    if (done && renameat(at, name, at, path) == 0) return !wait || sync_folder(at, path);
-    int cause = errno;
-    unlinkat(at, name, 0);
-    errno = cause;
-    return false;
-}
-
-static bool is_standard_output(const struct stat *status) {
-    struct stat output;
-    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
-}
-
-/* For devices, pipes and the target of /dev/stdout. */
-static bool write_into(int file, const void *data, size_t size) {
-    return file >= 0 && close_after(file, write_all(file, data, size));
-}
-
-static bool put(const char *path, const void *data, size_t size, bool wait) {
-    struct stat status;
-    if (lstat(path, &status) != 0) return replace(AT_FDCWD, path, data, size, wait);
-    bool is_link = S_ISLNK(status.st_mode);
-    if (is_link && stat(path, &status) != 0) return false;
-    if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), data, size);
-    if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), data, size);
-    if (!is_link) return replace(AT_FDCWD, path, data, size, wait);
-    char target[PATH_MAX];
-    return realpath(path, target) != NULL && replace(AT_FDCWD, target, data, size, wait);
-}
-
-static bool finish(bool written, const char *path, size_t size, Error *error) {
-    if (!written) return error_system(error, path, "cannot write: %s", strerror(errno));
-    trace_line("wrote %s, %zu bytes", path, size);
-    return true;
-}
-
-bool file_append(const char *path, const void *data, size_t size, Error *error) {
-    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
-    return finish(write_into(file, data, size), path, size, error);
-}
-
-bool file_write(const char *path, const void *data, size_t size, Error *error) {
-    return finish(put(path, data, size, true), path, size, error);
-}
-
-bool file_create(const char *path, const void *data, size_t size, Error *error) {
-    char name[PATH_MAX];
-    int file = create_beside(AT_FDCWD, path, name, sizeof name);
-    if (file < 0) return finish(false, path, size, error);
-    /* A link, unlike a renamed file, does not replace what is there. */
-    bool done = close_after(file, write_all(file, data, size) && fsync(file) == 0) && link(name, path) == 0;
-    int cause = errno;
-    unlink(name);
-    errno = cause;
-    if (!done && errno == EEXIST) return error_input(error, path, "exists already, and is not overwritten");
-    return finish(done && sync_folder(AT_FDCWD, path), path, size, error);
-}
-
-bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
-    return finish(replace(folder, name, data, size, true), path, size, error);
-}
-
-bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
-    return finish(put(path, data, size, false), path, size, error);
-}
-
-bool file_sync(const char *path, Error *error) {
-    return sync_entry(path) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
 static bool is_directory(const char *path) {

@@ -39,6 +39,17 @@ bool file_write_soon(const char *path, const void *data, size_t size, Error *err
 /* Writes behind what is in the file; creates it if it is missing. */
 bool file_append(const char *path, const void *data, size_t size, Error *error);
 
+/* A file that is written piece by piece: a draft without a name, in the folder of `path`, open for reading and writing.
+   The caller closes it. A program that is killed leaves nothing of it. -1 with error set. */
+int file_draft(const char *path, Error *error);
+bool file_draft_write(int draft, const char *path, const void *data, size_t size, Error *error);
+
+/* Makes the draft that file `path`, atomically, or copies it there if `path` is a pipe or a device. Still to be closed. */
+bool file_draft_publish(int draft, const char *path, Error *error);
+
+/* Copies an open file from its beginning to where the file `to` stands. False with errno set. */
+bool file_copy(int to, int from);
+
 /* Waits until a file, or the entries of a directory, are on the disk. */
 bool file_sync(const char *path, Error *error);
 

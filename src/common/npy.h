@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The header of one .npy array (NumPy format specification). npz_write.c writes it before the data of each member,
+/* The header of one .npy array (NumPy format specification). npz_stream.c writes it before the data of each member,
    npz.c parses it. Only those two and npy_convert.c include this file. */
 #pragma once
 #include "common/npz.h"

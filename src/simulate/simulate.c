@@ -2,8 +2,8 @@
 #include "simulate/simulate.h"
 
 #include "simulate/launch_check.h"
+#include "simulate/recorder.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -55,106 +55,34 @@ static bool run_step(Run *run, int frame, Error *error) {
     return simulate_step(run->stepper, run->world, &(Step){.scene = run->scene, .frame = frame}, error);
 }
 
-bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error) {
+static bool observe(const Run *run, int frame, const RunWatch *watch, Error *error) {
+    if (watch->recorder != NULL && !recorder_record(watch->recorder, frame, run->world, error)) return false;
+    for (int i = 0; i < watch->observer_count; i++)
+        if (!watch->observers[i].observe(watch->observers[i].context, frame, run->world, error)) return false;
+    if (watch->fallbacks != NULL) network_fallbacks_add(watch->fallbacks, &world_solution(run->world)->fallbacks);
+    if (progress_report(watch->progress, frame, run->scene->frames)) return true;
+    return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
+}
+
+bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *watch, Error *error) {
     Run run;
     if (!run_begin(&run, scene, method, error)) return false;
-    bool ok = true;
+    bool ok = watch->recorder == NULL || recorder_record(watch->recorder, 0, run.world, error);
     for (int frame = 1; ok && frame <= scene->frames; frame++)
-        ok = run_step(&run, frame, error) && observer->observe(observer->context, frame, run.world, error);
+        ok = run_step(&run, frame, error) && observe(&run, frame, watch, error);
     run_end(&run);
     return ok;
 }
 
-static void record_bodies(Trajectory *trajectory, int frame, const World *world) {
-    const Body *bodies = world_bodies(world);
-    size_t row = (size_t)frame * (size_t)trajectory->bodies;
-    for (int i = 0; i < world_body_count(world); i++) {
-        trajectory->position[row + (size_t)i] = bodies[i].position;
-        trajectory->angle[row + (size_t)i] = bodies[i].angle;
-        trajectory->velocity[row + (size_t)i] = bodies[i].velocity;
-        trajectory->angular_velocity[row + (size_t)i] = bodies[i].angular_velocity;
-    }
-}
-
-static bool record_contacts(Trajectory *trajectory, int frame, const World *world, Error *error) {
-    const ContactProblem *problem = world_problem(world);
-    const ContactSolution *solution = world_solution(world);
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        TrajectoryContact record = {.a = contact->a,
-                                    .b = contact->b,
-                                    .feature = contact->feature,
-                                    .point = contact->position,
-                                    .normal = contact->normal,
-                                    .normal_impulse = solution->impulses[i].normal,
-                                    .tangent_impulse = solution->impulses[i].tangent};
-        if (!trajectory_add_contact(trajectory, frame, &record, error)) return false;
-    }
-    return true;
-}
-
-static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) {
-    trajectory->size[body] = def->size;
-    trajectory->fixed[body] = def->fixed;
-}
-
-/* A trajectory without frames yet. */
-static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, Error *error) {
-    bool bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
-    int64_t states = ((int64_t)scene->frames + 1) * (scene->body_count + bomb);
-    if (states > SIMULATE_MAX_STATES) {
-        error_input(error, scene->name, "%d frames of %d bodies are too many to record; at most %d states of a body",
-                    scene->frames, scene->body_count + bomb, SIMULATE_MAX_STATES);
-        return NULL;
-    }
-    Trajectory *trajectory = trajectory_create(scene->frames + 1, scene->body_count + bomb, error);
-    if (trajectory == NULL) return NULL;
-    snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
-    snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
-    trajectory->scene_hash = scene_hash(scene);
-    trajectory->dt = scene->dt;
-    trajectory->camera_center = scene->camera_center;
-    trajectory->camera_size = scene->camera_size;
-    for (int i = 0; i < scene->body_count; i++) describe_body(trajectory, i, &scene->bodies[i]);
-    trajectory->bomb = bomb ? scene->body_count : -1;
-    if (bomb) describe_body(trajectory, trajectory->bomb, &scene->bomb.body);
-    return trajectory;
-}
-
-/* Nobody observes if there is no observer. */
-static bool observe(const StepObserver *observer, int frame, const World *world, Error *error) {
-    return observer == NULL || observer->observe(observer->context, frame, world, error);
-}
-
-static bool record(Run *run, Trajectory *trajectory, NetworkFallbacks *sum, const StepObserver *observer,
-                   const Progress *progress, Error *error) {
-    record_bodies(trajectory, 0, run->world);
-    for (int frame = 1; frame <= run->scene->frames; frame++) {
-        if (!run_step(run, frame, error) || !record_contacts(trajectory, frame, run->world, error)) return false;
-        record_bodies(trajectory, frame, run->world);
-        if (!observe(observer, frame, run->world, error)) return false;
-        network_fallbacks_add(sum, &world_solution(run->world)->fallbacks);
-        if (!progress_report(progress, frame, run->scene->frames))
-            return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
-    }
-    trajectory_end_contacts(trajectory);
-    return true;
-}
-
-Trajectory *simulate_counting(const Scene *scene, const Method *method, NetworkFallbacks *sum,
-                              const StepObserver *observer, const Progress *progress, Error *error) {
-    Run run;
-    if (!run_begin(&run, scene, method, error)) return NULL;
-    Trajectory *trajectory = trajectory_of_scene(scene, method, error);
-    if (trajectory != NULL && !record(&run, trajectory, sum, observer, progress, error)) {
-        trajectory_destroy(trajectory);
-        trajectory = NULL;
-    }
-    run_end(&run);
-    return trajectory;
+bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error) {
+    return simulate_watched(scene, method, &(RunWatch){.observers = observer, .observer_count = 1}, error);
 }
 
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
-    NetworkFallbacks unused = {0};
-    return simulate_counting(scene, method, &unused, NULL, progress, error);
+    Recorder *recorder = recorder_create(scene, method, error);
+    if (recorder == NULL) return NULL;
+    const RunWatch watch = {.recorder = recorder, .progress = progress};
+    Trajectory *run = simulate_watched(scene, method, &watch, error) ? recorder_take(recorder) : NULL;
+    recorder_destroy(recorder);
+    return run;
 }

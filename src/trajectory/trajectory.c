@@ -9,9 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Bytes of all arrays in a file. Readers accept at most 2 GiB, so no larger trajectory is made. */
-static const double MAX_BYTES = 2147483648.0;
-
 static double measure(double frames, double bodies, double contacts) {
     double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 1024;
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
@@ -35,7 +32,7 @@ static bool allocate(Trajectory *t) {
 
 Trajectory *trajectory_create(int frames, int bodies, Error *error) {
     assert(frames >= 1 && bodies >= 0);
-    if (measure(frames, bodies, 0) > MAX_BYTES) {
+    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES) {
         error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies);
         return NULL;
     }
@@ -77,19 +74,39 @@ static void end_steps(Trajectory *t, int step, int64_t count) {
     if (step > t->last_step) t->last_step = step;
 }
 
-bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
-    assert(frame >= 1 && frame < t->frames && frame >= t->last_step);
+double trajectory_bytes(const Trajectory *t) {
+    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
+}
+
+TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
+    assert(frame >= t->last_step && frame < t->frames && added >= 0);
     int64_t count = t->contact_start[t->last_step + 1];
-    if (measure(t->frames, t->bodies, (double)count + 1) > MAX_BYTES)
-        return error_input(error, "trajectory", "its contacts take more than 2 GiB");
+    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES) {
+        error_input(error, "trajectory", "its contacts take more than 2 GiB");
+        return NULL;
+    }
     void *contacts = t->contacts;
-    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)count + 1, sizeof *t->contacts))
-        return error_memory(error, "trajectory");
+    /* At least one, so that NULL is a failure. */
+    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)(count + added) + 1, sizeof *t->contacts)) {
+        error_memory(error, "trajectory");
+        return NULL;
+    }
     t->contacts = contacts;
-    t->contacts[count] = *contact;
     end_steps(t, frame, count);
-    t->contact_start[frame + 1] = count + 1;
-    return true;
+    t->contact_start[frame + 1] = count + added;
+    return t->contacts + count;
+}
+
+bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
+    assert(frame >= 1);
+    TrajectoryContact *added = trajectory_add_contacts(t, frame, 1, error);
+    if (added != NULL) *added = *contact;
+    return added != NULL;
+}
+
+void trajectory_restart_contacts(Trajectory *t) {
+    t->last_step = -1;
+    t->contact_start[0] = 0;
 }
 
 void trajectory_end_contacts(Trajectory *t) { end_steps(t, t->frames - 1, t->contact_start[t->last_step + 1]); }

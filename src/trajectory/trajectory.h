@@ -12,6 +12,9 @@
 
 enum { TRAJECTORY_VERSION = 1, TRAJECTORY_NAME_SIZE = 128 };
 
+/* Readers accept files of at most 2 GiB, so no larger trajectory is made. */
+#define TRAJECTORY_MAX_BYTES 2147483648.0
+
 typedef struct TrajectoryContact {
     int32_t a, b;          /* body indices, a < b */
     uint32_t feature;      /* four edge bytes (collision/manifold.h) */
@@ -52,8 +55,17 @@ void trajectory_destroy(Trajectory *trajectory);
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
+/* Bytes of all arrays in a file. */
+double trajectory_bytes(const Trajectory *trajectory);
+
 /* Appends a contact of step `frame` (from 1); frames in rising order. */
 bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryContact *contact, Error *error);
+
+/* Appends `count` contacts and returns the first, to be filled. NULL with error set. */
+TrajectoryContact *trajectory_add_contacts(Trajectory *trajectory, int frame, int count, Error *error);
+
+/* Removes all contacts. Contacts of frame 0 can be added then: the trajectory is a part of a longer run. */
+void trajectory_restart_contacts(Trajectory *trajectory);
 
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);

@@ -5,7 +5,7 @@
 #include "common/trace.h"
 #include "common/utf8.h"
 #include "trajectory/run_arrays.h"
-#include "trajectory/trajectory_arrays.h"
+#include "trajectory/trajectory.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -119,6 +119,22 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
            (t->position = npz_read(file, "position", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
            (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
            read_fixed(t, file, path, error) && read_velocities(t, file, path, error);
+}
+
+/* Contacts as stored in files: one array per quantity. */
+typedef struct ContactArrays {
+    int32_t (*bodies)[2]; /* a, b */
+    uint32_t *feature;
+    Vec2 *point, *normal;
+    float (*impulse)[2]; /* normal, tangent */
+} ContactArrays;
+
+static void contact_arrays_free(ContactArrays *arrays) {
+    free(arrays->bodies);
+    free(arrays->feature);
+    free(arrays->point);
+    free(arrays->normal);
+    free(arrays->impulse);
 }
 
 static bool read_contact_arrays(ContactArrays *arrays, NpzFile *file, int64_t count, Error *error) {

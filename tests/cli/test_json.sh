@@ -184,7 +184,20 @@ for run in result["trajectories"]:
     assert run["words"] == "equal states", run["words"]
 PYTHON
 
+both 0 simulate "$scenes/stack.yaml" -o run.npz
+/usr/bin/python3 - "twinbox simulate 1" <<'PYTHON' || fail "simulate --json"
+exec(open("check.py").read())
+states(f"{result['scene']} by {result['method']}: {result['steps']} steps of {result['dt']:.6g} s, {result['bodies']} bodies")
+states(f"state {result['state']} -> {result['output']}")
+states(f"verdict: {result['verdict']['verdict']} ")
+assert result["steps"] == 300 and result["fallbacks"]["by_sweeps"] == 0
+PYTHON
+run 0 simulate "$scenes/stack.yaml" --frames 5 --json
+grep -q '"output": null' out || fail "output where no run is written"
+
 # No failure looks like a result.
+run 2 simulate "$scenes/stack.yaml" --method pair-net:network=none.npz --json
+equal "output after an error" "$(<out)" ""
 run 2 solve impact.npz -m engine -m pair-net --json
 equal "output after an error" "$(<out)" ""
 complains "network"

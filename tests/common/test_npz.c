@@ -171,36 +171,6 @@ static void flipped_bytes_are_refused_or_harmless(void **state) {
     free(data);
 }
 
-/* 16 MiB of floats: stored as they are, bit for bit, beside numbers that are compressed. */
-static void large_arrays_of_floats_are_stored(void **state) {
-    (void)state;
-    enum { COUNT = 1 << 22 };
-    Error error = {0};
-    float *numbers = calloc(COUNT, sizeof *numbers);
-    assert_non_null(numbers);
-    for (int i = 0; i < COUNT; i += 3) numbers[i] = 1 / (float)(i + 1);
-    const char *path = temporary_path("large.npz");
-    const int64_t shape[] = {COUNT};
-    const NpzArray large[] = {{"floats", NPZ_FLOAT32, 1, {COUNT}, numbers},
-                              {"integers", NPZ_INT32, 1, {COUNT}, numbers}};
-    assert_ok(npz_write(path, large, 2, &error), error);
-    struct stat status;
-    assert_int_equal(stat(path, &status), 0);
-    const size_t size = COUNT * sizeof *numbers;
-    assert_in_range(status.st_size, size, 2 * size - size / 4);
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    float *floats = npz_read(file, "floats", NPZ_FLOAT32, 1, shape, &error);
-    assert_ok(floats != NULL, error);
-    int32_t *integers = npz_read(file, "integers", NPZ_INT32, 1, shape, &error);
-    assert_ok(integers != NULL, error);
-    assert_true(memcmp(floats, numbers, size) == 0 && memcmp(integers, numbers, size) == 0);
-    npz_close(file);
-    free(floats);
-    free(integers);
-    free(numbers);
-}
-
 static void failed_writes_tell(void **state) {
     (void)state;
     Error error = {0};
@@ -270,7 +240,6 @@ int main(void) {
         cmocka_unit_test(bad_texts_are_not_written),
         cmocka_unit_test(truncated_files_are_refused),
         cmocka_unit_test(flipped_bytes_are_refused_or_harmless),
-        cmocka_unit_test(large_arrays_of_floats_are_stored),
         cmocka_unit_test(failed_writes_tell),
         cmocka_unit_test(kind_and_version_are_checked),
         cmocka_unit_test(scalars_and_names_are_read),

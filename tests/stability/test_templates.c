@@ -18,11 +18,14 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     scene->frames = STEPS;
     assert_ok(method_parse(&reference, "reference", &error), error);
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    assert_true(run.stands);
+    run.converged = &converged;
     for (int i = 0; i < 3; i++) {
         Method method;
         VerdictReading reading;
         assert_ok(method_parse(&method, methods[i], &error), error);
-        assert_ok(verdict_run(&reading, scene, &method, true, &converged, &error), error);
+        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
                      count > 0 ? settings->value : 0, methods[i], verdict_name(reading.verdict), reading.body,
@@ -72,7 +75,9 @@ static void the_arch_needs_its_iterations(void **state) {
     scene->iterations = 10;
     assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    assert_ok(verdict_run(&reading, scene, &engine, true, &converged, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    run.converged = &converged;
+    assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");
     energy_log_free(&converged);
     scene_destroy(scene);
