@@ -8,12 +8,23 @@
 
 enum { TIMES_LISTED = 8 };
 
+/* The sweeps that the method's text leaves to the scene, or NULL. */
+static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
+    Method method;
+    Error ignored = {0};
+    const bool known = method_parse(&method, run->method, &ignored) && settings_get(&method.settings, "k") == NULL;
+    return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
+}
+
 void caption_run(FILE *out, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
+    Settings all;
     latex_code(out, run_name(run).text);
     if (method == NULL || method->caption == NULL) return;
+    const char *sweeps = sweeps_of_scene(&all, run);
     fputs(" (", out);
     latex_text(out, method->caption);
+    if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
     fputs(")", out);
 }
 

@@ -5,7 +5,8 @@
 
 #include <stdio.h>
 
-/* What kinds write in their captions. The run's name and what its method is: "\texttt{engine} (sequential impulses)". */
+/* What kinds write in their captions. The run's name, what its method is, and the sweeps that the scene
+   sets: "\texttt{engine} (sequential impulses, \texttt{k=10})". */
 void caption_run(FILE *out, const Trajectory *run);
 
 /* All runs of the spec from `first` on. */
