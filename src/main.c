@@ -2,6 +2,7 @@
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
    3 the system failed. */
 #include "cli/commands.h"
+#include "cli/print_contexts.h"
 #include "cli/notes.h"
 #include "common/names.h"
 
@@ -10,12 +11,11 @@
 
 static void print_help(FILE *file) {
     fputs("Usage: twinbox COMMAND [OPTION...]\n"
-          "A rigid-box physics engine and a neural network, side by side.\n\n",
+          "A rigid-box physics engine and a neural network, side by side. Help: twinbox help COMMAND\n\n",
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nEach command has its own help and an example: twinbox help COMMAND\n"
-          "Exit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n\n"
+    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }
@@ -31,6 +31,8 @@ static bool is_help(const char *word) {
 }
 
 static bool is_version(const char *word) { return strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0; }
+
+static bool is_verbose(const char *word) { return strcmp(word, "--verbose") == 0 || strcmp(word, "-v") == 0; }
 
 static int refuse_command(const char *name) {
     Error error = {0};
@@ -56,6 +58,7 @@ int main(int argc, char **argv) {
     const Command *command = find_command(wanted);
     if (is_version(argv[argc == 3 && command != NULL ? 2 : 1])) {
         puts("twinbox " TWINBOX_VERSION);
+        if (argc == 3 && is_verbose(argv[2])) print_contexts(stdout);
         return 0;
     }
     if (command == NULL) return refuse_command(wanted);

@@ -20,7 +20,8 @@ typedef struct Options {
 } Options;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE.png", "Picture of the first frame (default: NAME-first-frame.png in the working folder)",
+    {"--output", 'o', "FILE.png",
+     "Picture of the first frame (default: NAME-first-frame.png in the working folder); - writes it to standard output",
      OPTION_TEXT(Options, output)},
     {0}};
 
@@ -33,7 +34,7 @@ static const CommandSpec spec = {
         "names, and each parameter at both ends. Prints a summary and draws the first frame.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png"};
 
-static void print_bodies(const Scene *scene) {
+static void print_bodies(FILE *out, const Scene *scene) {
     double mass = 0;
     int fixed = 0;
     for (int i = 0; i < scene->body_count; i++) {
@@ -41,10 +42,11 @@ static void print_bodies(const Scene *scene) {
         mass += scene->bodies[i].fixed ? 0 : (double)scene->bodies[i].mass;
     }
     const int boxes = scene->body_count - fixed;
-    printf("    bodies: %d box%s of %.6g kg together, and %d static\n", boxes, boxes == 1 ? "" : "es", mass, fixed);
-    printf("    duration: %d steps of %.6g s, %.6g s; %d iterations per step\n", scene->frames, (double)scene->dt,
-           scene->frames * (double)scene->dt, scene->iterations);
-    if (scene->overlaps_allowed) printf("    overlaps: allowed\n");
+    fprintf(out, "    bodies: %d box%s of %.6g kg together, and %d static\n", boxes, boxes == 1 ? "" : "es", mass,
+            fixed);
+    fprintf(out, "    duration: %d steps of %.6g s, %.6g s; %d iterations per step\n", scene->frames, (double)scene->dt,
+            scene->frames * (double)scene->dt, scene->iterations);
+    if (scene->overlaps_allowed) fprintf(out, "    overlaps: allowed\n");
 }
 
 /* ", x from -5 to 5 m": behind the family so far. */
@@ -54,32 +56,32 @@ static void add_family(char *text, size_t size, const char *name, const SceneSpa
                  (double)span->to, unit);
 }
 
-static void print_bomb(const Scene *scene) {
+static void print_bomb(FILE *out, const Scene *scene) {
     const SceneBomb *bomb = &scene->bomb;
     const BodyDef body = scene_bomb_body(scene);
     char family[256] = "";
     if (!bomb->present) {
-        printf("    bomb: none\n");
+        fprintf(out, "    bomb: none\n");
         return;
     }
-    printf("    bomb: %.6g kg, added after step %d at (%.6g, %.6g) m with (%.6g, %.6g) m/s\n", (double)body.mass,
-           bomb->frame, (double)body.position.x, (double)body.position.y, (double)body.velocity.x,
-           (double)body.velocity.y);
+    fprintf(out, "    bomb: %.6g kg, added after step %d at (%.6g, %.6g) m with (%.6g, %.6g) m/s\n", (double)body.mass,
+            bomb->frame, (double)body.position.x, (double)body.position.y, (double)body.velocity.x,
+            (double)body.velocity.y);
     add_family(family, sizeof family, "x", &bomb->x, "m");
     add_family(family, sizeof family, "rotation", &bomb->rotation, "rad");
     add_family(family, sizeof family, "spin", &bomb->spin, "rad/s");
     add_family(family, sizeof family, "mass", &bomb->mass, "kg");
-    printf("    launches: %s\n", family[0] != '\0' ? family : "one");
+    fprintf(out, "    launches: %s\n", family[0] != '\0' ? family : "one");
 }
 
-static void print_lists(const Scene *scene) {
+static void print_lists(FILE *out, const Scene *scene) {
     for (int i = 0; i < scene->parameter_count; i++) {
         const SceneParameter *parameter = &scene->parameters[i];
-        printf("    parameter %s: %.9g, from %.9g to %.9g%s%s\n", parameter->name, parameter->value, parameter->from,
-               parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+        fprintf(out, "    parameter %s: %.9g, from %.9g to %.9g%s%s\n", parameter->name, parameter->value,
+                parameter->from, parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit);
     }
     for (int i = 0; i < scene->network_count; i++)
-        printf("    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
+        fprintf(out, "    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
 }
 
 static bool draw(const Trajectory *run, const char *path, Error *error) {
@@ -95,36 +97,50 @@ static bool draw(const Trajectory *run, const char *path, Error *error) {
     return ok;
 }
 
-/* Runs the engine until the bomb has struck, as far as the scene goes, because the view depends on it. */
+/* Runs the engine until the bomb has struck, as far as the scene goes, because the view depends on it; only one step if
+   that would take long. */
 static bool draw_first_frame(const Scene *scene, const char *path, Error *error) {
+    const double most_states = 1e7, bodies = scene->body_count + 1;
     Scene shown = *scene;
     Panels panels = {0};
     const double frames = scene->bomb.present ? scene->bomb.frame + ceil(way / (double)scene->dt) : 1;
     if (frames < shown.frames) shown.frames = (int)frames;
+    if (shown.frames * bodies > most_states) shown.frames = 1;
     const bool ok = panels_add_run(&panels, &shown, "engine", path, error) && draw(panels.runs[0], path, error);
     panels_free(&panels);
-    if (ok) printf("first frame -> %s\n", path);
     return ok;
 }
 
 static bool check(const char *path, const Scene *scene, const char *output, Error *error) {
+    const bool to_output = output != NULL && strcmp(output, "-") == 0;
+    FILE *out = to_output ? stderr : stdout;
     char standard[SCENE_NAME_SIZE + 32];
     snprintf(standard, sizeof standard, "%s-first-frame.png", scene->name);
     file_name_clean(standard);
     if (!scene_check_launches(scene, error) || !scene_check_networks(scene, error) ||
         !scene_check_ends(path, scene, error))
         return false;
-    printf("%s is valid\n", path);
-    print_bodies(scene);
-    print_bomb(scene);
-    print_lists(scene);
-    fflush(stdout);
-    return draw_first_frame(scene, output != NULL ? output : standard, error);
+    fprintf(out, "%s is valid\n", path);
+    print_bodies(out, scene);
+    print_bomb(out, scene);
+    print_lists(out, scene);
+    fflush(out);
+    const char *picture = to_output ? "/dev/stdout" : output != NULL ? output : standard;
+    if (!draw_first_frame(scene, picture, error)) return false;
+    if (!to_output) fprintf(out, "first frame -> %s\n", picture);
+    return true;
+}
+
+static bool names_picture(const char *path) {
+    const char *ending = strrchr(path, '.');
+    return strcmp(path, "-") == 0 || (ending != NULL && strcmp(ending, ".png") == 0);
 }
 
 bool command_check(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (options.output != NULL && !names_picture(options.output))
+        return error_input(error, options.output, "the name of the picture must end in .png");
     Scene *scene = scene_read(options.scene, error);
     const bool ok = scene != NULL && check(options.scene, scene, options.output, error);
     scene_destroy(scene);

@@ -14,6 +14,8 @@
     COMMAND(approve, "accept the changes that a report of compare shows")          \
     COMMAND(diverge, "find why two trajectories diverge, and how fast")            \
     COMMAND(figure, "draw a figure for a paper from runs")                         \
+    COMMAND(import, "store the run of another program, from CSV")                  \
+    COMMAND(export, "write a run as CSV, JSON or a script for Blender")            \
     COMMAND(dataset, "record what the engine's solver does to each touching pair") \
     COMMAND(train, "train the network of a method")                                \
     COMMAND(chart, "measure speed against accuracy for every method")              \

@@ -43,7 +43,8 @@ static void offer_parameters(const CompletionValue *value) {
         char range[128];
         snprintf(range, sizeof range, "%g to %g%s%s (the scene's: %g)", parameter->from, parameter->to,
                  parameter->unit[0] != '\0' ? " " : "", parameter->unit, parameter->value);
-        completion_offer(value->begin, value->typed, parameter->name, "=", range);
+        completion_offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "",
+                         range);
     }
     scene_destroy(scene);
 }
@@ -93,7 +94,7 @@ static void offer_files(const CompletionValue *value) {
 void completion_print_value(const CompletionValue *value) {
     const Option *option = value->option;
     if (option->value == NULL) return;
-    if (option->read == option_set)
+    if (option->read == option_set || (option->name != NULL && strcmp(option->name, "--vary") == 0))
         offer_parameters(value);
     else if (option->names != NULL)
         offer_names(value, option->names, option->read == option_flags);

@@ -47,11 +47,6 @@ static const Option *find_waiting(const Option *rows, const char *word) {
     return row != NULL && row->value != NULL ? row : NULL;
 }
 
-static bool is_scene(const char *word) {
-    const char *ending = strrchr(word, '.');
-    return ending != NULL && strcmp(ending, ".yaml") == 0;
-}
-
 /* What stands before the last word. */
 typedef struct Before {
     const Option *waiting; /* for its value */
@@ -64,15 +59,14 @@ static Before look_before(const CommandSpec *spec, const CompletionWords *words)
     Before before = {.waiting = NULL};
     for (int i = 0; i + 1 < words->count; i++) {
         const char *word = words->words[i];
-        if (before.scene == NULL && is_scene(word)) before.scene = word;
         if (before.waiting != NULL)
             before.waiting = NULL;
         else if (strcmp(word, "--") == 0 && !before.only_inputs)
             before.only_inputs = true;
         else if (word[0] == '-' && word[1] != '\0' && !before.only_inputs)
             before.waiting = find_waiting(spec->options, word);
-        else
-            before.inputs++;
+        else if (before.inputs++ == 0 && spec->input.value != NULL && strstr(spec->input.value, "SCENE") != NULL)
+            before.scene = word;
     }
     return before;
 }

@@ -27,7 +27,7 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "scene"},
     .help =
         "Write a scene to start from: a structure, a bomb with a family of launches, and parameters, with comments. "
-        "Never overwrites a file.\v"
+        "Never overwrites a file; - writes to standard output.\v"
         "Example: twinbox new wall.yaml --like wall"};
 
 static bool ends_with(const char *text, const char *ending) {
@@ -38,9 +38,10 @@ static bool ends_with(const char *text, const char *ending) {
 bool command_new(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    const char *text = texts[options.like];
+    if (strcmp(options.path, "-") == 0) return fputs(text, stdout) >= 0 || error_system(error, "-", "cannot write");
     if (!ends_with(options.path, ".yaml"))
         return error_input(error, options.path, "the name of a scene must end in .yaml");
-    const char *text = texts[options.like];
     if (!file_create(options.path, text, strlen(text), error)) return false;
     printf("%s -> %s\nnext: twinbox check %s\n", names[options.like], options.path, options.path);
     return true;

@@ -7,6 +7,7 @@
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
 #include "cli/stability_print.h"
+#include "common/output_check.h"
 #include "stability/stability_case.h"
 #include "stability/stability_figures.h"
 #include "stability/stability_studies.h"
@@ -25,6 +26,16 @@ typedef struct Options {
     const char *vary[VARY_TEXTS];
 } Options;
 
+/* Of studies and maps, for completion. */
+static const char *study_names[64];
+
+static void list_names(void) {
+    enum { MOST = sizeof study_names / sizeof *study_names - 1 };
+    int count = 0;
+    for (int i = 0; i < stability_study_count && count < MOST; i++) study_names[count++] = stability_studies[i].name;
+    for (int i = 0; i < stability_map_count && count < MOST; i++) study_names[count++] = stability_maps[i].name;
+}
+
 static const Option option_table[] = {
     {"--output", 'o', "DIR",
      "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures",
@@ -37,7 +48,7 @@ static const Option option_table[] = {
      "Parameter of SCENE to vary, by default between its bounds; two parameters give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
-     OPTION_TEXTS(Options, study.names, study.name_count)},
+     OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},
     {"--scenes", 0, "DIR",
      "Folder whose subfolder stability/ has the scenes (default: scenes, or the installed scenes)",
      OPTION_TEXT(Options, study.scenes)},
@@ -107,11 +118,13 @@ static bool check_options(const Options *options, Error *error) {
 bool command_stability(int argc, char **argv, Error *error) {
     Options options = {.study.scenes = installed_path("scenes")};
     StabilityOwn own;
+    list_names();
     if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
     if (options.scene != NULL) {
         if (!stability_own_make(&own, options.scene, options.vary, options.vary_count, options.study.quick, error))
             return false;
         options.study.own = &own;
     }
-    return options.clip != NULL ? make_clip(&options, error) : study(&options.study, error);
+    if (options.clip != NULL) return make_clip(&options, error);
+    return output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

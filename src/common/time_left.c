@@ -51,8 +51,8 @@ bool time_left_estimate(const TimeLeft *left, double time, double part, double *
 
 void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]) {
     const double most = 1e6; /* s */
-    const int whole = (int)((seconds < most ? seconds : most) + 0.5), tens = (whole + 5) / 10 * 10;
-    const int minutes = (whole + 30) / 60, ten_minutes = (minutes + 5) / 10 * 10;
+    const int rounded = (int)((seconds < most ? seconds : most) + 0.5), whole = rounded < 1 ? 1 : rounded;
+    const int tens = (whole + 5) / 10 * 10, minutes = (whole + 30) / 60, ten_minutes = (minutes + 5) / 10 * 10;
     if (whole < 60)
         snprintf(text, TIME_LEFT_TEXT_SIZE, "%d s", whole);
     else if (tens < 600)

@@ -96,6 +96,9 @@ bool trajectory_write(const Trajectory *trajectory, const char *path, Error *err
    body that reappears after it was removed, a static body that is removed, dt or a size not positive. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
+/* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */
+bool trajectory_check(const Trajectory *trajectory, const char *path, Error *error);
+
 /* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static; in a
    run of one frame, none. */
 void trajectory_guess_fixed(Trajectory *trajectory);

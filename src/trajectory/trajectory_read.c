@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
-#include "common/file.h"
 #include "common/npz.h"
 #include "common/trace.h"
-#include "common/utf8.h"
 #include "trajectory/run_arrays.h"
 #include "trajectory/trajectory.h"
+#include "trajectory/trajectory_name.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -22,24 +21,9 @@ static bool read_version(NpzFile *file, const char *path, Error *error) {
            error_input(error, path, "trajectory of version %d; expected version %d", (int)version, TRAJECTORY_VERSION);
 }
 
-/* The stem of the file's name, for a run without names. Bytes that a name must not have become '_'. */
-static void name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]) {
-    const char *file = path + file_folder_length(path), *ending = strrchr(file, '.');
-    size_t length = ending != NULL && ending > file ? (size_t)(ending - file) : strlen(file), used = 0;
-    for (size_t at = 0, width; at < length && used + 4 < TRAJECTORY_NAME_SIZE; at += width > 0 ? width : 1) {
-        uint32_t character;
-        width = utf8_decode(file + at, length - at, &character);
-        if (width == 0 || character < 0x20 || character == 0x7f)
-            name[used++] = '_';
-        else
-            for (size_t i = 0; i < width; i++) name[used++] = file[at + i];
-    }
-    name[used] = '\0';
-}
-
 static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *error) {
-    name_from_path(path, t->scene);
-    name_from_path(path, t->method);
+    trajectory_name_from_path(path, t->scene);
+    trajectory_name_from_path(path, t->method);
     return (!npz_has(file, "scene") || npz_read_name(file, "scene", t->scene, sizeof t->scene, error)) &&
            (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error));
 }
@@ -254,7 +238,7 @@ static bool check_contact(const Trajectory *t, int step, int64_t index, const ch
     return true;
 }
 
-static bool check(const Trajectory *t, const char *path, Error *error) {
+bool trajectory_check(const Trajectory *t, const char *path, Error *error) {
     if (!check_head(t, path, error)) return false;
     for (int frame = 0; frame < t->frames; frame++) {
         for (int body = 0; body < t->bodies; body++)
@@ -272,7 +256,7 @@ Trajectory *trajectory_read(const char *path, Error *error) {
     Trajectory *t = calloc(1, sizeof *t);
     bool done = t != NULL || error_memory(error, path);
     done = done && read_head(t, file, path, error) && read_poses(t, file, path, error) &&
-           read_contacts(t, file, path, error) && check(t, path, error);
+           read_contacts(t, file, path, error) && trajectory_check(t, path, error);
     npz_close(file);
     if (done)
         trace_line("run %s: %s by %s, %d frames of %d bodies, step %g s, scene hash %016" PRIx64, path, t->scene,

@@ -38,6 +38,12 @@ equal "size of the picture" "$(size tower-first-frame.png)" "1280 720"
 run 0 check tower.yaml -o first.png
 cmp -s first.png tower-first-frame.png || fail "-o changes the picture"
 
+run 0 check tower.yaml -o -
+cmp -s out first.png || fail "-o - does not write the picture"
+equal "the summary on standard error" "$(cat err)" "$(head -n 6 expected)"
+run 2 check tower.yaml -o first.jpg
+complains "first.jpg: error: the name of the picture must end in .png"
+
 # The picture is what render draws of that frame, in the same view.
 run 0 render tower.yaml -o frames --frames 0 --size 1280x720
 run 0 compare first.png frames/frame_000000.png

@@ -80,6 +80,8 @@ twinbox figure nar<TAB>|twinbox figure narrow-phase
 twinbox figure strip engine.npz -o fig<TAB>|twinbox figure strip engine.npz -o figure.svg 
 twinbox train --kind sce<TAB>|twinbox train --kind scene-net 
 twinbox dataset --inputs nei<TAB>|twinbox dataset --inputs neighbours 
+twinbox stability --study time_s<TAB>|twinbox stability --study time_step 
+twinbox stability height.yaml --vary hei<TAB>|twinbox stability height.yaml --vary height 
 twinbox completion fi<TAB>|twinbox completion fish 
 END
 cut -d'|' -f1 alike >keys

@@ -7,7 +7,7 @@ run 0 --help
 [ "$(wc -l <out)" -le 24 ] || fail "--help does not fit a screen of 24 lines"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "--help is wider than 100 columns"
 names=$(awk '/^  [a-z]/ { print $1 }' out)
-equal "commands listed" "$(echo $names)" "new check simulate render compare approve diverge figure dataset train chart paper stability problem solve methods"
+equal "commands listed" "$(echo $names)" "new check simulate render compare approve diverge figure import export dataset train chart paper stability problem solve methods"
 
 for name in $names; do
     run 0 "$name" --help
@@ -18,7 +18,7 @@ for name in $names; do
 done
 run 0 dataset --help
 for word in relative raw-unturned contact neighbours pair net impulse points; do says "$word"; done
-for name in new check simulate render compare approve diverge figure dataset train chart paper stability problem solve; do
+for name in new check simulate render compare approve diverge figure import export dataset train chart paper stability problem solve; do
     run 2 "$name"
     complains "needed"
 done
@@ -45,6 +45,12 @@ for version in --version -V "simulate --version" "chart -V"; do
     run 0 $version
     says "twinbox "
     equal "lines of $version" "$(wc -l <out)" 1
+done
+for verbose in "--version -v" "-V --verbose"; do
+    run 0 $verbose
+    equal "lines of $verbose" "$(wc -l <out)" 3
+    for kind in osmesa egl; do says "$kind: "; done
+    equal "contexts by default" "$(grep -c '^[a-z]*: OpenGL .* Mesa .*, llvmpipe .*; used by default$' out)" 1
 done
 for general in help --help -h "help --help"; do
     run 0 $general

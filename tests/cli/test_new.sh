@@ -28,6 +28,9 @@ equal "mine.yaml" "$(cat mine.yaml)" mine
 [ ! -e nothing.yaml ] || fail "a link was followed"
 equal "temporary files" "$(ls -A | grep -c tmp)" 0
 
+run 0 new - --like arch
+cmp -s out "$scenes/templates/arch.yaml" || fail "standard output is not the file in scenes/templates"
+
 run 2 new other.yaml --like wal
 complains "did you mean 'wall'?"
 run 2 new other.yaml

@@ -7,6 +7,7 @@ ln -s "$scenes" scenes
 run 0 simulate scenes/single.yaml -o engine.npz
 run 0 simulate scenes/single.yaml --method momentum:k=3 -o momentum.npz
 run 0 dataset scenes/single.yaml --bomb-x 0:1:0.25 -o data.npz
+run 0 export engine.npz -o engine.csv
 run 0 render engine.npz --frames 0:1 --size 64x64 -o expected
 run 0 render momentum.npz --frames 0:1 --size 64x64 -o actual
 
@@ -19,6 +20,8 @@ compare 1 expected actual --report out_of_compare
 approve 0 out_of_compare
 diverge 1 engine.npz momentum.npz --scene scenes/single.yaml
 figure 0 strip engine.npz --at 0,1 -o out_of_figure.svg
+import 0 engine.csv -o out_of_import.npz
+export 0 engine.npz -o out_of_export.json
 dataset 0 scenes/single.yaml --bomb-x 0:1:0.25 -o out_of_dataset.npz
 train 0 data.npz -o out_of_train.npz --layers 10-10-2 --iterations 2
 chart 0 scenes/single.yaml --quick --launches scenes/launches/far.csv --methods engine -o out_of_chart
@@ -37,7 +40,7 @@ for name in $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'); do
     [ "$name" = approve ] && cp -r expected kept
     run "$status" "$name" $arguments
     grep -v " s[,)]" out >normal
-    for level in --quiet -q --verbose -v; do
+    for level in -q --verbose; do
         rm -rf out_of_"$name"*
         [ "$name" = approve ] && rm -rf expected && cp -r kept expected
         run "$status" "$name" $level $arguments

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/checks.sh"
 
 draw() { run 0 render "$@" -o frames --size 320x180 --frames 0; }
-notes() { equal "notes of $1" "$(grep -c '^twinbox: note: ' err)" "$2"; }
+notes() { equal "notes of $1" "$(grep -c 'only the engine is drawn' err)" "$2"; }
 
 "$twinbox" new wall.yaml --like stack >out
 draw wall.yaml

@@ -103,7 +103,7 @@ static void texts_have_few_digits(void **state) {
     static const struct {
         double seconds;
         const char *text;
-    } rows[] = {{0.2, "0 s"},         {59.4, "59 s"},        {59.6, "1 min 00 s"},      {397, "6 min 40 s"},
+    } rows[] = {{0.2, "1 s"},         {59.4, "59 s"},        {59.6, "1 min 00 s"},      {397, "6 min 40 s"},
                 {594, "9 min 50 s"},  {596, "10 min"},       {3500, "58 min"},          {3599, "1 h 00 min"},
                 {7900, "2 h 10 min"}, {1e9, "277 h 50 min"}, {INFINITY, "277 h 50 min"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

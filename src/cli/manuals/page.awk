@@ -8,9 +8,10 @@ BEGIN {
 }
 /^ *```/ { fenced = !fenced }
 !fenced && /^# / { next }
-!fenced && /^## / {
-    name = substr($0, 4)
-    taken = name in wanted
+!fenced && /^###? / && ($0 ~ /^## / || !taken || taken == "###" || substr($0, 5) in wanted) {
+    name = $0
+    sub(/^#+ /, "", name)
+    taken = name in wanted ? $1 : 0
     # Without an introduction, the first section is the description.
     if (taken && (found++ || intro)) print "# " toupper(name)
     next

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include "cli/notes.h"
+#include "cli/options.h"
+#include "trajectory/csv_run.h"
+#include "trajectory/trajectory_name.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Options {
+    const char *input, *output, *sizes;
+    float dt; /* s; 0: the file's */
+    bool degrees;
+} Options;
+
+static const Option option_table[] = {
+    {"--output", 'o', "RUN.npz", "Run to write", OPTION_TEXT(Options, output), .needed = "-o RUN.npz is needed"},
+    {"--sizes", 0, "FILE.csv", "Sizes of the bodies: body,width,height in m; static, 0 or 1, may follow",
+     OPTION_TEXT(Options, sizes)},
+    {"--dt", 0, "S", "Time step, s: a number or a fraction such as 1/60 (default: the file's)",
+     OPTION_FLOAT(Options, dt, SCENE_MIN_DT, SCENE_MAX_DT)},
+    {"--degrees", 0, NULL, "Angles and angular velocities of the file are in degrees", OPTION_FLAG(Options, degrees)},
+    {0}};
+
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "FILE.csv", .needed = "a CSV file is needed", OPTION_TEXT(Options, input)},
+    .inputs = {1, 1, "file"},
+    .help =
+        "Read the run of another program from CSV and store it as a run of twinbox. The columns are frame, body, x, y, "
+        "angle, and if known vx, vy, omega; a column time may set the time step. A body has a row in each "
+        "frame. Comments above the header may state more:\n\n"
+        "  # dt: 1/60\n"
+        "  # size: 0,100,20,static\n"
+        "  # size: 1,1,1\n"
+        "  frame,body,x,y,angle\n"
+        "  0,0,0,-10,0\n"
+        "  0,1,0,0.51,0\n\n"
+        "The other comments are scene, method, bomb and camera. What the file does not state is assumed, and "
+        "printed.\v"
+        "Example: twinbox import box2d.csv --sizes sizes.csv --dt 1/60 -o box2d.npz"};
+
+static bool import_run(const Options *options, Error *error) {
+    char name[TRAJECTORY_NAME_SIZE];
+    CsvRunNotes notes;
+    trajectory_name_from_path(options->input, name);
+    const CsvRunOptions how = {.name = name, .sizes = options->sizes, .dt = options->dt, .degrees = options->degrees};
+    Trajectory *run = csv_run_read(options->input, &how, &notes, error);
+    bool ok = run != NULL && trajectory_write(run, options->output, error);
+    if (ok) {
+        printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
+               (double)run->dt, options->output);
+        for (int i = 0; i < notes.count; i++) note_print("assumed: %s", notes.lines[i]);
+    }
+    trajectory_destroy(run);
+    return ok;
+}
+
+bool command_import(int argc, char **argv, Error *error) {
+    Options options = {0};
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    const size_t length = strlen(options.output);
+    if (length <= 4 || strcmp(options.output + length - 4, ".npz") != 0)
+        return error_input(error, options.output, "the name of a run must end in .npz");
+    return import_run(&options, error);
+}

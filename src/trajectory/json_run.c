@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "trajectory/run_export.h"
+
+#include "common/file.h"
+#include "common/json_write.h"
+
+#include <stdlib.h>
+
+/* Nine digits are enough for a float; all digits of its double would be twice as long. */
+static void put_float(JsonWriter *json, const char *key, float value) {
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.9g", (double)value);
+    json_put_number(json, key, strtod(digits, NULL));
+}
+
+static void put_vector(JsonWriter *json, const char *key, Vec2 v) {
+    json_begin_array(json, key, JSON_ONE_LINE);
+    put_float(json, NULL, v.x);
+    put_float(json, NULL, v.y);
+    json_end(json);
+}
+
+static void put_head(JsonWriter *json, const Trajectory *run) {
+    json_put_text(json, "format", "twinbox run");
+    json_put_int(json, "version", TRAJECTORY_VERSION);
+    json_put_text(json, "scene", run->scene);
+    json_put_text(json, "method", run->method);
+    if (run->scene_hash != 0) json_put_hash(json, "scene_hash", run->scene_hash);
+    put_float(json, "dt", run->dt);
+    if (run->bomb >= 0) json_put_int(json, "bomb", run->bomb);
+    if (run->camera_size.x > 0 && run->camera_size.y > 0) {
+        put_vector(json, "camera_centre", run->camera_center);
+        put_vector(json, "camera_size", run->camera_size);
+    }
+}
+
+static void put_bodies(JsonWriter *json, const Trajectory *run) {
+    json_begin_array(json, "bodies", JSON_LINES);
+    for (int body = 0; body < run->bodies; body++) {
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        put_vector(json, "size", run->size[body]);
+        json_put_bool(json, "static", run->fixed[body]);
+        json_end(json);
+    }
+    json_end(json);
+}
+
+/* [x, y, angle, vx, vy, omega] */
+static void put_state(JsonWriter *json, const Trajectory *run, int frame, int body) {
+    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    if (!trajectory_has(run, frame, body)) {
+        json_put_text(json, NULL, NULL);
+        return;
+    }
+    json_begin_array(json, NULL, JSON_ONE_LINE);
+    put_float(json, NULL, run->position[i].x);
+    put_float(json, NULL, run->position[i].y);
+    put_float(json, NULL, run->angle[i]);
+    if (!run->no_velocities) {
+        put_float(json, NULL, run->velocity[i].x);
+        put_float(json, NULL, run->velocity[i].y);
+        put_float(json, NULL, run->angular_velocity[i]);
+    }
+    json_end(json);
+}
+
+static void put_contacts(JsonWriter *json, const Trajectory *run, int frame) {
+    json_begin_array(json, "contacts", JSON_ONE_LINE);
+    for (int64_t i = run->contact_start[frame]; i < run->contact_start[frame + 1]; i++) {
+        const TrajectoryContact *contact = &run->contacts[i];
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_int(json, "a", contact->a);
+        json_put_int(json, "b", contact->b);
+        put_vector(json, "point", contact->point);
+        put_vector(json, "normal", contact->normal);
+        put_vector(json, "impulse", vec2(contact->normal_impulse, contact->tangent_impulse));
+        json_end(json);
+    }
+    json_end(json);
+}
+
+void json_run_print(FILE *out, const Trajectory *run, bool contacts) {
+    JsonWriter json = {.out = out};
+    json_begin_object(&json, NULL, JSON_LINES);
+    put_head(&json, run);
+    put_bodies(&json, run);
+    json_begin_array(&json, "frames", JSON_LINES);
+    for (int frame = 0; frame < run->frames; frame++) {
+        json_begin_object(&json, NULL, JSON_ONE_LINE);
+        json_begin_array(&json, "states", JSON_ONE_LINE);
+        for (int body = 0; body < run->bodies; body++) put_state(&json, run, frame, body);
+        json_end(&json);
+        if (contacts && !run->no_contacts) put_contacts(&json, run, frame);
+        json_end(&json);
+    }
+    json_end(&json);
+    json_end(&json);
+}
+
+static void print_run(FILE *out, const void *context) { json_run_print(out, context, true); }
+
+bool json_run_write(const Trajectory *run, const char *path, Error *error) {
+    return file_write_text(path, print_run, run, error);
+}
