@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "common/output_check.h"
 #include "study/speed_accuracy.h"
 #include "type/type_check.h"
 
@@ -137,7 +138,8 @@ bool command_chart(int argc, char **argv, Error *error) {
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
-    bool ok = speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
+    bool ok = output_check_folder(options.study.folder, error) &&
+              speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
     progress_bar_end();
     return ok && draw(&options.study, scenes, error);
 }

@@ -2,6 +2,7 @@
 /* One moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
    step, for which the contacts were found. */
 #include "figure/contact_marks.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -160,6 +161,16 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("Contacts of the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(": contact points, normals and impulses of the next step. ", out);
+    fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
+    caption_runs(out, spec, 0);
+    fputs(".", out);
+}
+
 const FigureKind figure_annotated = {
     .name = "annotated",
     .summary = "one moment with contacts, normals and impulses",
@@ -170,4 +181,5 @@ const FigureKind figure_annotated = {
     .takes_view = true,
     .needs_contacts = true,
     .draw = draw,
+    .caption = caption,
 };

@@ -2,6 +2,7 @@
 /* The largest distance of any body from its position in the first run, over time. The band shows the distance of the
    first run from copies with one body shifted by a micrometre: two runs inside it diverge no faster than by chaos. */
 #include "chart/chart_style.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -220,8 +221,27 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
         done =
             error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
     done = done && draw_plot(&d, sketch, range, error);
+    if (spec->facts != NULL) spec->facts->shifted = d.shifted;
     free_all(&d);
     return done;
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    const Trajectory *first = spec->runs[0];
+    fputs("Runs of the ", out);
+    caption_scene(out, spec);
+    fputs(" by ", out);
+    caption_runs(out, spec, 1);
+    fputs(": largest distance of a body from its position in the run by ", out);
+    caption_run(out, spec, first);
+    fputs(", over time.", out);
+    if (spec->facts->shifted > 0)
+        fprintf(out,
+                " The band shows further runs by the first method, each with one of %d bodies shifted by 1~$\\mu$m.",
+                spec->facts->shifted);
+    if (trajectory_impact(first) >= 0)
+        fprintf(out, " The dashed vertical line marks the impact of the bomb at %.2f~s.",
+                trajectory_impact(first) * (double)first->dt);
 }
 
 const FigureKind figure_divergence = {
@@ -232,4 +252,5 @@ const FigureKind figure_divergence = {
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
     .draw = draw,
+    .caption = caption,
 };

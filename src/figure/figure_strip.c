@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
 #include "common/method_look.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/extent.h"
@@ -188,6 +189,15 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("The ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(spec->run_count > 1 ? ", a column each. Rows from top to bottom: " : ", by ", out);
+    caption_runs(out, spec, 0);
+    fputs(".", out);
+}
+
 const FigureKind figure_strip = {
     .name = "strip",
     .summary = "moments of runs: a row per run, a column per moment",
@@ -201,4 +211,5 @@ const FigureKind figure_strip = {
     .min_bodies = 1,
     .max_bodies = FIGURE_BODIES_MAX,
     .draw = draw,
+    .caption = caption,
 };

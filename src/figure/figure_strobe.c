@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Many moments of one run in one picture: the last is opaque, earlier ones are paler. */
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -150,6 +151,15 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("One run of the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(" in one picture; earlier moments are paler. Method: ", out);
+    caption_run(out, spec, spec->runs[0]);
+    fputs(".", out);
+}
+
 const FigureKind figure_strobe = {
     .name = "strobe",
     .summary = "many moments of a run in one picture, fading",
@@ -160,4 +170,5 @@ const FigureKind figure_strobe = {
     .takes_view = true,
     .takes_moments = true,
     .draw = draw,
+    .caption = caption,
 };
