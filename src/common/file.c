@@ -146,6 +146,11 @@ bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
            error_input(error, "path", "%.200s... is longer than %zu bytes", path, size - 1);
 }
 
+bool file_name_ends_with(const char *name, const char *ending) {
+    const size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
+}
+
 size_t file_folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash == NULL ? 0 : (size_t)(slash - path) + 1;

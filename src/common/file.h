@@ -65,5 +65,8 @@ bool file_path(char *path, size_t size, Error *error, const char *format, ...) P
 /* Length of the folder part of a path with its slash: 7 for "scenes/single.yaml", 0 for "single.yaml". */
 size_t file_folder_length(const char *path);
 
+/* Whether a name has this ending, ".npz", and something before it. */
+bool file_name_ends_with(const char *name, const char *ending);
+
 /* Replaces characters that do not belong in a file name by '_'. */
 void file_name_clean(char *name);
