@@ -11,10 +11,19 @@
 
 enum { TIMES_LISTED = 8 };
 
+/* The sweeps that the method's text leaves to the scene, or NULL. */
+static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
+    Method method;
+    Error ignored = {0};
+    const bool known = method_parse(&method, run->method, &ignored) && settings_get(&method.settings, "k") == NULL;
+    return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
+}
+
 void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
     const RunName shown = run_name(spec, run);
     char name[TRAJECTORY_NAME_SIZE];
+    Settings all;
     method_name(name, sizeof name, run->method);
     const bool own = strcmp(shown.text, name) != 0, described = method != NULL && method->caption != NULL;
     if (own) {
@@ -22,8 +31,12 @@ void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
         fputs(" (", out);
     }
     latex_code(out, name);
-    if (described) fputs(own ? ", " : " (", out);
-    if (described) latex_text(out, method->caption);
+    if (described) {
+        fputs(own ? ", " : " (", out);
+        latex_text(out, method->caption);
+        const char *sweeps = sweeps_of_scene(&all, run);
+        if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
+    }
     if (own || described) fputs(")", out);
 }
 

@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-/* What kinds write in their captions. A run's method and what that is, "\texttt{engine} (sequential impulses)", behind the
-   run's caption if it has one. */
+/* What kinds write in their captions. A run's method, what that is, and the sweeps that the scene sets:
+   "\texttt{engine} (sequential impulses, \texttt{k=10})", behind the run's caption if it has one. */
 void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run);
 
 /* All runs of the spec from `first` on. */

@@ -156,6 +156,7 @@ static bool finish_head(CsvImport *import, Error *error) {
     snprintf(run->scene, sizeof run->scene, "%s", head->scene[0] != '\0' ? head->scene : name);
     snprintf(run->method, sizeof run->method, "%s", head->method[0] != '\0' ? head->method : name);
     run->scene_hash = head->scene_hash;
+    run->iterations = (int)head->iterations;
     run->bomb = head->bomb < 0 ? -1 : csv_head_body(head, head->bomb);
     run->camera_center = head->camera[0];
     run->camera_size = head->camera[1];

@@ -15,7 +15,7 @@ done
 checks=$((checks + 1))
 cmp strip.tex other/strip.tex || fail "another place, another caption"
 equal "the caption" "$(cat strip.tex)" "\\caption{The scene \\texttt{stack} at 0.2 and 0.5~s, a column each. \
-Rows from top to bottom: \\texttt{engine} (physics engine, sequential impulses) and \\texttt{momentum:k=20} (sequential \
+Rows from top to bottom: \\texttt{engine} (physics engine, sequential impulses, \\texttt{k=10}) and \\texttt{momentum:k=20} (sequential \
 impulses with momentum). Drawn with twinbox~$("$twinbox" --version | sed 's/.* //').}"
 
 # With a band, and of a network.
