@@ -34,7 +34,7 @@ void note_missing_impact(const MomentPlan *plan, int impact) {
     if (plan->slow > 1)
         snprintf(slow, sizeof slow, "frames %d to %d beside it are slowed down", plan->slow_first, plan->slow_last);
     if (impact < 0)
-        note_print("--slow: the bomb strikes no box in any run; %s", slow);
+        note_print("--slow: no run has a contact of the bomb with a box; %s", slow);
     else
         note_print("--slow: frames %d to %d do not contain the impact, frame %d; %s", plan->first, plan->last, impact,
                    slow);
