@@ -2,25 +2,35 @@
 #include "figure/caption.h"
 
 #include "common/file.h"
+#include "common/method_look.h"
 #include "figure/latex.h"
 #include "figure/run_view.h"
 #include "simulate/method.h"
 
+#include <string.h>
+
 enum { TIMES_LISTED = 8 };
 
-void caption_run(FILE *out, const Trajectory *run) {
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
-    latex_code(out, run_name(run).text);
-    if (method == NULL || method->caption == NULL) return;
-    fputs(" (", out);
-    latex_text(out, method->caption);
-    fputs(")", out);
+    const RunName shown = run_name(spec, run);
+    char name[TRAJECTORY_NAME_SIZE];
+    method_name(name, sizeof name, run->method);
+    const bool own = strcmp(shown.text, name) != 0, described = method != NULL && method->caption != NULL;
+    if (own) {
+        latex_text(out, shown.text);
+        fputs(" (", out);
+    }
+    latex_code(out, name);
+    if (described) fputs(own ? ", " : " (", out);
+    if (described) latex_text(out, method->caption);
+    if (own || described) fputs(")", out);
 }
 
 void caption_runs(FILE *out, const FigureSpec *spec, int first) {
     for (int i = first; i < spec->run_count; i++) {
         fputs(latex_between(i - first, spec->run_count - first), out);
-        caption_run(out, spec->runs[i]);
+        caption_run(out, spec, spec->runs[i]);
     }
 }
 

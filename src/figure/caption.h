@@ -5,8 +5,9 @@
 
 #include <stdio.h>
 
-/* What kinds write in their captions. The run's name and what its method is: "\texttt{engine} (sequential impulses)". */
-void caption_run(FILE *out, const Trajectory *run);
+/* What kinds write in their captions. A run's method and what that is, "\texttt{engine} (sequential impulses)", behind the
+   run's caption if it has one. */
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run);
 
 /* All runs of the spec from `first` on. */
 void caption_runs(FILE *out, const FigureSpec *spec, int first);
