@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a scene with Box2D 2.4 and prints the run as CSV: box2d SCENE.yaml >run.csv; twinbox import run.csv -o run.npz
+// Runs a scene with Box2D 2.4 and prints the run as CSV: box2d SCENE.yaml | twinbox import - -o RUN.npz
 // Build (Debian: libbox2d-dev, libyaml-cpp-dev): c++ -O2 -o box2d box2d.cpp -lbox2d -lyaml-cpp
 #include <box2d/box2d.h>
 #include <cstdio>

@@ -7,13 +7,15 @@
 #include "cli/progress_bar.h"
 #include "common/file.h"
 #include "figure/figure.h"
+#include "picture/caption_check.h"
+#include "type/type_check.h"
 
 #include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
-    int input_count;
+    int input_count, caption_count;
     FigureSpec figure;
     bool transparent, outlines;
     const char *view_from; /* RUN.npz, or NULL */
@@ -49,6 +51,10 @@ static const Option option_table[] = {
      "Also write a caption for LaTeX: scene, methods, times and version, as \\caption{...}",
      OPTION_TEXT(Options, caption)},
     {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
+    {"--caption", 0, "TEXT",
+     "Caption of a run, instead of its method's name (may be repeated: one per run, in their order; \"\" keeps the "
+     "name)",
+     OPTION_TEXTS(Options, figure.captions, caption_count)},
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};
@@ -145,10 +151,22 @@ static bool check_inputs(const FigureKind *kind, const Options *options, Error *
                        options->input_count);
 }
 
+static bool check_captions(const FigureKind *kind, const Options *options, Error *error) {
+    if (options->caption_count > 0 && kind->max_runs == 0) return refuse("--caption", kind, error);
+    if (options->caption_count > options->input_count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
+                           options->input_count == 1 ? "" : "s");
+    for (int i = 0; i < options->caption_count; i++)
+        if (!caption_check(options->figure.captions[i], "--caption", error)) return false;
+    return true;
+}
+
 static bool check_options(const FigureKind *kind, const Options *options, Error *error) {
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
-    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
+    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error) ||
+        !check_captions(kind, options, error))
+        return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
     if (options->caption != NULL && !file_name_ends_with(options->caption, ".tex"))
@@ -173,7 +191,7 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
 static bool draw(const FigureKind *kind, const Options *options, Error *error) {
     const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
     Sketch sketch = {0};
-    bool ok = figure_draw(kind, &sketch, &options->figure, error) &&
+    bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
               sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
               sketch_write(&sketch, options->output, &output, error);
     if (ok && options->caption != NULL) ok = figure_write_caption(kind, &options->figure, options->caption, error);
@@ -194,7 +212,8 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
         runs[i] = trajectory_read(options->inputs[i], error);
         figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
         figure->run_count++;
-        ok = runs[i] != NULL;
+        ok = runs[i] != NULL && type_check(runs[i]->scene, options->inputs[i], error) &&
+             type_check(runs[i]->method, options->inputs[i], error);
     }
     if (ok) note_different_scenes(figure->runs, figure->run_count);
     figure->progress = progress_bar_begin(kind->name);

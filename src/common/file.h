@@ -14,6 +14,9 @@ bool file_open_error(const char *path, Error *error);
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 
+/* The same of standard input, up to its end; it may be a pipe. */
+char *file_read_input(size_t limit, size_t *size, Error *error);
+
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 

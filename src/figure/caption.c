@@ -2,8 +2,8 @@
 #include "figure/caption.h"
 
 #include "common/file.h"
+#include "common/method_look.h"
 #include "figure/latex.h"
-#include "figure/run_view.h"
 #include "simulate/method.h"
 
 enum { TIMES_LISTED = 8 };
@@ -16,22 +16,34 @@ static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
     return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
 }
 
-void caption_run(FILE *out, const Trajectory *run) {
+/* What the run is called, in words of the user or by its method; then the rest in brackets. */
+void caption_run(FILE *out, const FigureSpec *spec, int index) {
+    const Trajectory *run = spec->runs[index];
     const MethodDescription *method = method_describe(run->method);
+    const char *before = " (", *words = spec->captions[index];
+    char name[TRAJECTORY_NAME_SIZE];
     Settings all;
-    latex_code(out, run_name(run).text);
-    if (method == NULL || method->caption == NULL) return;
     const char *sweeps = sweeps_of_scene(&all, run);
-    fputs(" (", out);
-    latex_text(out, method->caption);
-    if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
-    fputs(")", out);
+    method_name(name, sizeof name, run->method);
+    if (words != NULL && words[0] != '\0') {
+        latex_text(out, words);
+        fputs(before, out);
+        before = ", ";
+    }
+    latex_code(out, name);
+    if (method != NULL && method->caption != NULL) {
+        fputs(before, out);
+        latex_text(out, method->caption);
+        before = ", ";
+        if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
+    }
+    if (before[0] == ',') fputs(")", out);
 }
 
 void caption_runs(FILE *out, const FigureSpec *spec, int first) {
     for (int i = first; i < spec->run_count; i++) {
         fputs(latex_between(i - first, spec->run_count - first), out);
-        caption_run(out, spec->runs[i]);
+        caption_run(out, spec, i);
     }
 }
 

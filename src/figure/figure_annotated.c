@@ -95,8 +95,8 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     const FigureSpec *spec = figure->spec;
     const Trajectory *run = spec->runs[panel];
     const double line = line_height(spec->points), top = low.y + figure->cells.height;
-    char title[TRAJECTORY_NAME_SIZE + 32], counts[96], part[48] = "";
-    snprintf(title, sizeof title, "%s, %.3f s", run_name(run).text, figure->frame * (double)run->dt);
+    char title[CAPTION_SIZE + 32], counts[96], part[48] = "";
+    snprintf(title, sizeof title, "%s, %.3f s", run_name(spec, run).text, figure->frame * (double)run->dt);
     text_fit(title, sizeof title, spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
                 title);

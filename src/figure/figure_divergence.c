@@ -160,20 +160,20 @@ static void draw_legend_row(Sketch *sketch, Point at, double points, double widt
 static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
     const FigureSpec *spec = d->spec;
     const double line = line_height(spec->points);
-    char words[2 * TRAJECTORY_NAME_SIZE + 64];
+    char words[2 * CAPTION_SIZE + 64];
     Point at = {left, top - line / 2};
     for (int i = 1; i < spec->run_count; i++, at.y -= line) {
         const Pen pen = line_pen(d, i);
         bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec->runs[i]).text, run_name(spec->runs[0]).text,
-                 ever ? "" : ": identical");
+        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec, spec->runs[i]).text,
+                 run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
         draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
     }
     if (d->low == NULL) return;
     sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
                      &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
-    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec->runs[0]).text,
+    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text,
              d->shifted);
     draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
 }
@@ -233,7 +233,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
     fputs(" by ", out);
     caption_runs(out, spec, 1);
     fputs(": largest distance of a body from its position in the run by ", out);
-    caption_run(out, first);
+    caption_run(out, spec, 0);
     fputs(", over time.", out);
     if (spec->facts->shifted > 0)
         fprintf(out,

@@ -134,8 +134,8 @@ static void draw_halves(Sketch *sketch, const Collision *collision, View overlap
 
 static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
     const Trajectory *run = spec->runs[0];
-    char title[TRAJECTORY_NAME_SIZE + 96];
-    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(run).text,
+    char title[CAPTION_SIZE + 96];
+    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
              (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
     text_fit(title, sizeof title, spec->points, sketch->width - 0.4);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line_height(spec->points)},
@@ -180,7 +180,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
     fputs(
         ": overlaps along the axes of both boxes, and contact points with their separations along the normal. Method: ",
         out);
-    caption_run(out, spec->runs[0]);
+    caption_run(out, spec, 0);
     fputs(".", out);
 }
 

@@ -52,7 +52,7 @@ run 0 completion words -- completion ""
 
 mkdir work && cd work || exit 1
 mkdir drawn
-touch engine.npz "two words.npz" notes.txt tower.yaml figure.svg
+touch engine.npz "two words.npz" notes.txt our_wall.yaml figure.svg
 cp "$scenes/stability/stack_height.yaml" height.yaml
 
 # A line for each: the keys, then the command line that they make. All shells.
@@ -73,9 +73,11 @@ twinbox render --show ghosts,tr<TAB>|twinbox render --show ghosts,trails
 twinbox render --context os<TAB>|twinbox render --context osmesa 
 twinbox render two<TAB>|twinbox render two\ words.npz 
 twinbox render -o d<TAB>|twinbox render -o drawn/
-twinbox simulate tow<TAB>|twinbox simulate tower.yaml 
+twinbox simulate our<TAB>|twinbox simulate our_wall.yaml 
 twinbox simulate scenes/pyramid_s<TAB>|twinbox simulate scenes/pyramid_settled.yaml 
+twinbox simulate pyramid_se<TAB>|twinbox simulate pyramid_settled 
 twinbox simulate height.yaml --set hei<TAB>|twinbox simulate height.yaml --set height=
+twinbox simulate stack_height --set hei<TAB>|twinbox simulate stack_height --set height=
 twinbox figure nar<TAB>|twinbox figure narrow-phase 
 twinbox figure strip engine.npz -o fig<TAB>|twinbox figure strip engine.npz -o figure.svg 
 twinbox train --kind sce<TAB>|twinbox train --kind scene-net 
@@ -109,7 +111,7 @@ twinbox diverge <ALL>|twinbox diverge drawn engine.npz two\ words.npz
 twinbox figure n<ALL>|twinbox figure narrow-phase network 
 twinbox render --png <ALL>|twinbox render --png fast small 
 twinbox problem --<ALL>|twinbox problem --bomb-x --frame --help --method --output --quiet --verbose --version 
-twinbox simulate tower.yaml <ALL>|twinbox simulate tower.yaml 
+twinbox simulate our_wall.yaml <ALL>|twinbox simulate our_wall.yaml 
 END
 cut -d'|' -f1 alike >keys
 cut -d'|' -f2 alike >lines
@@ -130,6 +132,7 @@ twinbox render two<TAB>|two words.npz
 twinbox render -o d<TAB>|drawn/
 twinbox simulate height.yaml --set hei<TAB>|height=
 twinbox simulate scenes/pyramid_s<TAB>|scenes/pyramid_settled.yaml
+twinbox simulate pyramid_se<TAB>|pyramid_settled
 twinbox figure strip engine.npz -o fi<TAB>|figure.svg
 END
 fi

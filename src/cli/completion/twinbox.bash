@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # bash completion for twinbox. The program answers what a word may become (src/cli/completion.h).
 # shellcheck shell=bash
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # fish completion for twinbox. The program answers what a word may become (src/cli/completion.h).
 
 function __twinbox_complete
