@@ -6,6 +6,8 @@
 #include "figure/latex.h"
 #include "simulate/method.h"
 
+#include <string.h>
+
 enum { TIMES_LISTED = 8 };
 
 /* The sweeps that the method's text leaves to the scene, or NULL. */
@@ -16,34 +18,31 @@ static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
     return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
 }
 
-/* What the run is called, in words of the user or by its method; then the rest in brackets. */
-void caption_run(FILE *out, const FigureSpec *spec, int index) {
-    const Trajectory *run = spec->runs[index];
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
-    const char *before = " (", *words = spec->captions[index];
+    const RunName shown = run_name(spec, run);
     char name[TRAJECTORY_NAME_SIZE];
     Settings all;
-    const char *sweeps = sweeps_of_scene(&all, run);
     method_name(name, sizeof name, run->method);
-    if (words != NULL && words[0] != '\0') {
-        latex_text(out, words);
-        fputs(before, out);
-        before = ", ";
+    const bool own = strcmp(shown.text, name) != 0, described = method != NULL && method->caption != NULL;
+    if (own) {
+        latex_text(out, shown.text);
+        fputs(" (", out);
     }
     latex_code(out, name);
-    if (method != NULL && method->caption != NULL) {
-        fputs(before, out);
+    if (described) {
+        fputs(own ? ", " : " (", out);
         latex_text(out, method->caption);
-        before = ", ";
+        const char *sweeps = sweeps_of_scene(&all, run);
         if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
     }
-    if (before[0] == ',') fputs(")", out);
+    if (own || described) fputs(")", out);
 }
 
 void caption_runs(FILE *out, const FigureSpec *spec, int first) {
     for (int i = first; i < spec->run_count; i++) {
         fputs(latex_between(i - first, spec->run_count - first), out);
-        caption_run(out, spec, i);
+        caption_run(out, spec, spec->runs[i]);
     }
 }
 

@@ -5,9 +5,9 @@
 
 #include <stdio.h>
 
-/* What kinds write in their captions. A run's method, what it is, and the sweeps that the scene sets: "\texttt{engine}
-   (sequential impulses, \texttt{k=10})"; before them the caption that the spec gives the run. */
-void caption_run(FILE *out, const FigureSpec *spec, int index);
+/* What kinds write in their captions. A run's method, what that is, and the sweeps that the scene sets:
+   "\texttt{engine} (sequential impulses, \texttt{k=10})", behind the run's caption if it has one. */
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run);
 
 /* All runs of the spec from `first` on. */
 void caption_runs(FILE *out, const FigureSpec *spec, int first);

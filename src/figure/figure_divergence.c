@@ -233,7 +233,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
     fputs(" by ", out);
     caption_runs(out, spec, 1);
     fputs(": largest distance of a body from its position in the run by ", out);
-    caption_run(out, spec, 0);
+    caption_run(out, spec, first);
     fputs(", over time.", out);
     if (spec->facts->shifted > 0)
         fprintf(out,

@@ -180,7 +180,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
     fputs(
         ": overlaps along the axes of both boxes, and contact points with their separations along the normal. Method: ",
         out);
-    caption_run(out, spec, 0);
+    caption_run(out, spec, spec->runs[0]);
     fputs(".", out);
 }
 

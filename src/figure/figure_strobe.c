@@ -156,7 +156,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
     caption_scene(out, spec);
     caption_times(out, spec);
     fputs(" in one picture; earlier moments are paler. Method: ", out);
-    caption_run(out, spec, 0);
+    caption_run(out, spec, spec->runs[0]);
     fputs(".", out);
 }
 

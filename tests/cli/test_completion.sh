@@ -84,7 +84,7 @@ twinbox train --kind sce<TAB>|twinbox train --kind scene-net
 twinbox dataset --inputs nei<TAB>|twinbox dataset --inputs neighbours 
 twinbox stability --study time_s<TAB>|twinbox stability --study time_step 
 twinbox stability height.yaml --vary hei<TAB>|twinbox stability height.yaml --vary height 
-twinbox completion fi<TAB>|twinbox completion fish 
+~/../prefix/bin/twinbox completion fi<TAB>|~/../prefix/bin/twinbox completion fish 
 END
 cut -d'|' -f1 alike >keys
 cut -d'|' -f2 alike >lines
@@ -120,7 +120,7 @@ in_terminal bash "source '$bash_script'"
 # fish completes the word before the cursor; it adds the blank itself.
 if command -v fish >/dev/null; then
     while IFS='|' read -r keys line; do
-        equal "fish: $keys" "$(fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
+        equal "fish: $keys" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
     done <<'END'
 twinbox simu<TAB>|simulate
 twinbox simulate --meth<TAB>|--method
@@ -134,6 +134,7 @@ twinbox simulate height.yaml --set hei<TAB>|height=
 twinbox simulate scenes/pyramid_s<TAB>|scenes/pyramid_settled.yaml
 twinbox simulate pyramid_se<TAB>|pyramid_settled
 twinbox figure strip engine.npz -o fi<TAB>|figure.svg
+~/../prefix/bin/twinbox completion fi<TAB>|fish
 END
 fi
 finish

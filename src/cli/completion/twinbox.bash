@@ -56,6 +56,6 @@ _twinbox() {
             COMPREPLY+=("${word#"$had"}")
             ;;
         esac
-    done < <("${COMP_WORDS[0]}" completion words -- "${words[@]:1}" 2>/dev/null)
+    done < <("${COMP_WORDS[0]/#\~/$HOME}" completion words -- "${words[@]:1}" 2>/dev/null)
 }
 complete -F _twinbox twinbox
