@@ -4,6 +4,7 @@
 #include "common/file.h"
 #include "common/method_look.h"
 #include "figure/latex.h"
+#include "figure/run_view.h"
 #include "simulate/method.h"
 
 #include <string.h>
