@@ -96,6 +96,12 @@ static void a_strip_names_times_and_rows(void **state) {
     assert_caption("strip", at_times(3, 0.1, 0.25, 1),
                    "The " SCENE " at 0.1, 0.25 and 1~s, a column each. Rows from top to bottom: " ENGINE ", " MOMENTUM
                    " and \\texttt{pair-net:network=my\\_net.npz} (neural network for pairs).");
+    FigureSpec named = at_times(1, 0.1, 0.25, 1);
+    named.captions[0] = "Ours & 1_st";
+    assert_caption("strip", named,
+                   "The " SCENE
+                   " at 0.1, 0.25 and 1~s, by Ours \\& 1\\_st (\\texttt{engine}, physics engine, sequential "
+                   "impulses).");
     FigureSpec many = spec_of(runs, 1);
     many.moments = 11;
     assert_caption("strip", many, "The " SCENE " at 11 moments from 0 to 1~s, by " ENGINE ".");

@@ -118,8 +118,8 @@ static void what_cannot_be_shown_is_refused(void **state) {
     expect_kind_refused("divergence", &spec, "b.npz: error: cannot be shown beside a.npz");
     runs[1]->size[1] = runs[0]->size[1];
     spec.scene = STACK;
-    expect_kind_refused("divergence", &spec, "stack.yaml: error: cannot be run again for the run by engine");
-    runs[0]->scene_hash = 1; /* of no scene */
+    expect_kind_refused("divergence", &spec, "that run does not state its scene_hash");
+    runs[0]->scene_hash = 1;
     expect_kind_refused("divergence", &spec, "stack.yaml: error: is not the scene of the run");
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
