@@ -20,7 +20,7 @@ typedef struct Options {
 static OptionRead read_input, read_times, read_bodies, read_width;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_TEXT(Options, output),
+    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output),
      .needed = "-o FILE is needed"},
     {"--at", 0, "T,T,...", "Moments to show, seconds from the start of the run, rising",
      OPTION_READ(read_times, Options, figure)},

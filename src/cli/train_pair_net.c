@@ -24,7 +24,7 @@ static const Option options[] = {
      .standard = "2000"},
     {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(Options, training.seed), .standard = "1"},
     {"--from", 0, "NET.npz", "Continue from the weights of this network, such as one cut short by Ctrl-C",
-     OPTION_TEXT(Options, from)},
+     OPTION_PATH(Options, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
      OPTION_TEXT(Options, training.hidden)},
     {"--output-activation", 0, "NAME", "sigmoid or linear (default: sigmoid for two outputs, linear for six)",
