@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/camera_option.h"
 #include "cli/commands.h"
-#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "figure/figure.h"
@@ -65,12 +64,9 @@ static void write_help(char help[HELP_SIZE]) {
 
 /* The kind, then runs. */
 static bool read_input(const Option *option, const char *text, void *value, Error *error) {
-    (void)option, (void)error;
     Options *options = value;
-    if (options->kind == NULL)
-        options->kind = text;
-    else
-        options->inputs[options->input_count++] = installed_path(text);
+    if (options->kind != NULL) return option_path(option, text, &options->inputs[options->input_count++], error);
+    options->kind = text;
     return true;
 }
 
