@@ -2,6 +2,7 @@
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
    3 the system failed. */
 #include "cli/commands.h"
+#include "cli/print_contexts.h"
 #include "cli/notes.h"
 #include "common/names.h"
 
@@ -32,6 +33,8 @@ static bool is_help(const char *word) {
 
 static bool is_version(const char *word) { return strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0; }
 
+static bool is_verbose(const char *word) { return strcmp(word, "--verbose") == 0 || strcmp(word, "-v") == 0; }
+
 static int refuse_command(const char *name) {
     Error error = {0};
     NameList known = {0};
@@ -56,6 +59,7 @@ int main(int argc, char **argv) {
     const Command *command = find_command(wanted);
     if (is_version(argv[argc == 3 && command != NULL ? 2 : 1])) {
         puts("twinbox " TWINBOX_VERSION);
+        if (argc == 3 && is_verbose(argv[2])) print_contexts(stdout);
         return 0;
     }
     if (command == NULL) return refuse_command(wanted);

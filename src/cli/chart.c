@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "common/output_check.h"
 #include "study/speed_accuracy.h"
 
 #include <stdio.h>
@@ -132,7 +133,8 @@ bool command_chart(int argc, char **argv, Error *error) {
     for (int i = 0; i < options.study.scene_count; i++)
         if (is_table(options.scenes[i])) return draw_again(&options.study, options.scenes[i], error);
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
-    bool ok = speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
+    bool ok = output_check_folder(options.study.folder, error) &&
+              speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
     progress_bar_end();
     return ok && draw(&options.study, scenes, error);
 }

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "common/output_check.h"
 #include "dataset/dataset.h"
 
 #include <stdio.h>
@@ -69,6 +70,7 @@ bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
     for (int v = 0; v < PAIR_VIEWS; v++) view_names[v] = pair_views[v].name;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!output_check_npz(options.output, "dataset", error)) return false;
     options.dataset.scenes = options.scenes;
     if (options.launches == NULL) return record(&options, error);
     if (options.dataset.bomb_x.count + options.dataset.random > 0)

@@ -30,10 +30,23 @@ static bool find(char found[PATH_SIZE], const char *path) {
            access(found, R_OK) == 0;
 }
 
+static bool find_scene(char found[PATH_SIZE], const char *name) {
+    static const char *const folders[] = {"scenes", "scenes/families", "scenes/stability"};
+    if (strpbrk(name, "./") != NULL) return false;
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        char path[PATH_SIZE];
+        Error ignored = {0};
+        if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", folders[i], name)) return false;
+        if (access(path, R_OK) == 0) return memcpy(found, path, sizeof path), true;
+        if (find(found, path)) return true;
+    }
+    return false;
+}
+
 const char *installed_path(const char *path) {
     if (path[0] == '/' || access(path, F_OK) == 0) return path;
     Found *found = malloc(sizeof *found);
-    if (found == NULL || !find(found->path, path)) {
+    if (found == NULL || !(find(found->path, path) || find_scene(found->path, path))) {
         free(found);
         return path;
     }

@@ -37,7 +37,7 @@ struct Option {
 
 /* What follows the help in the row of an option. T is the command's Options. */
 #define OPTION_TEXT(T, member) .read = option_text, .at = OPTION_AT(T, member, const char *)
-#define OPTION_PATH(T, member) .read = option_path, .at = OPTION_AT(T, member, const char *) /* to read: installed_path(), "-" */
+#define OPTION_PATH(T, member) .read = option_path, .at = OPTION_AT(T, member, const char *) /* to read */
 /* A file to write; "-" makes the results go to standard error (standard_output_reserve). Binary ones are refused where
    standard output is a terminal. */
 #define OPTION_OUTPUT(T, member) .read = option_output, .at = OPTION_AT(T, member, const char *)

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "common/output_check.h"
 #include "paper/figures/illustrations.h"
 #include "paper/figures/plots.h"
 #include "paper/report/paper_report.h"
@@ -47,6 +48,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 bool command_paper(int argc, char **argv, Error *error) {
     PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!output_check_folder(options.folder, error)) return false;
     bool ok = paper_run(&options, progress_bar_begin("paper"), error);
     progress_bar_end();
     return ok && draw_and_report(&options, error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "common/output_check.h"
 #include "dynamics/problem_file.h"
 #include "simulate/simulate.h"
 
@@ -63,6 +64,7 @@ static bool write_problem(Scene *scene, const Options *options, Error *error) {
 bool command_problem(int argc, char **argv, Error *error) {
     Options options = {.method = "engine", .bomb_x = NAN};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!output_check_npz(options.output, "contact problem", error)) return false;
     Scene *scene = scene_read(options.scene, error);
     bool ok = scene != NULL && write_problem(scene, &options, error);
     scene_destroy(scene);

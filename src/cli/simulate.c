@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/simulate_print.h"
+#include "common/output_check.h"
 #include "common/standard_io.h"
 #include "simulate/recorder.h"
 
@@ -135,13 +136,21 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     return ok;
 }
 
+static bool check_outputs(const Options *options, Error *error) {
+    const char *output = options->output;
+    if (output != NULL && !path_is_standard(output) && !ends_with(output, ".npz") && !ends_with(output, ".csv"))
+        return error_input(error, output, "the name of a trajectory must end in .npz or .csv");
+    if (output != NULL &&
+        !(ends_with(output, ".csv") ? output_check_file(output, ".csv", error) : output_check_npz(output, NULL, error)))
+        return false;
+    return (options->hashes == NULL || output_check_file(options->hashes, NULL, error)) &&
+           (options->verdict == NULL || output_check_file(options->verdict, NULL, error));
+}
+
 bool command_simulate(int argc, char **argv, Error *error) {
     Options options = {.method = "engine", .bomb_x = NAN, .bomb_frame = -1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (options.output != NULL && !path_is_standard(options.output) && !ends_with(options.output, ".npz") &&
-        !ends_with(options.output, ".csv"))
-        return error_input(error, options.output, "the name of a trajectory must end in .npz or .csv");
-    if (!json_output_check(options.json, error)) return false;
+    if (!json_output_check(options.json, error) || !check_outputs(&options, error)) return false;
     Method method;
     if (!method_parse(&method, options.method, error)) return false;
     Scene *scene = scene_read_with(options.scene, options.set.items, options.set.count, error);

@@ -7,6 +7,7 @@
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
 #include "cli/stability_print.h"
+#include "common/output_check.h"
 #include "stability/stability_case.h"
 #include "stability/stability_figures.h"
 #include "stability/stability_studies.h"
@@ -124,5 +125,6 @@ bool command_stability(int argc, char **argv, Error *error) {
             return false;
         options.study.own = &own;
     }
-    return options.clip != NULL ? make_clip(&options, error) : study(&options.study, error);
+    if (options.clip != NULL) return make_clip(&options, error);
+    return output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/notes.h"
 #include "common/names.h"
+#include "common/output_check.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -115,7 +116,9 @@ bool command_train(int argc, char **argv, Error *error) {
                 "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
                 "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};
     TrainRequest request;
-    if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error)) return false;
+    if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error) ||
+        !output_check_npz(request.output, request.kind->file_kind, error))
+        return false;
     char command[TEXT_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);

@@ -20,6 +20,7 @@ typedef struct TrainRequest {
 
 typedef struct TrainKind {
     const char *name, *input, *summary; /* input: what the help calls the file to train on; NULL: none */
+    const char *file_kind;              /* of the file that is written (npz_check_kind) */
     const Option *options;              /* in the order of a command; those not given have the value `standard` */
     bool (*train)(const TrainRequest *request, Error *error);
 } TrainKind;

@@ -54,8 +54,11 @@ static bool run(const TrainRequest *request, Error *error) {
     return true;
 }
 
-const TrainKind train_interior_net = {"interior-net", NULL,
+const TrainKind train_interior_net = {"interior-net",
+                                      NULL,
                                       "the network of interior-net, on random scenes. Prints held-out errors after "
                                       "each round. An interrupted training is "
                                       "resumed by the same command; its state is in NET.npz.part",
-                                      options, run};
+                                      "interior-net",
+                                      options,
+                                      run};

@@ -42,8 +42,11 @@ static bool run(const TrainRequest *request, Error *error) {
     return ok;
 }
 
-const TrainKind train_momentum_schedule = {"momentum-schedule", "SCENE",
+const TrainKind train_momentum_schedule = {"momentum-schedule",
+                                           "SCENE",
                                            "the factors of learned-momentum for a scene, by CMA-ES. Prints the error "
                                            "of sweeps without momentum, with hand-tuned "
                                            "factors and with the learned ones",
-                                           options, run};
+                                           "momentum-schedules",
+                                           options,
+                                           run};

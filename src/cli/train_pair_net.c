@@ -113,8 +113,11 @@ static bool run(const TrainRequest *request, Error *error) {
     return ok;
 }
 
-const TrainKind train_pair_net = {"pair-net", "DATA.npz",
+const TrainKind train_pair_net = {"pair-net",
+                                  "DATA.npz",
                                   "a network of pairs of bodies, from a dataset. Prints its mean squared error as the "
                                   "paper's Table 1 does, beside that "
                                   "of always predicting the mean",
-                                  options, run};
+                                  "network",
+                                  options,
+                                  run};

@@ -117,7 +117,10 @@ static bool run(const TrainRequest *request, Error *error) {
 }
 
 const TrainKind train_scene_net = {
-    "scene-net", "SCENE",
+    "scene-net",
+    "SCENE",
     "a network for the impacts of a scene. Prints its mean velocity error after each round, on the training and the "
     "held-out launches, beside that of 20 sweeps with momentum",
-    options, run};
+    "scene-net",
+    options,
+    run};

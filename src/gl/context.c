@@ -6,8 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ContextKind *const kinds[] = {&context_osmesa, &context_egl};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
+const ContextKind *const context_kinds[] = {
+#ifdef TWINBOX_OSMESA
+    &context_osmesa,
+#endif
+#ifdef TWINBOX_EGL
+    &context_egl,
+#endif
+    NULL,
+};
+
+const ContextKind *context_kind(ContextChoice wanted) {
+    for (int i = 0; context_kinds[i] != NULL; i++)
+        if (context_kinds[i]->choice == wanted) return context_kinds[i];
+    return NULL;
+}
 
 bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
                   Error *error) {
@@ -37,12 +50,17 @@ static bool create(Context *context, const ContextKind *kind, Error *error) {
     return context->state != NULL;
 }
 
+static bool refuse(ContextChoice wanted, Error *error) {
+    return error_input(error, "render", "twinbox was built without %s; use %s",
+                       wanted == CONTEXT_OSMESA ? "osmesa" : "egl", context_kinds[0]->name);
+}
+
 bool context_create(Context *context, ContextChoice wanted, Error *error) {
+    const ContextKind *kind = context_kind(wanted);
     prepare_mesa();
-    if (wanted != CONTEXT_AUTO)
-        return create(context, wanted == CONTEXT_OSMESA ? &context_osmesa : &context_egl, error);
-    for (int i = 0; i < KINDS; i++)
-        if (create(context, kinds[i], &(Error){0})) return true;
+    if (wanted != CONTEXT_AUTO) return kind != NULL ? create(context, kind, error) : refuse(wanted, error);
+    for (int i = 0; context_kinds[i] != NULL; i++)
+        if (create(context, context_kinds[i], &(Error){0})) return true;
     return error_system(error, "render",
                         "no OpenGL without a display; install the Debian package libosmesa6, or libegl1 "
                         "with libgl1-mesa-dri");

@@ -79,4 +79,4 @@ static void *egl_create(Error *error) {
     return NULL;
 }
 
-const ContextKind context_egl = {"egl", egl_create, egl_make_current, egl_find, egl_destroy};
+const ContextKind context_egl = {CONTEXT_EGL, "egl", egl_create, egl_make_current, egl_find, egl_destroy};

@@ -61,4 +61,5 @@ static void *osmesa_create(Error *error) {
     return NULL;
 }
 
-const ContextKind context_osmesa = {"osmesa", osmesa_create, osmesa_make_current, osmesa_find, osmesa_destroy};
+const ContextKind context_osmesa = {CONTEXT_OSMESA,      "osmesa",    osmesa_create,
+                                    osmesa_make_current, osmesa_find, osmesa_destroy};

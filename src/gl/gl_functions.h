@@ -44,6 +44,7 @@
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
+    X(PFNGLGETSTRINGPROC, GetString)                             \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \

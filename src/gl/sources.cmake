@@ -15,3 +15,13 @@ target_sources(twinbox_gl PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/font_atlas.c)
 
 twinbox_embed(twinbox_gl shaders.c gl/shaders.h char shader_ ${PROJECT_SOURCE_DIR}/shaders
               rect.vert rect.frag shape.vert shape.frag text.vert text.frag)
+
+# The contexts: only those that are built in.
+foreach(kind osmesa egl)
+    string(TOUPPER ${kind} name)
+    if(TWINBOX_${name})
+        set_property(SOURCE gl/context.c APPEND PROPERTY COMPILE_DEFINITIONS TWINBOX_${name})
+    else()
+        set_source_files_properties(gl/context_${kind}.c PROPERTIES HEADER_FILE_ONLY ON)
+    endif()
+endforeach()

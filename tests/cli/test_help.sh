@@ -46,6 +46,12 @@ for version in --version -V "simulate --version" "chart -V"; do
     says "twinbox "
     equal "lines of $version" "$(wc -l <out)" 1
 done
+for verbose in "--version -v" "-V --verbose"; do
+    run 0 $verbose
+    equal "lines of $verbose" "$(wc -l <out)" 3
+    for kind in osmesa egl; do says "$kind: "; done
+    equal "contexts by default" "$(grep -c '^[a-z]*: OpenGL .* Mesa .*, llvmpipe .*; used by default$' out)" 1
+done
 for general in help --help -h "help --help"; do
     run 0 $general
     says "Usage: twinbox COMMAND"

@@ -17,8 +17,17 @@ twinbox=$folder/second/bin/twinbox
 mkdir elsewhere
 cd elsewhere || exit 1
 
-run 0 simulate scenes/stack.yaml --method pair-net --hash stack.hash
-cmp -s stack.hash ../built.hash || fail "the installed program makes another run"
+# A scene by its name, wherever it is.
+for name in stack scenes/stack.yaml; do
+    run 0 simulate $name --method pair-net --hash run.hash
+    cmp -s run.hash ../built.hash || fail "'$name' is another scene"
+done
+run 0 simulate arch --frames 1
+says "arch by engine: 1 steps"
+run 2 simulate no_such_scene
+complains "no_such_scene: error: cannot open"
+(cd "$sources" && "$built" simulate stack --method pair-net --hash "$folder/named.hash" >/dev/null)
+cmp -s ../named.hash ../built.hash || fail "'stack' is not scenes/stack.yaml of the working directory"
 run 0 render scenes/single.yaml --frames 0:1 -o pictures
 run 0 chart scenes/single.yaml --quick --launches scenes/launches/far.csv --methods engine -o chart
 run 0 stability --study bomb_speed --methods engine:k=4 -o stability

@@ -218,9 +218,9 @@ cmp -s net.hash lm.hash && fail "two networks, one run"
 
 run 0 train --kind momentum-schedule single.yaml -o schedule.npz --iterations 5 --bomb-x=1:3:0.5
 says "schedule.npz"
-run 0 train --kind momentum-schedule single.yaml -o again.npz --iterations 5 --bomb-x=1:3:0.5
+run 0 train --kind momentum-schedule single.yaml -o schedule2.npz --iterations 5 --bomb-x=1:3:0.5
 run 0 simulate single.yaml --method learned-momentum:k=5,network=schedule.npz --hash schedule.hash
-run 0 simulate single.yaml --method learned-momentum:k=5,network=again.npz --hash again.hash
+run 0 simulate single.yaml --method learned-momentum:k=5,network=schedule2.npz --hash again.hash
 cmp -s schedule.hash again.hash || fail "a schedule is not repeatable"
 run 2 simulate single.yaml --method learned-momentum:k=7,network=schedule.npz
 complains "schedule.npz: error: has no factors for k=7; it has them for 5, 10, 20, 50"

@@ -33,7 +33,7 @@ complains "pair-net: error: a file to train on is needed: DATA.npz"
 run 2 train --kind interior-net nowhere.yaml -o x.npz
 complains "nowhere.yaml: error: interior-net takes no file to train on"
 run 3 train --kind interior-net -o nowhere/x.npz
-complains "nowhere/x.npz.part: error: cannot write"
+complains "nowhere/x.npz: error: cannot write"
 run 2 train one.npz two.npz -o x.npz
 complains "only 1 file can be given ('two.npz' is one more)"
 

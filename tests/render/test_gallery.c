@@ -4,6 +4,7 @@
    golden/, the program writes the pictures of its runs into its gallery/, as `golden/renew` does. */
 #include "testing.h"
 
+#include "gl/built_contexts.h"
 #include "image/image_compare.h"
 #include "image/png_encoder.h"
 #include "mesa.h"
@@ -133,7 +134,7 @@ static void the_gallery_is_drawn_again(void **state) {
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
             Image *expected = image_read_png(path, &error);
             assert_ok(expected != NULL, error);
-            different += !is_equal(expected, i, dark, dark ? CONTEXT_EGL : CONTEXT_OSMESA);
+            different += !is_equal(expected, i, dark, built_context(dark ? CONTEXT_EGL : CONTEXT_OSMESA));
             image_destroy(expected);
         }
     assert_int_equal(different, 0);

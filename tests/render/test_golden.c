@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Redraws the frames of golden/frames in both contexts, from golden/trajectories: SCENE_NNNNNN.png is frame NNNNNN
+/* Redraws the frames of golden/frames in each context that is built in, from golden/trajectories: SCENE_NNNNNN.png is frame NNNNNN
    of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture that differs is
    written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
 #include "testing.h"
@@ -14,11 +14,6 @@
 
 static const char FRAMES[] = SOURCE_DIR "/golden/frames", TRAJECTORIES[] = SOURCE_DIR "/golden/trajectories";
 enum { PANELS = 2, DIGITS = 6 };
-
-static const struct {
-    ContextChoice context;
-    const char *name;
-} contexts[] = {{CONTEXT_OSMESA, "osmesa"}, {CONTEXT_EGL, "egl"}};
 
 typedef struct Golden {
     char scene[256];
@@ -74,17 +69,17 @@ static Image *draw(const Golden *golden, ContextChoice context) {
 /* Number of contexts in which the frame differs. */
 static int compare(const Golden *golden) {
     int different = 0;
-    for (size_t i = 0; i < sizeof contexts / sizeof contexts[0]; i++) {
-        Image *actual = draw(golden, contexts[i].context);
+    for (int i = 0; context_kinds[i] != NULL; i++) {
+        Image *actual = draw(golden, context_kinds[i]->choice);
         ImageDifference difference;
         image_compare(golden->image, actual, &difference);
         if (!difference.equal) {
             char path[PATH_MAX];
             Error error = {0};
-            snprintf(path, sizeof path, "actual_%s_%06d_%s.png", golden->scene, golden->frame, contexts[i].name);
+            snprintf(path, sizeof path, "actual_%s_%06d_%s.png", golden->scene, golden->frame, context_kinds[i]->name);
             image_write_png(actual, path, NULL, 0, &error);
             print_error("%s, frame %d, %s: %lld pixels differ, by up to %d, the first at (%d, %d); see %s\n",
-                        golden->scene, golden->frame, contexts[i].name, (long long)difference.pixels,
+                        golden->scene, golden->frame, context_kinds[i]->name, (long long)difference.pixels,
                         difference.largest, difference.first_x, difference.first_y, path);
             different++;
         }

@@ -2,6 +2,7 @@
 /* Every look gives equal pixels in both contexts, and drawn whole or row by row, for all contents of the runs. */
 #include "testing.h"
 
+#include "gl/built_contexts.h"
 #include "image/image_compare.h"
 #include "look_runs.h"
 #include "mesa.h"
@@ -18,9 +19,10 @@ enum { MOMENTS = sizeof moments / sizeof moments[0] };
 /* One renderer draws the moments one after another, the other starts again for each. */
 static void assert_followed(const RenderLook *look, int count, int width, int height) {
     Error error = {0};
-    RenderOptions options = {.width = width, .height = height, .look = *look, .context = CONTEXT_OSMESA};
+    RenderOptions options = {.width = width, .height = height, .look = *look};
+    options.context = built_context(CONTEXT_OSMESA);
     Renderer *next = renderer_create(panels, count, &options, &error);
-    options.context = CONTEXT_EGL;
+    options.context = built_context(CONTEXT_EGL);
     Renderer *whole = renderer_create(panels, count, &options, &error);
     assert_ok(next != NULL && whole != NULL, error);
     Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);

@@ -2,6 +2,7 @@
 /* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
 #include "testing.h"
 
+#include "gl/built_contexts.h"
 #include "image/image_compare.h"
 #include "mesa.h"
 #include "picture/panel.h"
@@ -48,8 +49,8 @@ static void both_contexts_draw_the_same(void **state) {
     static const int sizes[][2] = {{640, 360}, {1280, 720}, {360, 640}, {64, 64}, {65, 333}, {2000, 301}};
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         const int *size = sizes[count - 1];
-        Image *a = draw_in(CONTEXT_OSMESA, count, size[0], size[1], 5);
-        Image *b = draw_in(CONTEXT_EGL, count, size[0], size[1], 5);
+        Image *a = draw_in(built_context(CONTEXT_OSMESA), count, size[0], size[1], 5);
+        Image *b = draw_in(built_context(CONTEXT_EGL), count, size[0], size[1], 5);
         ImageDifference difference;
         image_compare(a, b, &difference);
         if (!difference.equal) fail_msg("%d panels: %d pixels differ", count, (int)difference.pixels);

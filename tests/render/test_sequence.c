@@ -2,6 +2,7 @@
 /* Sequences: the same files with any number of processes, and an error message for every failure. */
 #include "testing.h"
 
+#include "gl/built_contexts.h"
 #include "folders.h"
 #include "mesa.h"
 #include "render/render.h"
@@ -43,7 +44,7 @@ static void any_number_of_jobs_writes_the_same_files(void **state) {
     assert_int_equal(count_files(one.directory, ".png"), FRAMES);
     for (int jobs = 2; jobs <= 20; jobs += 9) {
         RenderOptions many = options_for(temporary_path("many"), jobs);
-        many.context = jobs == 11 ? CONTEXT_EGL : CONTEXT_OSMESA;
+        many.context = built_context(jobs == 11 ? CONTEXT_EGL : CONTEXT_OSMESA);
         assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
         assert_same_folder(one.directory, many.directory);
     }

@@ -3,6 +3,7 @@
    with fewer features. Every 30th of 900 frames; all if the environment variable TWINBOX_ALL_FRAMES is set. */
 #include "testing.h"
 
+#include "gl/built_contexts.h"
 #include "render/mesa.h"
 #include "render/render.h"
 #include "simulate/simulate.h"
@@ -61,7 +62,7 @@ static int count_threads(void) {
 
 static void draw(const Configuration *configuration, const Trajectory *const *runs, Drawn *drawn) {
     Error error = {0};
-    const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .context = configuration->context};
+    const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .context = built_context(configuration->context)};
     int step = getenv("TWINBOX_ALL_FRAMES") != NULL ? 1 : FRAMES / FEW;
     __real_setenv("LP_NUM_THREADS", configuration->threads, 1);
     if (configuration->caps != NULL) __real_setenv("GALLIUM_OVERRIDE_CPU_CAPS", configuration->caps, 1);

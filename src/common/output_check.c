@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/output_check.h"
+
+#include "common/file.h"
+#include "common/npz.h"
+#include "common/standard_io.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { KIND_SIZE = 64 };
+
+static bool ends_with(const char *text, const char *ending) {
+    const size_t length = strlen(text), tail = strlen(ending);
+    return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+/* Makes a file and removes it: permissions alone do not tell, as for root, full tables or /proc. `folder` ends in a
+   slash or is empty. */
+static bool try_folder(const char *folder, const char *path, Error *error) {
+    char name[PATH_MAX];
+    if (!file_path(name, sizeof name, error, "%s.twinbox-XXXXXX", folder)) return false;
+    const int file = mkstemp(name);
+    if (file < 0 && (errno == ENOENT || errno == ENOTDIR))
+        return error_system(error, path, "cannot write: '%s' is not a folder that takes files", folder);
+    if (file < 0) return error_system(error, path, "cannot write: %s", strerror(errno));
+    close(file);
+    unlink(name);
+    return true;
+}
+
+/* /dev/stdout may be a regular file. */
+static bool is_standard_output(const struct stat *status) {
+    struct stat output;
+    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
+}
+
+bool output_check_file(const char *path, const char *ending, Error *error) {
+    struct stat status;
+    char folder[PATH_MAX];
+    if (path_is_standard(path)) return true;
+    const bool there = stat(path, &status) == 0;
+    if (there && S_ISDIR(status.st_mode)) return error_input(error, path, "is a folder; expected the name of a file");
+    if (there && (!S_ISREG(status.st_mode) || is_standard_output(&status))) return true;
+    if (ending != NULL && !ends_with(path, ending)) return error_input(error, path, "the name must end in %s", ending);
+    return file_path(folder, sizeof folder, error, "%.*s", (int)file_folder_length(path), path) &&
+           try_folder(folder, path, error);
+}
+
+/* What an existing file holds: "" if it is not an .npz file. */
+static void find_kind(const char *path, char kind[KIND_SIZE]) {
+    Error ignored = {0};
+    NpzFile *file = npz_open(path, &ignored);
+    kind[0] = '\0';
+    if (file == NULL) return;
+    if (!npz_has(file, "kind"))
+        snprintf(kind, KIND_SIZE, "%s", npz_has(file, "position") ? "run" : "unknown");
+    else if (!npz_read_name(file, "kind", kind, KIND_SIZE, &ignored))
+        snprintf(kind, KIND_SIZE, "unknown");
+    npz_close(file);
+}
+
+bool output_check_npz(const char *path, const char *kind, Error *error) {
+    struct stat status;
+    char found[KIND_SIZE];
+    if (!output_check_file(path, ".npz", error)) return false;
+    if (path_is_standard(path) || stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 ||
+        is_standard_output(&status))
+        return true;
+    find_kind(path, found);
+    if (strcmp(found, kind != NULL ? kind : "run") == 0) return true;
+    return error_input(error, path,
+                       "holds a file of kind '%s', which a file of kind '%s' does not replace; choose another "
+                       "name, or remove it",
+                       found[0] != '\0' ? found : "unknown", kind != NULL ? kind : "run");
+}
+
+bool output_check_folder(const char *path, Error *error) {
+    struct stat status;
+    char folder[PATH_MAX];
+    if (!file_path(folder, sizeof folder - 1, error, "%s", path)) return false;
+    size_t length = strlen(folder);
+    while (length > 0 && stat(folder, &status) != 0) {
+        if (errno == ENOTDIR) return error_system(error, path, "cannot write: a part of the path is not a folder");
+        while (length > 0 && folder[length - 1] == '/') length--;
+        while (length > 0 && folder[length - 1] != '/') length--;
+        folder[length] = '\0';
+    }
+    if (length > 0 && !S_ISDIR(status.st_mode))
+        return error_system(error, path, "cannot write: '%s' is not a folder", folder);
+    if (length > 0 && folder[length - 1] != '/') strcat(folder, "/");
+    return try_folder(folder, path, error);
+}

@@ -1,0 +1,41 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds of one kind of context: only its header is needed, and it alone is built in.
+. "$(dirname "$0")/../cli/checks.sh"
+cache=$(dirname "$twinbox")/CMakeCache.txt
+# The release build checks it for all.
+if grep -q "^TWINBOX_SANITIZE:STRING=." "$cache"; then
+    echo "1 check left to the release build"
+    exit 0
+fi
+compiler=$(sed -n "s/^CMAKE_C_COMPILER:[A-Z]*=//p" "$cache")
+
+# configure FOLDER OPTION...
+configure() {
+    local build=$1
+    shift
+    cmake -S "$sources" -B "$build" -G Ninja -DCMAKE_C_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug \
+        -DTWINBOX_AVX=OFF "$@" >"$build.log" 2>&1
+}
+
+# only KIND OTHER
+only() {
+    checks=$((checks + 1))
+    configure "$1" "-DTWINBOX_${1^^}=ON" "-DTWINBOX_${2^^}=OFF" || fail "cmake with $1 alone: $(tail -5 "$1.log")"
+    # A header that is included all the same cannot be read.
+    mkdir -p "$1/refused/GL" "$1/refused/EGL"
+    echo "#error" | tee "$1/refused/GL/osmesa.h" "$1/refused/EGL/egl.h" >/dev/null
+    rm -r "$1/refused/$([ "$1" = egl ] && echo EGL || echo GL)"
+    CPATH=$PWD/$1/refused cmake --build "$1" --target test_pixels_gl test_contexts_gl >"$1.log" 2>&1 ||
+        fail "build with $1 alone: $(grep -m 3 error "$1.log")"
+    for test in pixels contexts; do
+        "$1/tests/test_${test}_gl" >"$1-$test.log" 2>&1 || fail "$test with $1 alone: $(tail -3 "$1-$test.log")"
+    done
+    equal "kinds that are built in" "$(sed -n "s/^built in: //p" "$1-contexts.log")" "$1"
+}
+
+only egl osmesa
+! grep -q "^TWINBOX_OSMESA:BOOL=\(ON\|1\)" "$cache" || only osmesa egl
+configure none -DTWINBOX_OSMESA=OFF -DTWINBOX_EGL=OFF && fail "cmake accepts a build without a context"
+grep -q "Debian: libegl-dev" none.log || fail "no package named: $(cat none.log)"
+finish
