@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a scene with Box2D 2.4 and prints the run as CSV: box2d SCENE.yaml >run.csv; twinbox import run.csv -o run.npz
+// Runs a scene with Box2D 2.4 and prints the run as CSV: box2d SCENE.yaml | twinbox import - -o RUN.npz
 // Build (Debian: libbox2d-dev, libyaml-cpp-dev): c++ -O2 -o box2d box2d.cpp -lbox2d -lyaml-cpp
 #include <box2d/box2d.h>
 #include <cstdio>
@@ -42,12 +42,13 @@ int main(int, char **arguments) {
         const b2Vec2 first = vector(box["position"]), step = vector(box["spacing"]);
         for (int row = 0; row < (pyramid ? count : 1); row++)
             for (int i = 0; i < count - row; i++)
-                add(world, box, first + b2Vec2(step.x * (i + 0.5f * row), step.y * (pyramid ? row : i)), b2Vec2(0, 0), true);
+                add(world, box, first + b2Vec2(step.x * (i + 0.5f * row), step.y * (pyramid ? row : i)), {0, 0}, true);
     }
     const int frames = scene["frames"].as<int>(), bomb_frame = static_cast<int>(number(bomb["frame"]));
     const b2Vec2 above(number(bomb["x"]), number(bomb["y"]));
     add(world, bomb, above, number(bomb["velocity"]["times_position"]) * above, bomb_frame == 0);
-    std::printf("# bomb: %zu\n# scene: %s\n# method: Box2D 2.4\n", bodies.size() - 1, file.substr(0, file.rfind('.')).c_str());
+    const std::string name = file.substr(0, file.rfind('.'));
+    std::printf("# bomb: %zu\n# scene: %s\n# method: Box2D 2.4\n", bodies.size() - 1, name.c_str());
     std::printf("# dt: %.9g\nframe,body,x,y,angle\n", number(scene["dt"]));
     for (int frame = 0; frame <= frames; frame++) {
         if (frame > 0) world.Step(number(scene["dt"]), scene["iterations"].as<int>(), 3);

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a scene with Chipmunk2D 7: chipmunk.py SCENE.yaml RUN.npz. Debian has the library (libchipmunk7), but not its module
-pymunk. With pymunk, Space, Body and Poly take the place of `cp`, in the form of the comments."""
+"""Runs a scene with Chipmunk2D 7: chipmunk.py SCENE.yaml RUN.npz. Debian has the library (libchipmunk7), but not its
+module pymunk. With pymunk, Space, Body and Poly take the place of `cp`, in the form of the comments."""
 import ctypes, fractions, math, os, sys, numpy, yaml
 
 class Vec(ctypes.Structure):
@@ -26,7 +26,8 @@ def boxes(entry):  # the boxes of an entry of `bodies`, which may be a pattern
 
 def add(box):
     mass, (w, h) = real(box.get("mass", 1)), map(real, box["size"])
-    body = cp.cpBodyNewStatic() if box.get("static") else cp.cpBodyNew(mass, real(cp.cpMomentForBox(mass, w, h)))  # pymunk.Body(...)
+    moment = real(cp.cpMomentForBox(mass, w, h))                      # pymunk.moment_for_box(mass, (w, h))
+    body = cp.cpBodyNewStatic() if box.get("static") else cp.cpBodyNew(mass, moment)  # pymunk.Body(mass, moment)
     shape = cp.cpBoxShapeNew(body, w, h, real(0))                     # pymunk.Poly.create_box(body, (w, h))
     cp.cpShapeSetFriction(shape, real(math.sqrt(box["friction"])))    # shape.friction = ..., of a pair multiplied
     cp.cpBodySetPosition(body, Vec(*box["position"]))                 # body.position = ...
@@ -52,6 +53,6 @@ for frame in range(frames):
     for i, body in enumerate(bodies):
         at, angle[frame, i] = cp.cpBodyGetPosition(body), cp.cpBodyGetAngle(body)  # body.position, body.angle
         position[frame, i] = at.x, at.y
-numpy.savez(sys.argv[2], position=position, angle=angle, size=[box["size"] for box in todo + [bomb]], dt=dt, bomb=count - 1,
-            fixed=["static" in box for box in todo + [bomb]], method="Chipmunk2D 7",
-            scene=os.path.splitext(os.path.basename(sys.argv[1]))[0])
+sizes, fixed = [box["size"] for box in todo + [bomb]], ["static" in box for box in todo + [bomb]]
+numpy.savez(sys.argv[2], position=position, angle=angle, size=sizes, dt=dt, bomb=count - 1, fixed=fixed,
+            method="Chipmunk2D 7", scene=os.path.splitext(os.path.basename(sys.argv[1]))[0])

@@ -1,23 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_data.h"
 
+#include "common/utf8.h"
 #include "simulate/method.h"
 #include "study/chart_rows.h"
 #include "study/pareto.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-char chart_plain_letter(char letter) { return csv_is_plain(letter) ? letter : '?'; }
+void chart_make_plain(char *text) {
+    char *out = text;
+    for (const char *next = text; *next != '\0';) {
+        const char *from = next;
+        const bool plain = csv_plain_length(from) > 0;
+        if (type_find(&type_regular, type_next_code(&next)) != NULL && plain) {
+            memmove(out, from, (size_t)(next - from));
+            out += next - from;
+        } else
+            *out++ = '?';
+    }
+    *out = '\0';
+}
 
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
-    size_t length = strlen(text), room = CHART_TEXT_SIZE - 1;
-    bool cut = length > room;
-    if (cut) length = room - 3;
-    for (size_t i = 0; i < length; i++) out[i] = chart_plain_letter(text[i]);
-    strcpy(out + length, cut ? "..." : "");
+    const size_t room = CHART_TEXT_SIZE - 1;
+    const bool cut = strlen(text) > room;
+    snprintf(out, CHART_TEXT_SIZE, "%.*s%s", (int)utf8_cut(text, cut ? room - 3 : room), text, cut ? "..." : "");
+    chart_make_plain(out);
 }
 
 static bool is_set(const char *setting, const char *key) {

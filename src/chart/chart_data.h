@@ -60,8 +60,8 @@ typedef struct Chart {
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
-/* The letter, or '?' if it is not safe for gnuplot. */
-char chart_plain_letter(char letter);
+/* Replaces characters that are not safe for gnuplot, or that the font lacks, by '?'. */
+void chart_make_plain(char *text);
 
 /* Copies a text, made safe for gnuplot and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);

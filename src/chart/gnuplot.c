@@ -5,7 +5,6 @@
 #include "common/file.h"
 #include "chart/pdf_title.h"
 #include "common/process.h"
-#include "sketch/plot_font.h"
 #include "sketch/sketch_formats.h"
 
 #include <errno.h>
@@ -75,10 +74,10 @@ static bool is_installed(Error *error) {
 }
 
 /* A private fontconfig configuration, so that only the embedded font is found. */
-static bool install_font(const char *folder, Error *error) {
+static bool install_font(const char *folder, FontFile font, Error *error) {
     char path[PATH_SIZE], configuration[256];
     snprintf(path, sizeof path, "%s/Inter.otf", folder);
-    if (!file_write_soon(path, font_inter_regular_subset_otf, font_inter_regular_subset_otf_size, error)) return false;
+    if (!file_write_soon(path, font.bytes, font.size, error)) return false;
     int length = snprintf(configuration, sizeof configuration,
                           "<fontconfig><dir>%s</dir><cachedir>%s</cachedir></fontconfig>\n", folder, folder);
     snprintf(path, sizeof path, "%s/fonts.conf", folder);
@@ -123,13 +122,13 @@ static void put_replaced(FILE *out, const char *text, const char *from, const ch
 }
 
 /* Its title, and the fonts of other figures: gnuplot names only one. */
-static bool dress_svg(char **svg, size_t *size, const char *title) {
+static bool dress_svg(char **svg, size_t *size, const char *title, FontFile font) {
     static const char no_title[] = "<title>Gnuplot</title>";
     char *head = strstr(*svg, no_title), *text = NULL;
     FILE *out = head != NULL ? open_memstream(&text, size) : NULL;
     if (out == NULL) return false;
     fprintf(out, "%.*s<title>%s</title>\n", (int)(head - *svg), *svg, title);
-    svg_write_font(out);
+    svg_write_font(out, font);
     put_replaced(out, head + strlen(no_title), "font-family=\"sans-serif\"", "font-family=\"" SVG_FONTS "\"");
     const bool whole = !ferror(out);
     if (fclose(out) != 0 || !whole) {
@@ -141,13 +140,13 @@ static bool dress_svg(char **svg, size_t *size, const char *title) {
     return true;
 }
 
-static bool dress(const GnuplotDrawing *drawing, char **data, size_t *size, Error *error) {
-    return (dress_svg(&data[1], &size[1], drawing->title) &&
+static bool dress(const GnuplotDrawing *drawing, FontFile font, char **data, size_t *size, Error *error) {
+    return (dress_svg(&data[1], &size[1], drawing->title, font) &&
             (drawing->without_pdf || pdf_set_title(&data[2], &size[2], drawing->title))) ||
            error_system(error, "gnuplot", "produced an SVG or PDF file of an unknown form");
 }
 
-static bool collect(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
+static bool collect(const char *folder, const GnuplotDrawing *drawing, FontFile font, const char *stem, Error *error) {
     const int formats = format_count(drawing);
     char *data[FORMATS] = {NULL}, path[PATH_MAX];
     size_t size[FORMATS];
@@ -157,7 +156,7 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, const cha
         data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
         done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]);
     }
-    done = done && dress(drawing, data, size, error);
+    done = done && dress(drawing, font, data, size, error);
     if (done && drawing->overlay != NULL && !insert_overlay(&data[1], &size[1], drawing->overlay))
         done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {
@@ -172,8 +171,9 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     size_t size;
     char *script = whole_script(drawing, folder, &size);
     if (script == NULL) return error_memory(error, stem);
-    bool done =
-        install_font(folder, error) && run(folder, script, size, error) && collect(folder, drawing, stem, error);
+    const FontFile font = font_file(font_file_suffices(script));
+    bool done = install_font(folder, font, error) && run(folder, script, size, error) &&
+                collect(folder, drawing, font, stem, error);
     free(script);
     return done;
 }

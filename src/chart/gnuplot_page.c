@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/gnuplot_page.h"
 
+#include "common/utf8.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -152,7 +154,7 @@ void gnuplot_link(GnuplotPage *page, GnuplotBox box, const char *target, const c
 }
 
 void gnuplot_truncate(char *text, size_t most) {
-    if (strlen(text) > most) strcpy(text + most - 3, "...");
+    if (strlen(text) > most) strcpy(text + utf8_cut(text, most - 3), "...");
 }
 
 static void write_sample(GnuplotPage *page, const GnuplotLook *look, double left, double y) {

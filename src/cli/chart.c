@@ -8,6 +8,7 @@
 #include "common/file.h"
 #include "common/output_check.h"
 #include "study/speed_accuracy.h"
+#include "type/type_check.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -132,6 +133,10 @@ bool command_chart(int argc, char **argv, Error *error) {
         return error_input(error, "--bomb-x", "cannot be combined with --launches");
     for (int i = 0; i < options.study.scene_count; i++)
         if (is_table(options.scenes[i])) return draw_again(&options.study, options.scenes[i], error);
+    for (int i = 0; i < options.study.scene_count; i++) { /* a scene has its file's name */
+        const char *path = options.scenes[i];
+        if (!type_check(path + file_folder_length(path), path, error)) return false;
+    }
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
     bool ok = output_check_folder(options.study.folder, error) &&
               speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);

@@ -4,6 +4,8 @@
 #include "cli/json_output.h"
 #include "report/regression_report.h"
 
+#include <math.h>
+
 typedef struct Runs {
     const char *const *paths;
     const Trajectory *runs[2];
@@ -26,7 +28,7 @@ static void write_first(JsonWriter *json, const TrajectoryDifference *difference
     json_put_int(json, "body", difference->body);
     json_put_number(json, "distance", difference->distance);
     json_put_number(json, "angle", difference->angle);
-    json_put_number(json, "speed", difference->speed);
+    json_put_number(json, "speed", difference->poses_only ? NAN : difference->speed);
     json_end(json);
 }
 
@@ -56,6 +58,7 @@ static void write_runs(JsonWriter *json, const void *context) {
     }
     json_put_bool(json, "passed", compared->difference->equal);
     json_put_text(json, "words", compared->difference->what[0] != '\0' ? compared->difference->what : NULL);
+    json_put_bool(json, "poses_only", compared->difference->poses_only);
     write_first(json, compared->difference);
     write_largest(json, compared->difference);
 }

@@ -63,9 +63,11 @@ static void find_endings(const char *text, char endings[64]) {
     }
 }
 
-static void offer_scene(const char *path, void *context) {
+/* Paths only where one is being typed: there are as many as names. */
+static void offer_scene(const char *scene, void *context) {
     const CompletionValue *value = context;
-    completion_offer(value->begin, value->typed, path, "", "installed scene");
+    if (strchr(scene, '/') == NULL || strchr(value->typed, '/') != NULL)
+        completion_offer(value->begin, value->typed, scene, "", "scene");
 }
 
 /* Files that an option takes, by the name of its value. */
@@ -80,10 +82,11 @@ static void offer_files(const CompletionValue *value) {
     find_endings(name, named);
     snprintf(endings, sizeof endings, "%s", named);
     if (endings[0] == '\0') find_endings(help, endings);
-    if (has(name, "SCENE")) {
-        completion_offer_files(value->begin, has(name, "RUN")   ? "yaml npz"
-                                             : named[0] != '\0' ? "yaml npz csv"
-                                                                : "yaml");
+    if (has(named, "yaml")) { /* a scene that is written */
+        completion_offer_files(value->begin, named);
+    } else if (has(name, "SCENE")) {
+        text_add(named, sizeof named, "%syaml%s", named[0] != '\0' ? " " : "", has(name, "RUN") ? " npz" : "");
+        completion_offer_files(value->begin, named);
         installed_scenes(offer_scene, (void *)value);
     } else if (endings[0] == '\0' && has(name, "RUN"))
         completion_offer_files(value->begin, "npz");

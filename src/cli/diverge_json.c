@@ -28,12 +28,13 @@ static void write_only_in(JsonWriter *json, bool in_first, bool in_second) {
     put_frame(json, "only_in_run", in_first && in_second ? -1 : in_first ? 1 : 2);
 }
 
-static void write_parted(JsonWriter *json, const char *key, const Trajectory *a, const PartedBody *parted) {
+static void write_parted(JsonWriter *json, const char *key, const Divergence *d, const PartedBody *parted) {
+    const Trajectory *a = d->runs[0];
     if (parted->frame < 0) {
         json_put_text(json, key, NULL);
         return;
     }
-    const bool both = parted->by.in_a && parted->by.in_b;
+    const bool both = parted->by.in_a && parted->by.in_b, moves = both && !d->parting.poses_only;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "frame", parted->frame);
     json_put_int(json, "body", parted->body);
@@ -42,8 +43,8 @@ static void write_parted(JsonWriter *json, const char *key, const Trajectory *a,
     write_only_in(json, parted->by.in_a, parted->by.in_b);
     json_put_number(json, "distance", both ? parted->by.distance : NAN);
     json_put_number(json, "angle", both ? parted->by.angle : NAN);
-    json_put_number(json, "speed", both ? parted->by.speed : NAN);
-    json_put_number(json, "spin", both ? parted->by.spin : NAN);
+    json_put_number(json, "speed", moves ? parted->by.speed : NAN);
+    json_put_number(json, "spin", moves ? parted->by.spin : NAN);
     json_end(json);
 }
 
@@ -121,21 +122,24 @@ static void write_divergence(JsonWriter *json, const void *context) {
                                          [PART_HIDDEN] = "warm start",
                                          [PART_CONTACTS] = "collision detection",
                                          [PART_SOLVER] = "solver",
-                                         [PART_ELSEWHERE] = "not the contacts"};
+                                         [PART_ELSEWHERE] = "not the contacts",
+                                         [PART_UNKNOWN] = "unknown"};
     const Divergence *d = context;
     const TrajectoryParting *parting = &d->parting;
     const Trajectory *a = d->runs[0];
-    const bool differ = parting->first.frame >= 0, beyond = d->tolerance > 0 && parting->beyond.frame > 0;
+    const bool differ = parting->first.frame >= 0, contacts = !a->no_contacts && !d->runs[1]->no_contacts,
+               beyond = contacts && d->tolerance > 0 && parting->beyond.frame > 0;
     json_begin_array(json, "runs", JSON_LINES);
     for (int i = 0; i < 2; i++) write_run(json, d->paths[i], d->runs[i]);
     json_end(json);
     json_put_int(json, "frames", parting->frames);
     json_put_number(json, "tolerance", d->tolerance);
+    json_put_bool(json, "poses_only", parting->poses_only);
     json_put_bool(json, "diverge", parting->beyond.frame >= 0);
-    write_parted(json, "first", a, &parting->first);
+    write_parted(json, "first", d, &parting->first);
     json_put_text(json, "cause", causes[parting->cause]);
     write_contacts(json, "contacts", parting->step, &parting->contacts);
-    write_parted(json, "beyond", a, &parting->beyond);
+    write_parted(json, "beyond", d, &parting->beyond);
     write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts);
     if (differ)
         write_growth(json, "growth", &d->growth, (double)a->dt);

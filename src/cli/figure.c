@@ -2,18 +2,23 @@
 #include "cli/camera_option.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/picture_notes.h"
 #include "cli/progress_bar.h"
+#include "common/file.h"
 #include "figure/figure.h"
+#include "picture/caption_check.h"
+#include "type/type_check.h"
 
 #include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
-    int input_count;
+    int input_count, caption_count;
     FigureSpec figure;
     bool transparent, outlines;
     const char *view_from; /* RUN.npz, or NULL */
+    const char *caption;   /* FILE.tex, or NULL */
 } Options;
 
 static OptionRead read_input, read_times, read_bodies, read_width;
@@ -41,7 +46,14 @@ static const Option option_table[] = {
      OPTION_DOUBLE(Options, figure.dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX)},
     {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
      OPTION_DOUBLE(Options, figure.points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX)},
+    {"--caption-text", 0, "FILE.tex",
+     "Also write a caption for LaTeX: scene, methods, times and version, as \\caption{...}",
+     OPTION_TEXT(Options, caption)},
     {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
+    {"--caption", 0, "TEXT",
+     "Caption of a run, instead of its method's name (may be repeated: one per run, in their order; \"\" keeps the "
+     "name)",
+     OPTION_TEXTS(Options, figure.captions, caption_count)},
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};
@@ -135,12 +147,27 @@ static bool check_inputs(const FigureKind *kind, const Options *options, Error *
                        options->input_count);
 }
 
+static bool check_captions(const FigureKind *kind, const Options *options, Error *error) {
+    if (options->caption_count > 0 && kind->max_runs == 0) return refuse("--caption", kind, error);
+    if (options->caption_count > options->input_count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
+                           options->input_count == 1 ? "" : "s");
+    for (int i = 0; i < options->caption_count; i++)
+        if (!caption_check(options->figure.captions[i], "--caption", error)) return false;
+    return true;
+}
+
 static bool check_options(const FigureKind *kind, const Options *options, Error *error) {
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
-    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error)) return false;
+    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error) ||
+        !check_captions(kind, options, error))
+        return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
+    if (options->caption != NULL && !file_name_ends_with(options->caption, ".tex"))
+        return error_input(error, "--caption-text", "the name of a caption must end in .tex (got '%s')",
+                           options->caption);
     if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
     if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
     if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
@@ -160,10 +187,12 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
 static bool draw(const FigureKind *kind, const Options *options, Error *error) {
     const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
     Sketch sketch = {0};
-    bool ok = figure_draw(kind, &sketch, &options->figure, error) &&
+    bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
               sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
               sketch_write(&sketch, options->output, &output, error);
+    if (ok && options->caption != NULL) ok = figure_write_caption(kind, &options->figure, options->caption, error);
     if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
+    if (ok && options->caption != NULL) printf("caption -> %s\n", options->caption);
     sketch_free(&sketch);
     return ok;
 }
@@ -179,8 +208,10 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
         runs[i] = trajectory_read(options->inputs[i], error);
         figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
         figure->run_count++;
-        ok = runs[i] != NULL;
+        ok = runs[i] != NULL && type_check(runs[i]->scene, options->inputs[i], error) &&
+             type_check(runs[i]->method, options->inputs[i], error);
     }
+    if (ok) note_different_scenes(figure->runs, figure->run_count);
     figure->progress = progress_bar_begin(kind->name);
     ok = ok && draw(kind, options, error);
     progress_bar_end();
@@ -190,7 +221,9 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
 }
 
 bool command_figure(int argc, char **argv, Error *error) {
-    Options options = {.figure = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
+    FigureFacts facts = {0};
+    Options options = {
+        .figure = {.facts = &facts, .width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
     char help[HELP_SIZE];
     const char *names[KINDS_MAX + 1] = {NULL};
     write_help(help);

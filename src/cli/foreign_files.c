@@ -3,6 +3,7 @@
 #include "cli/notes.h"
 #include "cli/picture_notes.h"
 #include "common/array.h"
+#include "common/file.h"
 #include "common/text_add.h"
 #include "render/sink.h"
 #include "trajectory/trajectory_name.h"
@@ -28,11 +29,6 @@ static int frame_of(const char *name) {
     if (sscanf(name, "frame_%9d.png", &index) != 1 || index < 0) return -1;
     sink_frame_name(own, index);
     return strcmp(name, own) == 0 ? index : -1;
-}
-
-static bool ends_with(const char *name, const char *ending) {
-    const size_t length = strlen(name), tail = strlen(ending);
-    return length > tail && strcmp(name + length - tail, ending) == 0;
 }
 
 static bool is_of_sequence(const char *name, const RenderResult *result, const Panels *panels) {
@@ -72,7 +68,7 @@ static void collect(Names *names, const char *directory, const RenderResult *res
     if (folder == NULL) return;
     for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) {
         const char *name = entry->d_name;
-        if (name[0] == '.' || (!ends_with(name, ".png") && !ends_with(name, ".npz")) ||
+        if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
             is_of_sequence(name, result, panels) || is_input(directory, name, panels))
             continue;
         if (!add(names, name)) break;

@@ -40,12 +40,13 @@ static const CommandSpec spec = {
         "  0,1,0,0.51,0\n\n"
         "The other comments are scene, method, bomb and camera. What the file does not state is assumed, and "
         "printed.\v"
-        "Example: twinbox import box2d.csv --sizes sizes.csv --dt 1/60 -o box2d.npz"};
+        "Example: twinbox import box2d.csv --sizes sizes.csv --dt 1/60 -o box2d.npz\n"
+        "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};
 
 static bool import_run(const Options *options, Error *error) {
     char name[TRAJECTORY_NAME_SIZE];
     CsvRunNotes notes;
-    trajectory_name_from_path(options->input, name);
+    trajectory_name_from_path(strcmp(options->input, "-") == 0 ? options->output : options->input, name);
     const CsvRunOptions how = {.name = name, .sizes = options->sizes, .dt = options->dt, .degrees = options->degrees};
     Trajectory *run = csv_run_read(options->input, &how, &notes, error);
     bool ok = run != NULL && trajectory_write(run, options->output, error);

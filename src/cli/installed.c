@@ -30,13 +30,16 @@ static bool find(char found[PATH_SIZE], const char *path) {
            access(found, R_OK) == 0;
 }
 
+/* Where a scene is looked for by its name. */
+static const char *const scene_folders[] = {"scenes", "scenes/families", "scenes/stability"};
+enum { SCENE_FOLDERS = sizeof scene_folders / sizeof *scene_folders };
+
 static bool find_scene(char found[PATH_SIZE], const char *name) {
-    static const char *const folders[] = {"scenes", "scenes/families", "scenes/stability"};
     if (strpbrk(name, "./") != NULL) return false;
-    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+    for (int i = 0; i < SCENE_FOLDERS; i++) {
         char path[PATH_SIZE];
         Error ignored = {0};
-        if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", folders[i], name)) return false;
+        if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", scene_folders[i], name)) return false;
         if (access(path, R_OK) == 0) return memcpy(found, path, sizeof path), true;
         if (find(found, path)) return true;
     }
@@ -60,13 +63,27 @@ static bool is_scene(const char *name) {
     return ending != NULL && strcmp(ending, ".yaml") == 0;
 }
 
-void installed_scenes(void (*found)(const char *path, void *context), void *context) {
-    char folder[PATH_SIZE], path[PATH_SIZE];
+/* `shown`: the folder as in paths; NULL: names alone. */
+static void list_scenes(const char *folder, const char *shown, InstalledScene *found, void *context) {
     FolderList list;
     Error ignored = {0};
-    if (!find(folder, "scenes") || !folder_list(&list, folder, is_scene, true, &ignored)) return;
-    for (size_t i = 0; i < list.count; i++)
-        if (file_path(path, sizeof path, &ignored, "scenes/%s", list.names[i]) && access(path, F_OK) != 0)
-            found(path, context);
+    if (!folder_list(&list, folder, is_scene, false, &ignored)) return;
+    for (size_t i = 0; i < list.count; i++) {
+        char path[PATH_SIZE];
+        const int length = (int)(strlen(list.names[i]) - strlen(".yaml"));
+        const bool fits = shown != NULL ? file_path(path, sizeof path, &ignored, "%s/%s", shown, list.names[i])
+                                        : file_path(path, sizeof path, &ignored, "%.*s", length, list.names[i]);
+        if (fits && (shown == NULL || access(path, F_OK) != 0)) found(path, context);
+    }
     folder_list_free(&list);
+}
+
+void installed_scenes(InstalledScene *found, void *context) {
+    for (int i = 0; i < SCENE_FOLDERS; i++) {
+        char folder[PATH_SIZE];
+        list_scenes(scene_folders[i], NULL, found, context);
+        if (!find(folder, scene_folders[i])) continue;
+        list_scenes(folder, NULL, found, context);
+        list_scenes(folder, scene_folders[i], found, context);
+    }
 }

@@ -8,5 +8,7 @@
    directory or installed. Valid until the program ends. */
 const char *installed_path(const char *path);
 
-/* Calls found("scenes/stack.yaml", context) for each installed scene that installed_path() finds, in the order of names. */
-void installed_scenes(void (*found)(const char *path, void *context), void *context);
+/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by its
+   name, or, but for what the working directory has, by its path. Names may come twice. */
+typedef void InstalledScene(const char *scene, void *context);
+void installed_scenes(InstalledScene *found, void *context);

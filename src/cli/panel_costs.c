@@ -1,39 +1,55 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/panel_costs.h"
 
+#include "simulate/method.h"
 #include "study/chart_csv.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* "momentum:k=20" is method "momentum" with setting "k=20". The chart has no setting for the network. */
-static const char *settings_of(const Trajectory *run) {
-    const char *colon = strchr(run->method, ':');
-    return colon == NULL || strncmp(colon + 1, "network=", 8) == 0 ? "" : colon + 1;
-}
-
 static bool is_of(const ChartRow *row, const Trajectory *run) {
     size_t length = strcspn(run->method, ":");
     return strncmp(row->method, run->method, length) == 0 && row->method[length] == '\0';
 }
 
-/* The row with these settings. A run without settings uses the scene's, which a trajectory does not store; if no row has
-   none, the only row of the method counts. NULL if there is no row. */
+/* All settings of `some` are in `all` with the same value; a network only has to be if `all` has one. */
+static bool contains(const Settings *all, const Settings *some) {
+    for (int i = 0; i < some->count; i++) {
+        const char *key = some->items[i].key, *value = settings_get(all, key);
+        if (value == NULL ? strcmp(key, "network") != 0 : strcmp(value, some->items[i].value) != 0) return false;
+    }
+    return true;
+}
+
+/* In any order, and whether given or not: "engine" is "engine:k=10" in a scene with 10 iterations. The chart has no setting
+   for the network that the scene names. */
+static bool has_settings(const ChartRow *row, const Trajectory *run) {
+    char text[METHOD_TEXT_SIZE];
+    Settings charted, own;
+    if (snprintf(text, sizeof text, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting) >=
+            (int)sizeof text ||
+        !method_all_settings(&charted, text, run->iterations) ||
+        !method_all_settings(&own, run->method, run->iterations))
+        return false;
+    return contains(&charted, &own) && contains(&own, &charted);
+}
+
+/* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only row
+   of its method. NULL if there is no row. */
 static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run) {
     const ChartRow *found = NULL;
-    const char *settings = settings_of(run);
     int fitting = 0;
     for (int i = 0; i < table->count; i++) {
         const ChartRow *row = &table->rows[i];
         if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
             isnan(row->us_solver) || !is_of(row, run))
             continue;
-        if (strcmp(row->setting, settings) == 0) return row;
+        if (has_settings(row, run)) return row;
         found = row;
         fitting++;
     }
-    return settings[0] == '\0' && fitting == 1 ? found : NULL;
+    return strchr(run->method, ':') == NULL && run->iterations == 0 && fitting == 1 ? found : NULL;
 }
 
 bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error) {

@@ -8,12 +8,17 @@
 #include "scene/launch.h"
 #include "simulate/simulate.h"
 #include "trajectory/trajectory_name.h"
+#include "type/type_check.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static bool add(Panels *panels, Trajectory *run, const char *input, Error *error) {
     if (run == NULL) return false;
+    if (!type_check(run->scene, input, error) || !type_check(run->method, input, error)) {
+        trajectory_destroy(run);
+        return false;
+    }
     if (panels->count == RENDER_PANELS_MAX) {
         trajectory_destroy(run);
         return error_input(error, input, "more than %d panels", RENDER_PANELS_MAX);
@@ -58,7 +63,8 @@ static void note_engine_only(const char *input, const Scene *scene) {
 
 static bool add_scene(Panels *panels, const char *input, const SceneSettings *set, Error *error) {
     Scene *scene = scene_read_with(input, set->items, set->count, error);
-    bool ok = scene != NULL && panels_add_run(panels, scene, "engine", input, error);
+    bool ok =
+        scene != NULL && type_check(scene->name, input, error) && panels_add_run(panels, scene, "engine", input, error);
     if (ok && scene_network(scene, "pair-net") != NULL)
         ok = panels_add_run(panels, scene, "pair-net", input, error);
     else if (ok)

@@ -6,6 +6,7 @@
 #include "cli/panel_costs.h"
 #include "cli/picture_notes.h"
 #include "common/file.h"
+#include "picture/caption_check.h"
 #include "picture/picture.h"
 #include "render/moments.h"
 
@@ -15,7 +16,7 @@
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
-    int input_count;
+    int input_count, caption_count;
     RenderOptions render;
     DrawVideos videos;
     SceneSettings set;
@@ -73,6 +74,11 @@ static const Option option_table[] = {
     {"--view-from", 0, "RUN", "The fixed view of this run (.npz) instead of the first panel's",
      OPTION_PATH(Options, view_from)},
     {"--theme", 0, "light|dark", "Colours (default: light)", OPTION_ENUM(Options, render.look.theme, look_theme_names)},
+    {"--caption", 0, "TEXT",
+     "Caption of a run, instead of its method's name and description (may be repeated: one per run, in their order; "
+     "\"\" keeps "
+     "the name)",
+     OPTION_TEXTS(Options, render.captions, caption_count)},
     {"--costs", 0, "FILE.csv", "Add the time per step to the captions, from a chart.csv of 'twinbox chart'",
      OPTION_TEXT(Options, costs)},
     {0}};
@@ -173,9 +179,13 @@ static bool render_panels(Options *options, const Panels *panels, Error *error) 
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PanelCosts costs;
     RenderResult result;
-    if (!check_moments(render, panels, error) || !look_check(&render->look, runs, panels->count, error) ||
+    if (options->caption_count > panels->count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
+                           panels->count == 1 ? "" : "s");
+    if (!check_moments(render, panels, error) ||
         (options->costs != NULL && !panel_costs_read(&costs, options->costs, panels, &render->look, error)) ||
-        !file_make_directory(render->directory, error) || !panels_store(panels, render->directory, error) ||
+        !picture_check(runs, panels->count, render, error) || !file_make_directory(render->directory, error) ||
+        !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, &options->videos, &result, error))
         return false;
     print_result(options, &result);
@@ -183,9 +193,18 @@ static bool render_panels(Options *options, const Panels *panels, Error *error) 
     return true;
 }
 
+static bool check_texts(const Options *options, Error *error) {
+    bool ok = caption_check(options->render.title, "--title", error) &&
+              caption_check(options->render.look.end, "--end", error);
+    for (int i = 0; ok && i < options->caption_count; i++)
+        ok = caption_check(options->render.captions[i], "--caption", error);
+    return ok;
+}
+
 bool command_render(int argc, char **argv, Error *error) {
     Options options = {.render = draw_panels_defaults(NULL)};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!check_texts(&options, error)) return false;
     options.render.title_card = options.render.title != NULL;
     options.render.end_card = options.render.look.end != NULL;
     Panels panels = {0};

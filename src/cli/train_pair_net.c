@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Options {
     TrainingOptions training;
@@ -23,7 +24,10 @@ static const Option options[] = {
     {"--iterations", 0, "N", "Full-batch steps", OPTION_INT(Options, training.iterations, 0, 1000000),
      .standard = "2000"},
     {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(Options, training.seed), .standard = "1"},
-    {"--from", 0, "NET.npz", "Continue from the weights of this network, such as one cut short by Ctrl-C",
+    {"--from", 0, "NET.npz",
+     "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
+     "held-out "
+     "error than the result, it is kept (exit status 1)",
      OPTION_PATH(Options, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
      OPTION_TEXT(Options, training.hidden)},
@@ -85,17 +89,48 @@ static Network *train(const Dataset *dataset, TrainingOptions *training, Error *
     return network;
 }
 
+/* The held-out error as a share of that of always predicting the mean, so that networks of different scales compare. */
+static double share(const TrainingScore *score) { return score->test / score->constant_test; }
+
+static void print_verdict(const TrainingScore *score) {
+    printf("verdict: held-out error %.6f, %.4g of the constant predictor's%s\n", score->test, share(score),
+           share(score) < 1 ? "" : ": no better than the constant");
+}
+
+/* False, without an error, if a network would be replaced by a worse one. Only training that continues may: a new one is
+   begun on purpose. */
+static bool may_replace(const Dataset *dataset, const TrainRequest *request, const TrainingOptions *training,
+                        const TrainingScore *score, Error *error) {
+    TrainingScore before;
+    if (training->start == NULL || access(request->output, F_OK) != 0) return true;
+    Network *old = network_read(request->output, error);
+    if (old == NULL) return false;
+    const bool scored = training_score(dataset, old, training->loss, &before, error);
+    network_destroy(old);
+    if (!scored || !(share(score) > share(&before))) return scored;
+    printf("verdict: worse than the network in %s, which is kept: held-out error %.4g of the constant predictor's, not "
+           "%.4g\n",
+           request->output, share(&before), share(score));
+    return false;
+}
+
+static bool store(Network *network, const Dataset *dataset, const TrainRequest *request,
+                  const TrainingOptions *training, Error *error) {
+    TrainingScore score;
+    train_describe(request, network->command, sizeof network->command);
+    if (!training_score(dataset, network, training->loss, &score, error) ||
+        !may_replace(dataset, request, training, &score, error) || !network_write(network, request->output, error))
+        return false;
+    printf("%s%d parameters -> %s\n", progress_interrupted() ? "stopped early; " : "", network_parameter_count(network),
+           request->output);
+    print_verdict(&score);
+    return true;
+}
+
 static bool train_and_store(const Dataset *dataset, const TrainRequest *request, TrainingOptions *training,
                             Error *error) {
     Network *network = train(dataset, training, error);
-    bool ok = network != NULL;
-    if (ok) {
-        train_describe(request, network->command, sizeof network->command);
-        ok = network_write(network, request->output, error);
-    }
-    if (ok)
-        printf("%s%d parameters -> %s\n", progress_interrupted() ? "stopped early; " : "",
-               network_parameter_count(network), request->output);
+    bool ok = network != NULL && store(network, dataset, request, training, error);
     network_destroy(network);
     return ok;
 }

@@ -8,6 +8,7 @@
 
 typedef struct Options {
     SceneTraining training;
+    SceneNetVerdict verdict;
     bool smallest;
     double within; /* m/s; negative: not given */
 } Options;
@@ -63,6 +64,23 @@ static bool store(SlotNetwork *network, const TrainRequest *request, int width, 
     return true;
 }
 
+static const char *compare(double error, double rival) {
+    return error < rival ? "better than" : error > rival ? "worse than" : "as good as";
+}
+
+/* Of the last round; without held-out impacts there is none. */
+static void print_verdict(const SceneNetVerdict *verdict) {
+    if (verdict->samples == 0) {
+        printf("verdict: none, as no held-out launch has an impact\n");
+        return;
+    }
+    printf("held out: the network and its sweeps %.4f m/s in %.3g us; momentum in that time, %d sweeps, %.4f; with 20 "
+           "sweeps %.4f\n",
+           verdict->network, verdict->microseconds, verdict->sweeps, verdict->at_equal_time, verdict->at_20);
+    printf("verdict: %s momentum at equal time; %s momentum with 20 sweeps\n",
+           compare(verdict->network, verdict->at_equal_time), compare(verdict->network, verdict->at_20));
+}
+
 static SlotNetwork *train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
     *score = (SceneNetScore){0};
     training->context = score;
@@ -98,6 +116,7 @@ static bool train_and_store(const Scene *scene, const TrainRequest *request, Opt
     SlotNetwork *network =
         given->smallest ? train_smallest(scene, training, given->within, error) : train(scene, training, &score, error);
     bool ok = network != NULL ? store(network, request, training->widths.hidden, error) : error->kind == ERROR_NONE;
+    if (ok && network != NULL) print_verdict(&given->verdict);
     slot_network_destroy(network);
     return ok;
 }
@@ -106,6 +125,7 @@ static bool run(const TrainRequest *request, Error *error) {
     Options given = {.training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = print_score},
                      .within = -1};
     if (!train_read(request, &given, error)) return false;
+    given.training.verdict = &given.verdict;
     const int width = given.training.widths.hidden;
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
     if (given.smallest != (given.within >= 0))

@@ -23,8 +23,9 @@ static bool read_text(const CsvCell *cell, const char **member, Error *error) {
     char what[64];
     snprintf(what, sizeof what, "is longer than %zu bytes", most);
     if (strlen(text) > most) return refuse(cell, error, what);
-    for (const char *c = text; name && *c != '\0'; c++)
-        if (!csv_is_plain(*c)) return refuse(cell, error, "may only have letters, digits, spaces and -_.,:=+/()*[]");
+    for (const char *c = text; name && *c != '\0'; c += csv_plain_length(c))
+        if (csv_plain_length(c) == 0)
+            return refuse(cell, error, "may only have letters, digits, spaces and -_.,:=+/()*[]");
     *member = text;
     return true;
 }

@@ -4,6 +4,7 @@
 #include "common/csv_cell.h"
 #include "common/file.h"
 #include "common/names.h"
+#include "common/utf8.h"
 
 #include <assert.h>
 #include <stdarg.h>
@@ -20,9 +21,12 @@ typedef struct Reading {
     Error *error;
 } Reading;
 
-bool csv_is_plain(char letter) {
+size_t csv_plain_length(const char *text) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
-    return letter != '\0' && strchr(plain, letter) != NULL;
+    enum { AFTER_CONTROLS = 0xA1 };
+    uint32_t character;
+    const size_t length = utf8_decode(text, strnlen(text, 4), &character);
+    return length > 1 ? (character >= AFTER_CONTROLS ? length : 0) : length == 1 && strchr(plain, *text) != NULL;
 }
 
 int csv_word(const char *const *words, const char *word) {

@@ -23,7 +23,7 @@ enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 24, CSV_PATH_SIZE = 4096 };
 /* What a field holds, and the type of the member that takes it. */
 typedef enum CsvKind {
     CSV_TEXT,    /* const char *: at most `maximum` bytes */
-    CSV_NAME,    /* const char *: fewer than CSV_NAME_SIZE bytes, all plain (csv_is_plain) */
+    CSV_NAME,    /* const char *: fewer than CSV_NAME_SIZE bytes, all plain (csv_plain_length) */
     CSV_WORD,    /* int or enum: index into `words` */
     CSV_INTEGER, /* int, from minimum to maximum */
     CSV_FLOAT,   /* float, likewise, read by parse_float(): fractions such as 1/60 are allowed */
@@ -100,5 +100,6 @@ bool csv_row_print(FILE *file, const CsvLayout *layout, const void *row, Error *
 /* Index of a word in a list that ends in NULL; -1: not there. */
 int csv_word(const char *const *words, const char *word);
 
-/* True for letters, digits, the space and -_.,:=+/()*[]: what gnuplot draws as it is. */
-bool csv_is_plain(char letter);
+/* Bytes of the text's first character if it is a letter, a digit, the space, one of -_.,:=+/()*[] or not in ASCII: what
+   gnuplot draws as it is. Otherwise, or if it is not UTF-8, 0. */
+size_t csv_plain_length(const char *text);

@@ -91,6 +91,35 @@ char *file_read_at(int folder, const char *name, const char *path, size_t limit,
     return read_and_close(openat(folder, name, OPEN_TO_READ | O_NOFOLLOW), path, limit, size, error);
 }
 
+char *file_read_input(size_t limit, size_t *size, Error *error) {
+    static const char name[] = "standard input";
+    char *data = NULL;
+    size_t capacity = 0;
+    ssize_t count = 1;
+    *size = 0;
+    while (count > 0 && *size <= limit) {
+        void *items = data;
+        bool room = array_reserve(&items, &capacity, *size + (1 << 16) + 1, 1);
+        data = items;
+        if (!room) {
+            error_memory(error, name);
+            free(data);
+            return NULL;
+        }
+        do count = read(STDIN_FILENO, data + *size, 1 << 16);
+        while (count < 0 && errno == EINTR);
+        if (count > 0) *size += (size_t)count;
+    }
+    bool ok = count == 0 || (count < 0 ? error_system(error, name, "cannot read: %s", strerror(errno))
+                                       : error_input(error, name, "larger than %zu bytes", limit));
+    if (ok) {
+        data[*size] = '\0';
+        return data;
+    }
+    free(data);
+    return NULL;
+}
+
 static bool is_directory(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
@@ -120,6 +149,11 @@ bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
     va_end(arguments);
     return (length >= 0 && (size_t)length < size) ||
            error_input(error, "path", "%.200s... is longer than %zu bytes", path, size - 1);
+}
+
+bool file_name_ends_with(const char *name, const char *ending) {
+    const size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
 }
 
 size_t file_folder_length(const char *path) {

@@ -14,6 +14,9 @@ bool file_open_error(const char *path, Error *error);
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 
+/* The same of standard input, up to its end; it may be a pipe. */
+char *file_read_input(size_t limit, size_t *size, Error *error);
+
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
@@ -61,6 +64,9 @@ bool file_path(char *path, size_t size, Error *error, const char *format, ...) P
 
 /* Length of the folder part of a path with its slash: 7 for "scenes/single.yaml", 0 for "single.yaml". */
 size_t file_folder_length(const char *path);
+
+/* Whether a name has this ending, ".npz", and something before it. */
+bool file_name_ends_with(const char *name, const char *ending);
 
 /* Replaces characters that do not belong in a file name by '_'. */
 void file_name_clean(char *name);

@@ -64,7 +64,8 @@ typedef struct MethodDescription {
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
                             settings otherwise. NULL: nothing is learned */
-    const char *shipped; /* the setting in common use, which charts mark; NULL: none */
+    const char *own_settings; /* those that hold where none are given, "k=10"; NULL: k is the scene's iterations */
+    const char *shipped;      /* the setting in common use, which charts mark; NULL: none */
     /* What `twinbox chart`, `twinbox chart --quick` and `twinbox stability` run by default. NULL: one run, no settings
        given. METHOD_NO_RUNS: left out unless named, and reported as left out. */
     MethodRuns chart, chart_quick, stability;

@@ -70,12 +70,16 @@ static bool reserve_bodies(World *world, size_t count) {
                   {(void **)&world->problem_bodies, sizeof(ProblemBody)},
                   {(void **)&world->velocities, sizeof(BodyVelocity)}};
     size_t capacity = world->body_capacity;
-    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
+    bool ok = true;
+    for (size_t i = 0; ok && i < sizeof arrays / sizeof arrays[0]; i++) {
         capacity = world->body_capacity;
-        if (!array_reserve(arrays[i].items, &capacity, count, arrays[i].size)) return false;
+        ok = array_reserve(arrays[i].items, &capacity, count, arrays[i].size);
     }
-    world->body_capacity = capacity;
-    return true;
+    if (ok) world->body_capacity = capacity;
+    /* The arrays of the last step's problem and solution may have moved. */
+    if (world->problem.bodies != NULL) world->problem.bodies = world->problem_bodies;
+    if (world->solution.velocities != NULL) world->solution.velocities = world->velocities;
+    return ok;
 }
 
 bool world_add_body(World *world, const BodyDef *def, Error *error) {

@@ -3,7 +3,7 @@
 
 #include "picture/style.h"
 #include "sketch/label_place.h"
-#include "sketch/type.h"
+#include "type/type.h"
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>

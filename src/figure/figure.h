@@ -17,24 +17,34 @@ enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60, FIGURE_BODI
 #define FIGURE_POINTS_MIN 5.0
 #define FIGURE_POINTS_MAX 14.0
 
+/* What was drawn, for the caption. */
+typedef struct FigureFacts {
+    int frame_count, frames[FIGURE_MOMENTS_MAX]; /* shown */
+    int bodies[2];                               /* narrow-phase: the pair */
+    int shifted;                                 /* divergence: the number of bodies shifted for the band; 0: no band */
+    char network[SKETCH_TEXT_SIZE];              /* network: its file, layers and number of parameters */
+} FigureFacts;
+
 /* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
 typedef struct FigureSpec {
     double width, points, dpi; /* mm; font size; resolution of pictures */
     double height;             /* mm; 0: the kind chooses */
     int run_count;
     const Trajectory *runs[FIGURE_RUNS_MAX];
-    const char *paths[FIGURE_RUNS_MAX]; /* file names of the runs, for messages */
-    int time_count;                     /* 0: the kind chooses */
-    double times[FIGURE_MOMENTS_MAX];   /* s, ascending */
-    int moments;                        /* number of equidistant moments; 0: the kind chooses */
-    const char *scene;                  /* divergence: scene of the first run, for the band of chaotic divergence;
+    const char *paths[FIGURE_RUNS_MAX];    /* file names of the runs, for messages */
+    const char *captions[FIGURE_RUNS_MAX]; /* instead of the names of the runs' methods; NULL or "": these */
+    int time_count;                        /* 0: the kind chooses */
+    double times[FIGURE_MOMENTS_MAX];      /* s, ascending */
+    int moments;                           /* number of equidistant moments; 0: the kind chooses */
+    const char *scene;                     /* divergence: scene of the first run, for the band of chaotic divergence;
                                            NULL: no band */
-    const char *network;                /* network: the file */
-    CameraView view;                    /* the part of the world to show; width 0: that of `view_from` */
-    const Trajectory *view_from;        /* the run whose bodies set the view; NULL: the first */
-    int body_count;                     /* 0: the kind chooses */
-    int bodies[FIGURE_BODIES_MAX];      /* narrow-phase: the pair; strip: those that must be in view */
-    const Progress *progress;           /* of simulations run for the figure, or NULL */
+    const char *network;                   /* network: the file */
+    CameraView view;                       /* the part of the world to show; width 0: that of `view_from` */
+    const Trajectory *view_from;           /* the run whose bodies set the view; NULL: the first */
+    int body_count;                        /* 0: the kind chooses */
+    int bodies[FIGURE_BODIES_MAX];         /* narrow-phase: the pair; strip: those that must be in view */
+    FigureFacts *facts;                    /* filled in by drawing; NULL: not wanted */
+    const Progress *progress;              /* of simulations run for the figure, or NULL */
 } FigureSpec;
 
 typedef struct FigureKind {
@@ -47,6 +57,8 @@ typedef struct FigureKind {
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
+    /* Writes sentences for LaTeX (figure/caption.h) from the facts of a figure that was drawn. */
+    void (*caption)(FILE *out, const FigureSpec *spec);
 } FigureKind;
 
 /* All kinds; ends with NULL. */
@@ -54,6 +66,10 @@ const FigureKind *const *figure_kinds(void);
 
 /* Draws a kind with the title of its files: "strip of stack: engine, momentum:k=20". As FigureKind.draw. */
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error);
+
+/* Writes \caption{...} for LaTeX to a file: what the figure shows, of which scene, by which methods, at which times, and
+   the version. spec->facts are those of the figure, which was drawn. */
+bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error);
 
 /* NULL with error set, which lists the kinds, if there is no such kind. */
 const FigureKind *figure_kind(const char *name, Error *error);

@@ -2,6 +2,7 @@
 /* One moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
    step, for which the contacts were found. */
 #include "figure/contact_marks.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -94,8 +95,8 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     const FigureSpec *spec = figure->spec;
     const Trajectory *run = spec->runs[panel];
     const double line = line_height(spec->points), top = low.y + figure->cells.height;
-    char title[TRAJECTORY_NAME_SIZE + 32], counts[96], part[48] = "";
-    snprintf(title, sizeof title, "%s, %.3f s", run_name(run).text, figure->frame * (double)run->dt);
+    char title[CAPTION_SIZE + 32], counts[96], part[48] = "";
+    snprintf(title, sizeof title, "%s, %.3f s", run_name(spec, run).text, figure->frame * (double)run->dt);
     text_fit(title, sizeof title, spec->points, figure->cells.width);
     sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
                 title);
@@ -160,6 +161,16 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("Contacts of the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(": contact points, normals and impulses of the next step. ", out);
+    fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
+    caption_runs(out, spec, 0);
+    fputs(".", out);
+}
+
 const FigureKind figure_annotated = {
     .name = "annotated",
     .summary = "one moment with contacts, normals and impulses",
@@ -170,4 +181,5 @@ const FigureKind figure_annotated = {
     .takes_view = true,
     .needs_contacts = true,
     .draw = draw,
+    .caption = caption,
 };

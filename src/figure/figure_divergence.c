@@ -2,6 +2,7 @@
 /* The largest distance of any body from its position in the first run, over time. The band shows the distance of the
    first run from copies with one body shifted by a micrometre: two runs inside it diverge no faster than by chaos. */
 #include "chart/chart_style.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -159,20 +160,20 @@ static void draw_legend_row(Sketch *sketch, Point at, double points, double widt
 static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
     const FigureSpec *spec = d->spec;
     const double line = line_height(spec->points);
-    char words[2 * TRAJECTORY_NAME_SIZE + 64];
+    char words[2 * CAPTION_SIZE + 64];
     Point at = {left, top - line / 2};
     for (int i = 1; i < spec->run_count; i++, at.y -= line) {
         const Pen pen = line_pen(d, i);
         bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec->runs[i]).text, run_name(spec->runs[0]).text,
-                 ever ? "" : ": identical");
+        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec, spec->runs[i]).text,
+                 run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
         draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
     }
     if (d->low == NULL) return;
     sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
                      &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
-    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec->runs[0]).text,
+    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text,
              d->shifted);
     draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
 }
@@ -220,8 +221,27 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
         done =
             error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
     done = done && draw_plot(&d, sketch, range, error);
+    if (spec->facts != NULL) spec->facts->shifted = d.shifted;
     free_all(&d);
     return done;
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    const Trajectory *first = spec->runs[0];
+    fputs("Runs of the ", out);
+    caption_scene(out, spec);
+    fputs(" by ", out);
+    caption_runs(out, spec, 1);
+    fputs(": largest distance of a body from its position in the run by ", out);
+    caption_run(out, spec, first);
+    fputs(", over time.", out);
+    if (spec->facts->shifted > 0)
+        fprintf(out,
+                " The band shows further runs by the first method, each with one of %d bodies shifted by 1~$\\mu$m.",
+                spec->facts->shifted);
+    if (trajectory_impact(first) >= 0)
+        fprintf(out, " The dashed vertical line marks the impact of the bomb at %.2f~s.",
+                trajectory_impact(first) * (double)first->dt);
 }
 
 const FigureKind figure_divergence = {
@@ -232,4 +252,5 @@ const FigureKind figure_divergence = {
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
     .draw = draw,
+    .caption = caption,
 };

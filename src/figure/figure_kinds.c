@@ -33,7 +33,8 @@ bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec,
         append(sketch->title, " of ", spec->network + file_folder_length(spec->network));
     else
         append(sketch->title, " of ", spec->runs[0]->scene);
-    for (int i = 0; i < spec->run_count; i++) append(sketch->title, i == 0 ? ": " : ", ", run_name(spec->runs[i]).text);
+    for (int i = 0; i < spec->run_count; i++)
+        append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
     return true;
 }
 

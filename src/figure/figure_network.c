@@ -4,6 +4,7 @@
 #include "common/npz.h"
 #include "figure/network_drawing.h"
 #include "figure/figure_kinds.h"
+#include "figure/latex.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 
@@ -46,6 +47,7 @@ void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *titl
     const double line = line_height(spec->points);
     char words[NETWORK_TEXT_SIZE];
     snprintf(words, sizeof words, "%s", title);
+    if (spec->facts != NULL) snprintf(spec->facts->network, sizeof spec->facts->network, "%s", title);
     text_fit(words, sizeof words, spec->points, sketch->width);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false},
                 "%s", words);
@@ -80,9 +82,18 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return error_input(error, spec->network, "contains no network with layers%s", known ? "" : ": it states no kind");
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    const char *name = spec->network + file_folder_length(spec->network), *facts = spec->facts->network;
+    fputs("Layers and weights of the network ", out);
+    latex_code(out, name);
+    latex_text(out, strncmp(facts, name, strlen(name)) == 0 ? facts + strlen(name) : "");
+    fputs(".", out);
+}
+
 const FigureKind figure_network = {
     .name = "network",
     .summary = "layers, sizes and weights of a network's file",
     .example = "network scenes/networks/pair-net.npz --width column -o network.pdf",
     .draw = draw,
+    .caption = caption,
 };

@@ -2,6 +2,7 @@
 /* The narrow phase of a contact of a run: the axis along which two boxes touch, and their contact points. The poses
    are those before the step, for which the contact was found. */
 #include "figure/narrow_phase.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
@@ -133,8 +134,8 @@ static void draw_halves(Sketch *sketch, const Collision *collision, View overlap
 
 static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
     const Trajectory *run = spec->runs[0];
-    char title[TRAJECTORY_NAME_SIZE + 96];
-    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(run).text,
+    char title[CAPTION_SIZE + 96];
+    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
              (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
     text_fit(title, sizeof title, spec->points, sketch->width - 0.4);
     sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line_height(spec->points)},
@@ -144,6 +145,9 @@ static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Collision collision;
     if (!choose(spec, &collision, error)) return false;
+    if (spec->facts != NULL)
+        *spec->facts = (FigureFacts){
+            .frame_count = 1, .frames = {collision.step - 1}, .bodies = {collision.bodies[0], collision.bodies[1]}};
     const Vec2 down = collision_turn_up(&collision);
     const double width = spec->width, line = line_height(spec->points), edge = 0.2, gap = 3;
     if (width >= side_by_side) {
@@ -161,6 +165,25 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return true;
 }
 
+static void caption_body(FILE *out, const FigureSpec *spec, int body) {
+    fprintf(out, body == spec->runs[0]->bomb ? "the bomb" : "body~%d", body);
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("Narrow phase of ", out);
+    caption_body(out, spec, spec->facts->bodies[0]);
+    fputs(" and ", out);
+    caption_body(out, spec, spec->facts->bodies[1]);
+    fputs(" in the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(
+        ": overlaps along the axes of both boxes, and contact points with their separations along the normal. Method: ",
+        out);
+    caption_run(out, spec, spec->runs[0]);
+    fputs(".", out);
+}
+
 const FigureKind figure_pair = {
     .name = "narrow-phase",
     .summary = "contact of two boxes of a run: overlaps, normal, points",
@@ -172,4 +195,5 @@ const FigureKind figure_pair = {
     .max_bodies = 2,
     .needs_contacts = true,
     .draw = draw,
+    .caption = caption,
 };

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
 #include "common/method_look.h"
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/extent.h"
 #include "picture/style.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <string.h>
@@ -79,7 +80,8 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
 
 static bool names_fit(const Strip *strip) {
     for (int i = 0; i < strip->spec->run_count; i++)
-        if (type_width(run_name(strip->spec->runs[i]).text, strip->spec->points) > strip->cells.height) return false;
+        if (type_width(run_name(strip->spec, strip->spec->runs[i]).text, strip->spec->points) > strip->cells.height)
+            return false;
     return true;
 }
 
@@ -129,6 +131,8 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     return true;
 }
 
+static const double SMALLEST_NAME = 0.6; /* share of the font size; a name longer than that is cut */
+
 /* A line of a turned text beside a row, smaller if its row is too short for it. */
 static void draw_turned(const Strip *strip, Sketch *sketch, Point at, const char *words) {
     const double points = strip->spec->points;
@@ -141,7 +145,9 @@ static void draw_name(const Strip *strip, Sketch *sketch, const RunName *name, P
     const double middle = low.y + strip->cells.height / 2, points = strip->spec->points;
     const size_t head = method_name_head(name->text);
     if (type_width(name->text, points) <= strip->cells.height || name->text[head] == '\0') {
-        draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, name->text);
+        RunName whole = *name;
+        text_fit(whole.text, sizeof whole.text, points, strip->cells.height / SMALLEST_NAME);
+        draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, whole.text);
         return;
     }
     RunName method = *name, settings = *name;
@@ -158,7 +164,7 @@ static void draw_texts(const Strip *strip, Sketch *sketch) {
     const TextStyle upright = {spec->points, TEXT_CENTER, INK, 0, false};
     for (int row = 0; row < spec->run_count; row++) {
         const Point low = cell_corner(strip, row, 0);
-        const RunName name = run_name(spec->runs[row]);
+        const RunName name = run_name(spec, spec->runs[row]);
         draw_name(strip, sketch, &name, low);
     }
     for (int column = 0; column < strip->count; column++) {
@@ -183,6 +189,15 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("The ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(spec->run_count > 1 ? ", a column each. Rows from top to bottom: " : ", by ", out);
+    caption_runs(out, spec, 0);
+    fputs(".", out);
+}
+
 const FigureKind figure_strip = {
     .name = "strip",
     .summary = "moments of runs: a row per run, a column per moment",
@@ -196,4 +211,5 @@ const FigureKind figure_strip = {
     .min_bodies = 1,
     .max_bodies = FIGURE_BODIES_MAX,
     .draw = draw,
+    .caption = caption,
 };

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Many moments of one run in one picture: the last is opaque, earlier ones are paler. */
+#include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
 #include "sketch/label_place.h"
 #include "sketch/raster.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -108,14 +109,14 @@ static void draw_texts(const Strobe *strobe, Sketch *sketch) {
     const FigureSpec *spec = strobe->spec;
     const RunCells *cells = &strobe->cells;
     const double line = line_height(spec->points), y = strobe->low.y / 2 - 0.2;
-    char title[TRAJECTORY_NAME_SIZE + 96];
+    char title[CAPTION_SIZE + 96];
     const double dt = (double)strobe->run->dt;
     const double first = strobe->frames[0] * dt, last = strobe->frames[strobe->count - 1] * dt;
     if (strobe->count > 1)
-        snprintf(title, sizeof title, "%s, %d moments from %.2f to %.2f s", run_name(strobe->run).text, strobe->count,
-                 first, last);
+        snprintf(title, sizeof title, "%s, %d moments from %.2f to %.2f s", run_name(strobe->spec, strobe->run).text,
+                 strobe->count, first, last);
     else
-        snprintf(title, sizeof title, "%s, %.2f s", run_name(strobe->run).text, last);
+        snprintf(title, sizeof title, "%s, %.2f s", run_name(strobe->spec, strobe->run).text, last);
     text_fit(title, sizeof title, spec->points, cells->width);
     sketch_text(sketch, (Point){strobe->low.x, strobe->low.y + cells->height + 0.6 * line},
                 &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
@@ -150,6 +151,15 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("One run of the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(" in one picture; earlier moments are paler. Method: ", out);
+    caption_run(out, spec, spec->runs[0]);
+    fputs(".", out);
+}
+
 const FigureKind figure_strobe = {
     .name = "strobe",
     .summary = "many moments of a run in one picture, fading",
@@ -160,4 +170,5 @@ const FigureKind figure_strobe = {
     .takes_view = true,
     .takes_moments = true,
     .draw = draw,
+    .caption = caption,
 };

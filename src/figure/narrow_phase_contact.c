@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "figure/narrow_phase.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #include "figure/network_drawing.h"
 #include "figure/run_view.h"
 #include "picture/style.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 

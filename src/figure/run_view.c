@@ -6,7 +6,7 @@
 #include "picture/framing.h"
 #include "picture/style.h"
 #include "simulate/method.h"
-#include "sketch/type.h"
+#include "type/type.h"
 #include "trajectory/trajectory_states.h"
 
 #include <math.h>
@@ -34,6 +34,10 @@ bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int
         double time = spec->time_count > 0 ? spec->times[i] : *count > 1 ? last * i / (*count - 1) : last;
         if (!check_time(spec, time, after, error)) return false;
         frames[i] = (int)lrint(time / dt);
+    }
+    if (spec->facts != NULL) {
+        spec->facts->frame_count = *count;
+        memcpy(spec->facts->frames, frames, (size_t)*count * sizeof *frames);
     }
     return true;
 }
@@ -153,8 +157,13 @@ void text_fit(char *words, size_t size, double points, double width) {
     memcpy(words + (end - words), ellipsis, sizeof ellipsis);
 }
 
-RunName run_name(const Trajectory *run) {
+RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;
+    for (int i = 0; i < spec->run_count; i++) {
+        if (spec->runs[i] != run || spec->captions[i] == NULL || spec->captions[i][0] == '\0') continue;
+        snprintf(name.text, sizeof name.text, "%s", spec->captions[i]);
+        return name;
+    }
     method_name(name.text, sizeof name.text, run->method);
     return name;
 }

@@ -2,6 +2,7 @@
 /* Shared by figures of runs: the frames, the part of the world, and its rendered pixels. */
 #pragma once
 #include "figure/figure.h"
+#include "picture/caption_size.h"
 #include "render/still.h"
 
 /* The frames of the spec's times, or of `moments` equidistant times over the whole run, in
@@ -64,9 +65,11 @@ double line_height(double points);
 /* Shortens a text to a width in mm, with an ellipsis. */
 void text_fit(char *words, size_t size, double points, double width);
 
-/* The name of a run's method (common/method_look.h), and the runs' colours, FIGURE_RUNS_MAX of them. */
+/* The caption of one of the figure's runs, or the name of its method (common/method_look.h). */
 typedef struct RunName {
-    char text[TRAJECTORY_NAME_SIZE];
+    char text[CAPTION_SIZE];
 } RunName;
-RunName run_name(const Trajectory *run);
+RunName run_name(const FigureSpec *spec, const Trajectory *run);
+
+/* The runs' colours, FIGURE_RUNS_MAX of them. */
 void run_colours(const FigureSpec *spec, MethodColour *colours);

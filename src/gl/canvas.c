@@ -23,7 +23,8 @@ struct Canvas {
     const GlFunctions *gl;
     int width, height;
     Target static_layer, picture;
-    GLuint font_buffer, font_texture;
+    GLuint font_buffer, font_texture; /* the atlas, then bitmaps of the drawing */
+    size_t bitmap_capacity;           /* of the drawing's bitmaps there */
     Batch rects, shapes, glyphs;
     Drawing moving; /* moving instances, clipped to the changed rows */
 };
@@ -140,6 +141,21 @@ static void draw(const GlFunctions *gl, const Batch *batch, const void *instance
     gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
 }
 
+/* The atlas stays in the buffer unless it has to grow. */
+static void load_bitmaps(Canvas *canvas, const Drawing *drawing) {
+    const GlFunctions *gl = canvas->gl;
+    if (drawing->bitmap_size == 0) return;
+    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
+    if (drawing->bitmap_size > canvas->bitmap_capacity) {
+        canvas->bitmap_capacity = drawing->bitmap_capacity;
+        gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)(font_bitmaps_size + canvas->bitmap_capacity), NULL,
+                       GL_STATIC_DRAW);
+        gl->BufferSubData(GL_TEXTURE_BUFFER, 0, font_bitmaps_size, font_bitmaps);
+        gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
+    }
+    gl->BufferSubData(GL_TEXTURE_BUFFER, font_bitmaps_size, (GLsizeiptr)drawing->bitmap_size, drawing->bitmaps);
+}
+
 static void paint_static(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
     const GlFunctions *gl = canvas->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
@@ -193,6 +209,7 @@ static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
 bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
                   Error *error) {
     if (drawing->failed) return error_memory(error, "render");
+    load_bitmaps(canvas, drawing);
     if (changed == NULL) paint_static(canvas, drawing, background);
     paint_changed_rows(canvas, drawing, changed);
     if (canvas->moving.failed) return error_memory(error, "render");

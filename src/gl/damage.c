@@ -10,9 +10,12 @@ typedef struct Rows {
     int height;
 } Rows;
 
-static bool static_layers_equal(const Drawing *a, const Drawing *b) {
+/* The static layers, and the bitmaps to which glyphs refer. */
+static bool bases_equal(const Drawing *a, const Drawing *b) {
     return a->rect_count == b->rect_count && a->static_shapes == b->static_shapes &&
            (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
+           a->bitmap_size == b->bitmap_size &&
+           (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
            (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
 }
 
@@ -54,7 +57,7 @@ static void mark_glyphs(const Rows *rows, const Drawing *before, const Drawing *
 
 bool damage_find(const Drawing *before, const Drawing *after, int height, bool *changed) {
     const Rows rows = {changed, height};
-    bool equal = static_layers_equal(before, after);
+    bool equal = bases_equal(before, after);
     memset(changed, !equal, (size_t)height);
     if (!equal) return false;
     mark_shapes(&rows, before, after);

@@ -4,9 +4,11 @@
 #include "gl/drawing.h"
 
 #include "common/array.h"
+#include "gl/font_atlas.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double FIXED = 65536.0;        /* shader units per pixel */
 static const double SNAP = 256.0;           /* positions and sizes are multiples of 1/256 pixel */
@@ -15,6 +17,7 @@ static const double MAX_COORDINATE = 1e9;   /* pixels; no visible body is farthe
 
 void drawing_clear(Drawing *drawing) {
     drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->static_shapes = 0;
+    drawing->bitmap_size = 0;
     drawing->failed = false;
 }
 
@@ -22,6 +25,7 @@ void drawing_free(Drawing *drawing) {
     free(drawing->rects);
     free(drawing->shapes);
     free(drawing->glyphs);
+    free(drawing->bitmaps);
     *drawing = (Drawing){0};
 }
 
@@ -123,6 +127,17 @@ void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
         drawing->glyphs[drawing->glyph_count++] = *glyph;
     else
         drawing->failed = true;
+}
+
+uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
+    const size_t start = drawing->bitmap_size, wanted = start + size;
+    if (!array_reserve((void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) {
+        drawing->failed = true;
+        return NULL;
+    }
+    drawing->bitmap_size = wanted;
+    *bitmap = (uint32_t)(font_bitmaps_size + start);
+    return memset(drawing->bitmaps + start, 0, size);
 }
 
 /* If the first row is below the shape's top, its local position moves by whole steps of the shader. */

@@ -42,7 +42,7 @@ typedef struct ShapeInstance {
 /* The input of shaders/text.vert. */
 typedef struct GlyphInstance {
     int32_t box[4];  /* left, top, width, height */
-    uint32_t bitmap; /* index of the first texel in font_bitmaps */
+    uint32_t bitmap; /* index of the first texel in font_bitmaps, or after its end in the drawing's own bitmaps */
     uint32_t color;
 } GlyphInstance;
 
@@ -52,6 +52,8 @@ typedef struct Drawing {
     ShapeInstance *shapes;
     GlyphInstance *glyphs;
     size_t rect_count, rect_capacity, shape_count, shape_capacity, glyph_count, glyph_capacity;
+    uint8_t *bitmaps; /* of glyphs that font_bitmaps lacks, as there */
+    size_t bitmap_size, bitmap_capacity;
     size_t static_shapes; /* the first shapes: like the rectangles, equal in almost every frame */
     bool failed;          /* out of memory: the drawing is incomplete */
 } Drawing;
@@ -66,6 +68,9 @@ void drawing_add_shape(Drawing *drawing, const Shape *shape, const Rect *clip);
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color);
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph);
+
+/* Room for a bitmap of `size` bytes, zeros, with the index for its glyph; NULL if out of memory (`failed`). */
+uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap);
 
 /* Adds the shapes and glyphs of `from`, except its static shapes, clipped to the rows top <= y < bottom. */
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);

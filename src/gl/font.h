@@ -3,13 +3,15 @@
 #pragma once
 #include "gl/drawing.h"
 #include "gl/font_atlas.h"
+#include "type/type.h"
 
 typedef enum FontFace { FONT_REGULAR, FONT_SEMIBOLD } FontFace;
 
 /* A face at a size. If it is too small to read, `glyphs` is NULL: all text has width 0 and adds nothing. */
 typedef struct Font {
     const FontGlyph *glyphs;
-    int pixels; /* per em */
+    const Typeface *face; /* for the characters that these lack */
+    int pixels;           /* per em */
 } Font;
 
 /* A space as wide as a digit, to pad numbers. */
@@ -22,7 +24,7 @@ Font font_pick(FontFace face, double pixels);
 int font_width(const Font *font, const char *text);
 
 /* Adds text that starts at x and returns the x where it ends. Characters missing from the font and bytes that are
-   not UTF-8 become '?'. */
+   not UTF-8 become '?'; type_check() refuses them before. */
 int font_add(Drawing *drawing, const Font *font, const char *text, int x, int baseline, uint32_t color);
 
 /* The same, shortened with an ellipsis to at most max_width pixels. */

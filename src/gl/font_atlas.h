@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The glyphs that tools/make_atlas.c embeds in the binary: the fonts of font/ in FONT_SIZES sizes. */
+/* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of font/ in
+   FONT_SIZES sizes. Others are drawn when they are needed (glyph_bitmap.h). */
 #pragma once
 #include <stdint.h>
 

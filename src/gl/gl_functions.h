@@ -15,6 +15,7 @@
     X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
     X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                 \
     X(PFNGLBUFFERDATAPROC, BufferData)                           \
+    X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                     \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
     X(PFNGLCLEARPROC, Clear)                                     \
     X(PFNGLCLEARCOLORPROC, ClearColor)                           \

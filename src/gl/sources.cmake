@@ -4,8 +4,8 @@ add_executable(make_atlas ${CMAKE_CURRENT_LIST_DIR}/tools/make_atlas.c)
 target_include_directories(make_atlas PRIVATE ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(make_atlas PRIVATE PkgConfig::FREETYPE)
 
-set(fonts ${CMAKE_CURRENT_LIST_DIR}/font/Inter-Regular-subset.otf
-          ${CMAKE_CURRENT_LIST_DIR}/font/Inter-SemiBold-subset.otf)
+set(fonts ${CMAKE_CURRENT_LIST_DIR}/font/Inter-Regular.otf
+          ${CMAKE_CURRENT_LIST_DIR}/font/Inter-SemiBold.otf)
 add_custom_command(
     OUTPUT font_atlas.c
     COMMAND make_atlas ${fonts} font_atlas.c

@@ -219,6 +219,8 @@ SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *trainin
     trainer.generator = gsl_rng_alloc(gsl_rng_mt19937);
     bool ok = trainer.launches != NULL && trainer.generator != NULL;
     ok = ok ? train(&trainer, error) : error_memory(error, "scene-net");
+    if (ok && training->verdict != NULL)
+        ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
     free(trainer.launches);
     if (trainer.generator != NULL) gsl_rng_free(trainer.generator);
     slot_samples_free(&trainer.samples);

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "impact_training/scene_net_score.h"
+#include "impact_training/scene_net_verdict.h"
 #include "impact_training/slot_network_init.h"
 #include "scene/scene.h"
 
@@ -21,6 +22,7 @@ typedef struct SceneTraining {
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
+    SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN

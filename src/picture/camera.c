@@ -6,6 +6,7 @@
 #include <math.h>
 
 static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
+static const double LONGEST = 6;         /* shorter sides: a longer side has no wider margin, or it would be all */
 static const double MIN_SIDE = 2.0;      /* m */
 static const double MIN_VIEW = 1e-3;     /* m; the smallest view that can be set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
@@ -37,8 +38,17 @@ Camera camera_show(const CameraView *view, int width, int height) {
 
 /* With a margin; a narrow one below, where a strip of the ground is enough. */
 static Extent add_margin(const Extent *b) {
-    double margin = MARGIN * fmax(extent_side(b), MIN_SIDE);
+    const double shorter = fmin(b->right - b->left, b->top - b->bottom);
+    double margin = MARGIN * fmax(fmin(extent_side(b), LONGEST * shorter), MIN_SIDE);
     return (Extent){b->left - margin, b->right + margin, b->bottom - margin / 3, b->top + margin};
+}
+
+Vec2 camera_needs(const Trajectory *run) {
+    CameraView set;
+    if (camera_view_of(run, &set)) return vec2((float)set.width, (float)set.height);
+    const Framing framing = framing_of(run);
+    const Extent b = add_margin(&framing.extent);
+    return vec2((float)(b.right - b.left), (float)(b.top - b.bottom));
 }
 
 Camera camera_fit(const Trajectory *run, int width, int height) {

@@ -24,5 +24,8 @@ bool camera_view_of(const Trajectory *run, CameraView *view);
 /* Shows a usable view in the middle of a panel; width and height in pixels. */
 Camera camera_show(const CameraView *view, int width, int height);
 
+/* Width and height in metres of what camera_fit() shows, with its margin. */
+Vec2 camera_needs(const Trajectory *run);
+
 /* Shows the view that the run's scene sets, otherwise what stands and what strikes it (framing.h). */
 Camera camera_fit(const Trajectory *run, int width, int height);

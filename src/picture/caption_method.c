@@ -9,6 +9,12 @@
 
 void caption_method(const Picture *picture, int run, char name[CAPTION_SIZE], char note[CAPTION_SIZE]) {
     const MethodDescription *method = picture->methods[run];
+    const char *caption = picture->captions[run];
+    if (caption != NULL && caption[0] != '\0') {
+        snprintf(name, CAPTION_SIZE, "%s", caption);
+        note[0] = '\0';
+        return;
+    }
     method_name(name, CAPTION_SIZE, picture->runs[run]->method);
     snprintf(note, CAPTION_SIZE, "%s", method != NULL && method->caption != NULL ? method->caption : "");
 }

@@ -42,6 +42,22 @@ static int name_width(const Picture *picture, int run) {
     return swatch_width(picture, run) + font_width(&picture->layout.title, name);
 }
 
+int caption_least_width(const Picture *picture, bool whole) {
+    const Layout *layout = &picture->layout;
+    const CaptionItem distance = caption_distance_item("", 0);
+    int least = 0;
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_SIZE], note[CAPTION_SIZE];
+        caption_method(picture, run, name, note);
+        snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6");
+        const int width = whole ? name_width(picture, run) + layout->title.pixels / 2 +
+                                      (run > 0 ? caption_item_width(&layout->method, &distance) : 0)
+                                : swatch_width(picture, run) + font_width(&layout->axis, name);
+        if (width > least) least = width;
+    }
+    return least;
+}
+
 /* Room that a name keeps whatever stands beside it: all that it needs; but of very long settings only a part. */
 static int kept_width(const Picture *picture, int run) {
     const Rect *panel = &picture->layout.panels[0];
@@ -144,6 +160,14 @@ static const char *distance_label(const Picture *picture) {
     return "distance ";
 }
 
+/* In the panel's upper right corner, where the line above it has no room: what cannot be seen must be stated. */
+static void draw_state_inside(const Picture *picture, const Rect *panel, const char *text, Drawing *drawing) {
+    const Font *font = &picture->layout.axis;
+    const int inset = font->pixels / 2;
+    font_add(drawing, font, text, panel->right - inset - font_width(font, text), panel->top + inset + font->pixels,
+             picture->theme->ink_soft);
+}
+
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *rect = &layout->panels[panel];
@@ -172,7 +196,8 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
         right -= font_width(font, text);
         font_add(drawing, font, text, right, baseline, picture->theme->ink_soft);
         right -= gap;
-    }
+    } else if (text[0] != '\0')
+        draw_state_inside(picture, rect, text, drawing);
     const int end = draw_name(picture, run, rect->left, baseline, right - rect->left, drawing);
     draw_notes(picture, run, end + gap, right, baseline, drawing);
 }

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* In units of the picture's shorter side, as in layout.c. */
-static const double HEAD = 0.075, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
+static const double HEAD = 0.075, HEAD_LINE = 0.095, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
 static const double WIDTH = 0.78; /* relative to the picture's width */
 
 typedef struct Card {
@@ -35,9 +35,9 @@ static Card begin(const Picture *picture, Drawing *drawing) {
                   layout->width - margin};
 }
 
-/* The card is centred slightly above the middle. */
-static int first_baseline(const Card *card, int rows) {
-    double height = (0.16 + LINE * rows) * card->unit;
+/* The last of this many lines of the title; the card is centred slightly above the middle. */
+static int head_baseline(const Card *card, int lines, int rows) {
+    double height = (0.16 + LINE * rows - HEAD_LINE * (lines - 1)) * card->unit;
     return (int)rint(0.46 * card->picture->layout.height - height / 2 + 0.07 * card->unit);
 }
 
@@ -71,13 +71,31 @@ static int add_method(const Card *card, int run, int baseline, int right, char n
     return font_add_fitting(card->drawing, &card->row, title, x, baseline, right - x, card->picture->theme->ink);
 }
 
+TextLines card_head(const Picture *picture, MomentKind kind) {
+    const Card card = begin(picture, NULL);
+    char title[CAPTION_SIZE];
+    caption_title(picture, title);
+    const char *text = kind == MOMENT_END && picture->look.end != NULL ? picture->look.end : title;
+    return text_lines(&card.head, text, card.right - card.left, card.right - card.left);
+}
+
+/* Draws the title and returns the baseline of its last line. */
+static int draw_head(const Card *card, MomentKind kind) {
+    const TextLines head = card_head(card->picture, kind);
+    const int lines = head.count < TEXT_LINES_MAX ? head.count : TEXT_LINES_MAX;
+    const int last = head_baseline(card, lines, card->picture->count);
+    for (int i = 0; i < lines; i++) {
+        const int baseline = last - (int)rint((lines - 1 - i) * HEAD_LINE * card->unit);
+        add(card, &card->head, head.lines[i], card->left, baseline, card->right, card->picture->theme->ink);
+    }
+    return last;
+}
+
 static void draw_title(const Card *card) {
     const Picture *picture = card->picture;
     const Theme *theme = picture->theme;
-    char title[CAPTION_SIZE], note[CAPTION_SIZE], text[4 * CAPTION_SIZE];
-    int first = first_baseline(card, picture->count);
-    caption_title(picture, title);
-    add(card, &card->head, title, card->left, first, card->right, theme->ink);
+    char note[CAPTION_SIZE], text[4 * CAPTION_SIZE];
+    const int first = draw_head(card, MOMENT_TITLE);
     snprintf(text, sizeof text, "scene %s, %.3g s", picture->runs[0]->scene,
              (picture->frames - 1) * (double)picture->runs[0]->dt);
     add(card, &card->subhead, text, card->left, first + (int)rint(0.055 * card->unit), card->right, theme->ink_soft);
@@ -129,11 +147,8 @@ static void draw_end(const Card *card) {
     const Picture *picture = card->picture;
     const Theme *theme = picture->theme;
     char title[CAPTION_SIZE], note[CAPTION_SIZE], text[2 * CAPTION_SIZE];
-    int first = first_baseline(card, picture->count), column = (int)rint(0.17 * (card->right - card->left));
+    const int first = draw_head(card, MOMENT_END), column = (int)rint(0.17 * (card->right - card->left));
     const int columns[3] = {card->right - 2 * column, card->right - column, card->right};
-    caption_title(picture, title);
-    add(card, &card->head, picture->look.end != NULL ? picture->look.end : title, card->left, first, card->right,
-        theme->ink);
     caption_method(picture, 0, title, note);
     snprintf(text, sizeof text, picture->count > 1 ? "distance from %s" : "%s", title);
     int baseline = first + (int)rint(0.065 * card->unit);

@@ -72,6 +72,20 @@ static bool all_have_tics(const Picture *picture, const Lines *lines, Steps step
     return strong < MIN_TICS && lines->spacing > NUMBER_SPACING * picture->layout.axis.pixels;
 }
 
+/* Every how manieth line with a tic has a number: 1, 2, 5, 10, ... until numbers of this many pixels have room. */
+static double numbered(const Lines *lines, double tic, int room) {
+    static const double steps[] = {1, 2, 5};
+    double power = 1;
+    for (int i = 0; i < 30; i++) {
+        const double every = steps[i % 3] * power;
+        if (every * tic * lines->spacing >= room) return every * tic;
+        if (i % 3 == 2) power *= 10;
+    }
+    return HUGE_VAL;
+}
+
+static bool has_number(const Lines *lines, int i, double every) { return fmod(lines->first + i, every) == 0; }
+
 /* Lines at whole pixels are crisp, but with a moving camera they would jitter: `off` restores the fraction lost by
    rounding. */
 static void draw_line(const Picture *picture, int panel, Rect line, Point off, uint32_t color, Drawing *drawing) {
@@ -117,6 +131,18 @@ static void format_metres(char *text, size_t size, double metres) {
     snprintf(text, size, "%s%g", metres < 0 ? MINUS : "", fabs(metres));
 }
 
+static int widest_number(const Font *font, const Lines *lines, Steps steps) {
+    int widest = 0;
+    for (int i = 0; i < lines->count; i++) {
+        char text[32];
+        if (!is_strong(lines, i, steps)) continue;
+        format_metres(text, sizeof text, (lines->first + i) * steps.step);
+        const int width = font_width(font, text);
+        if (width > widest) widest = width;
+    }
+    return widest;
+}
+
 /* The unit is at the right end and replaces a number if there is no room for both. */
 static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
     const Layout *layout = &picture->layout;
@@ -127,6 +153,7 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
     int free_from = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
     font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
     const bool all = all_have_tics(picture, &lines, steps);
+    const double every = numbered(&lines, all ? 1 : steps.strong, widest_number(font, &lines, steps) + gap);
     for (int i = 0; i < lines.count; i++) {
         if (!all && !is_strong(&lines, i, steps)) continue;
         char text[32];
@@ -134,7 +161,7 @@ static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
         drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick},
                          picture->theme->frame);
-        if (left < free_from || left + width + gap > unit) continue;
+        if (!has_number(&lines, i, every) || left < free_from || left + width + gap > unit) continue;
         free_from = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
     }
 }
@@ -145,6 +172,7 @@ static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *dr
     Lines lines = horizontal_lines(picture, steps);
     int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a digit */
     const bool all = all_have_tics(picture, &lines, steps);
+    const double every = numbered(&lines, all ? 1 : steps.strong, layout->axis.pixels);
     for (int i = 0; i < lines.count; i++) {
         if (!all && !is_strong(&lines, i, steps)) continue;
         char text[32];
@@ -153,7 +181,8 @@ static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *dr
         int right = rect->left - line - layout->tick;
         drawing_add_rect(drawing, (Rect){right, y, rect->left - line, y + line}, picture->theme->frame);
         int left = right - layout->tick - font_width(&layout->axis, text);
-        if (left >= 0) font_add(drawing, &layout->axis, text, left, y + rise, picture->theme->ink_soft);
+        if (left >= 0 && has_number(&lines, i, every))
+            font_add(drawing, &layout->axis, text, left, y + rise, picture->theme->ink_soft);
     }
 }
 

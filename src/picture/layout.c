@@ -24,21 +24,30 @@ static void pick_fonts(Layout *layout, double unit) {
 
 static int pixels(double value) { return (int)rint(value); }
 
-/* At most six: one row up to three panels, otherwise two. In portrait, columns instead of rows. */
-static void pick_grid(Layout *layout, int width, int height, int panels) {
-    int few = panels > 3 ? 2 : 1, many = (panels + few - 1) / few;
-    layout->rows = height > width ? many : few;
-    layout->columns = height > width ? few : many;
+/* One row up to three panels, otherwise two. In portrait, columns instead of rows. */
+int layout_columns(int width, int height, int panels) {
+    const int few = panels > 3 ? 2 : 1, many = (panels + few - 1) / few;
+    return height > width ? few : many;
 }
 
-static void place_panels(Layout *layout, Rect area, int panels, int gap, int row_gap) {
-    int width = (area.right - area.left - (layout->columns - 1) * gap) / layout->columns;
-    int height = (area.bottom - area.top - (layout->rows - 1) * row_gap) / layout->rows;
+static Rect panel_size(const Layout *layout) {
+    const Rect *area = &layout->area;
+    return (Rect){0, 0, (area->right - area->left - (layout->columns - 1) * layout->gap) / layout->columns,
+                  (area->bottom - area->top - (layout->rows - 1) * layout->row_gap) / layout->rows};
+}
+
+static void place_panels(Layout *layout, int panels, int left, int top, int width, int height) {
     for (int i = 0; i < panels; i++) {
-        int left = area.left + i % layout->columns * (width + gap);
-        int top = area.top + i / layout->columns * (height + row_gap);
-        layout->panels[i] = (Rect){left, top, left + width, top + height};
+        const int x = left + i % layout->columns * (width + layout->gap);
+        const int y = top + i / layout->columns * (height + layout->row_gap);
+        layout->panels[i] = (Rect){x, y, x + width, y + height};
     }
+}
+
+void layout_shrink_panels(Layout *layout, int panels, int width, int height) {
+    const Rect whole = panel_size(layout);
+    place_panels(layout, panels, layout->area.left + layout->columns * (whole.right - width) / 2,
+                 layout->area.top + layout->rows * (whole.bottom - height) / 2, width, height);
 }
 
 /* Takes the rows from the bottom of the area and returns the rest. Pictures too small for text have no legend. */
@@ -61,13 +70,14 @@ static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, 
     return area;
 }
 
-Layout layout_make(int width, int height, int panels, LayoutRows rows) {
+Layout layout_make(int width, int height, int panels, int columns, LayoutRows rows) {
     Layout layout = {.width = width, .height = height};
     double unit = base_unit(width, height);
     bool text = unit >= MIN_TEXT_UNIT;
     int margin = pixels(fmax(0.030 * unit, MIN_MARGIN));
     pick_fonts(&layout, unit);
-    pick_grid(&layout, width, height, panels);
+    layout.columns = columns;
+    layout.rows = (panels + columns - 1) / columns;
     layout.left = margin;
     layout.right = width - margin;
     layout.header_baseline = margin + pixels(0.026 * unit);
@@ -77,10 +87,16 @@ Layout layout_make(int width, int height, int panels, LayoutRows rows) {
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
     int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     int title = text ? pixels(0.058 * unit) : 0, axis = text ? pixels(0.038 * unit) : 0;
-    int header = text ? layout.header_baseline + pixels(0.006 * unit) : margin;
+    layout.header_lines = rows.title;
+    layout.header_pitch = pixels(0.036 * unit);
+    int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
+    int header = text ? last_line + pixels(0.006 * unit) : margin;
     Rect area = {margin + gutter, header + title, width - margin, height - pixels(0.016 * unit) - axis};
     if (!text) area.bottom = height - margin;
-    area = place_rows(&layout, area, unit, rows, title, axis);
-    place_panels(&layout, area, panels, margin, text ? title + axis : margin);
+    layout.area = place_rows(&layout, area, unit, rows, title, axis);
+    layout.gap = margin;
+    layout.row_gap = text ? title + axis : margin;
+    const Rect size = panel_size(&layout);
+    place_panels(&layout, panels, layout.area.left, layout.area.top, size.right, size.bottom);
     return layout;
 }

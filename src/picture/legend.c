@@ -117,7 +117,7 @@ static void add_heads(Row *row) {
 
 static void begin_row(Row *row) {
     const Layout *layout = &row->picture->layout;
-    row->x = layout->panels[0].left;
+    row->x = layout->area.left;
     row->baseline = layout->legend_baseline + row->rows * layout->legend_pitch;
     row->middle = row->baseline - row->font->pixels * 0.36;
     row->rows++;
@@ -130,7 +130,7 @@ static void place_entry(Row *row, AddEntry *add) {
     Drawing *drawing = row->drawing;
     size_t rects = drawing->rect_count, shapes = drawing->shape_count, glyphs = drawing->glyph_count;
     add(row);
-    bool first = before.x == row->picture->layout.panels[0].left;
+    bool first = before.x == row->picture->layout.area.left;
     if (first || row->x - row->font->pixels * 2 <= row->picture->layout.right) return;
     drawing->rect_count = rects, drawing->shape_count = shapes, drawing->glyph_count = glyphs;
     *row = before;

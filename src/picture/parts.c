@@ -51,7 +51,9 @@ int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
     int count = 0;
     if (text)
         count = add(parts, count, PART_HEADER, -1,
-                    (Rect){0, 0, layout->width, layout->header_baseline + below(&layout->scene)});
+                    (Rect){0, 0, layout->width,
+                           layout->header_baseline + (layout->header_lines - 1) * layout->header_pitch +
+                               below(&layout->scene)});
     for (int panel = 0; text && panel < picture->panel_count; panel++) count = add_panel(parts, count, layout, panel);
     if (layout->legend_baseline > 0) count = add(parts, count, PART_LEGEND, -1, legend_rect(layout));
     if (picture->curves != NULL) count = add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));

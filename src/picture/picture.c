@@ -7,6 +7,7 @@
 #include "picture/card.h"
 #include "picture/legend.h"
 #include "picture/panel.h"
+#include "picture/panels_arrange.h"
 #include "picture/pose.h"
 #include "picture/timeline.h"
 #include "trajectory/trajectory_states.h"
@@ -41,27 +42,6 @@ static void find_largest_distances(Picture *picture) {
     }
 }
 
-static int panels_of(LookCompare compare, int count) {
-    return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
-}
-
-/* The camera of the first run, unless the look has another. */
-static Camera fixed_camera(const Picture *picture, int width, int height) {
-    const RenderLook *look = &picture->look;
-    if (look->view.width > 0) return camera_show(&look->view, width, height);
-    return camera_fit(look->view_from != NULL ? look->view_from : picture->runs[0], width, height);
-}
-
-/* Sets the panels and their camera. */
-static void arrange(Picture *picture, int width, int height, int legend) {
-    picture->panel_count = panels_of(picture->look.compare, picture->count);
-    LayoutRows rows = {legend, (picture->look.show & LOOK_TIMELINE) != 0};
-    picture->layout = layout_make(width, height, picture->panel_count, rows);
-    Rect first = picture->layout.panels[0];
-    picture->camera = fixed_camera(picture, first.right - first.left, first.bottom - first.top);
-    picture->grid_scale = picture->camera.scale;
-}
-
 bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, int width, int height, Error *error) {
     if (!check_size(width, height, error) || !check_runs(runs, count, error)) return false;
     *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT)};
@@ -70,7 +50,7 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
         if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
     }
     method_colours_assign(picture->methods, count, picture->colours);
-    arrange(picture, width, height, 0);
+    panels_arrange(picture, width, height, 0);
     find_largest_distances(picture);
     return true;
 }
@@ -92,30 +72,50 @@ static bool plan_path(Picture *picture, Error *error) {
 static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
     int needed = 0;
     for (int rows = 0; rows <= needed; rows++) {
-        arrange(picture, options->width, options->height, rows);
+        panels_arrange(picture, options->width, options->height, rows);
         if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->camera.scale,
                            picture->largest_distance, error))
             return false;
         needed = legend_rows(picture);
     }
-    arrange(picture, options->width, options->height, needed);
+    panels_arrange(picture, options->width, options->height, needed);
     return true;
+}
+
+static bool title_fits(const TextLines *lines, const char *option, Error *error) {
+    return lines->count <= TEXT_LINES_MAX ||
+           error_input(error, option, "the text needs %d lines in pictures of this size, but at most %d fit",
+                       lines->count, TEXT_LINES_MAX);
+}
+
+/* The titles that the options set; a scene's name is cut instead. */
+static bool titles_fit(const Picture *picture, Error *error) {
+    const TextLines header = caption_header_title(picture), title = card_head(picture, MOMENT_TITLE),
+                    end = card_head(picture, MOMENT_END);
+    return (picture->title == NULL ||
+            (title_fits(&header, "--title", error) && title_fits(&title, "--title", error))) &&
+           (picture->look.end == NULL || title_fits(&end, "--end", error));
 }
 
 bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error) {
     const RenderLook plain = {0};
     picture->title = options->title;
     for (int i = 0; i < picture->count; i++) {
+        picture->captions[i] = options->captions[i];
         picture->notes[i] = options->notes[i];
         if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
     }
     method_colours_assign(picture->methods, picture->count, picture->colours);
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
-    if (memcmp(&picture->look, &plain, sizeof plain) == 0) return true;
+    if (memcmp(&picture->look, &plain, sizeof plain) == 0) {
+        panels_arrange(picture, picture->layout.width, picture->layout.height, 0);
+        return titles_fit(picture, error);
+    }
     if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
     picture->events = events_find(picture->runs, picture->count);
-    return arrange_rows(picture, options, error) && plan_path(picture, error) && timeline_plan(picture, error);
+    return arrange_rows(picture, options, error) && titles_fit(picture, error) && plan_path(picture, error) &&
+           timeline_plan(picture, error);
 }
 
 void picture_free(Picture *picture) {
@@ -123,6 +123,14 @@ void picture_free(Picture *picture) {
     free(picture->curves);
     picture->path = NULL;
     picture->curves = NULL;
+}
+
+bool picture_check(const Trajectory *const *runs, int count, const RenderOptions *options, Error *error) {
+    Picture picture;
+    if (!picture_plan(&picture, runs, count, options->width, options->height, error)) return false;
+    const bool ok = picture_apply_options(&picture, options, error);
+    picture_free(&picture);
+    return ok;
 }
 
 int picture_run_frame(const Picture *picture, int run, int frame) {

@@ -19,6 +19,7 @@ typedef struct Picture {
     double largest_distance; /* m, over the whole run */
     double run_largest[RENDER_PANELS_MAX]; /* the same, per run */
     const char *title;                     /* as in RenderOptions; must outlive the picture */
+    const char *captions[RENDER_PANELS_MAX];
     const char *notes[RENDER_PANELS_MAX];
     const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
     MethodColour colours[RENDER_PANELS_MAX];             /* of the runs, all different */
@@ -41,6 +42,9 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
    after an error. */
 bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error);
 void picture_free(Picture *picture);
+
+/* Plans and discards: whether the runs can be drawn with these options. */
+bool picture_check(const Trajectory *const *runs, int count, const RenderOptions *options, Error *error);
 
 /* ERROR_INPUT if the runs do not support the look: it compares different bodies, or follows a bomb that does not
    exist. */

@@ -24,12 +24,13 @@ enum {
 typedef struct RenderOptions {
     int width, height; /* pixels, RENDER_SIDE_MIN .. RENDER_SIDE_MAX */
     ContextChoice context;
-    int first, last;                      /* frames, inclusive; last -1: to the end */
-    int jobs;                             /* processes, 1 .. RENDER_JOBS_MAX */
-    const char *directory;                /* created if missing */
-    bool small;                           /* smallest files that libpng can write; slow */
-    const char *title;                    /* in the header; NULL: the scene's name */
-    const char *notes[RENDER_PANELS_MAX]; /* after a panel's method; NULL: none */
+    int first, last;                         /* frames, inclusive; last -1: to the end */
+    int jobs;                                /* processes, 1 .. RENDER_JOBS_MAX */
+    const char *directory;                   /* created if missing */
+    bool small;                              /* smallest files that libpng can write; slow */
+    const char *title;                       /* in the header; NULL: the scene's name */
+    const char *captions[RENDER_PANELS_MAX]; /* instead of a run's method and its description; NULL or "": these */
+    const char *notes[RENDER_PANELS_MAX];    /* after a panel's method; NULL: none */
     /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of the
        method is its title. */
     const MethodDescription *(*describe)(const char *method);

@@ -41,6 +41,7 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_text(json, "scene", run->scene);
         json_put_hash(json, "scene_hash", run->scene_hash);
         json_put_text(json, "method", run->method);
+        json_put_text(json, "caption", manifest->options->captions[i]);
         json_put_text(json, "note", manifest->options->notes[i]);
         json_put_text(json, "cost", manifest->options->look.costs[i]);
         json_put_int(json, "frames", run->frames);

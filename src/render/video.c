@@ -58,11 +58,8 @@ static const VideoFormat formats[] = {
 };
 
 static const VideoFormat *find_format(const char *path) {
-    size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        size_t ending = strlen(formats[i].ending);
-        if (length > ending && strcmp(path + length - ending, formats[i].ending) == 0) return &formats[i];
-    }
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (file_name_ends_with(path, formats[i].ending)) return &formats[i];
     return NULL;
 }
 

@@ -134,6 +134,7 @@ const SteppingKind stepping_avbd = {
                     .caption = "augmented vertex block descent",
                     .look = {METHOD_GREEN, METHOD_DIAMOND},
                     .settings = settings,
+                    .own_settings = "k=10",
                     .no_push_out = true,
                     .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10"),

@@ -43,6 +43,28 @@ bool method_parse(Method *method, const char *text, Error *error) {
                           method->kind->description->settings, name, error);
 }
 
+static bool add_defaults(Settings *settings, const MethodDescription *method, const char *defaults) {
+    Settings own;
+    Error ignored = {0};
+    if (!settings_parse(&own, defaults, method->settings, method->name, &ignored)) return false;
+    for (int i = 0; i < own.count; i++)
+        if (!settings_default(settings, own.items[i].key, own.items[i].value)) return false;
+    return true;
+}
+
+bool method_all_settings(Settings *settings, const char *text, int iterations) {
+    Method method;
+    Error ignored = {0};
+    char sweeps[24] = "";
+    if (!method_parse(&method, text, &ignored)) return false;
+    const MethodDescription *description = method.kind->description;
+    *settings = method.settings;
+    if (description->own_settings != NULL) return add_defaults(settings, description, description->own_settings);
+    if (iterations > 0 && settings_known(description->settings, "k"))
+        snprintf(sweeps, sizeof sweeps, "k=%d", iterations);
+    return add_defaults(settings, description, sweeps);
+}
+
 bool method_with_network(Method *method, const char *name, const char *path, Error *error) {
     return method_parse(method, name, error) && (settings_default(&method->settings, "network", path) ||
                                                  error_input(error, path, "the name is too long for a setting"));

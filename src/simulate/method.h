@@ -23,6 +23,10 @@ extern const MethodKind method_kinds[];
 /* The description of the method in `name` or `name:key=value,...`; NULL if there is no method of that name. */
 const MethodDescription *method_describe(const char *text);
 
+/* The settings of `name:key=value,...`, and what holds where it gives none: k of the scene, whose iterations are 0 if
+   they are unknown, or the method's own. False for a text that is no method. */
+bool method_all_settings(Settings *settings, const char *text, int iterations);
+
 typedef struct Method {
     char text[METHOD_TEXT_SIZE]; /* as given: "engine:k=20" */
     const MethodKind *kind;

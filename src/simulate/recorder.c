@@ -37,6 +37,7 @@ static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method,
     snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
     snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
     trajectory->scene_hash = scene_hash(scene);
+    trajectory->iterations = scene->iterations;
     trajectory->dt = scene->dt;
     trajectory->camera_center = scene->camera_center;
     trajectory->camera_size = scene->camera_size;

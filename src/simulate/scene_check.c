@@ -10,16 +10,15 @@
 bool scene_check_launches(const Scene *scene, Error *error) {
     enum { TRAINING = LAUNCH_GRID, SCORING = LAUNCH_GRID - 1 };
     Launch launches[TRAINING + SCORING + 1];
+    int count = 0;
     if (!scene->bomb.present) return true;
-    int count = 1;
-    launches[0] = launch_of(scene);
-    if (!launches_check(scene, launches, 1, error)) return false;
     if (launch_has_family(scene)) {
         if (!launches_for_training(scene, TRAINING, launches, error) ||
             !launches_for_scoring(scene, SCORING, launches + TRAINING, error))
             return false;
         count = TRAINING + SCORING;
     }
+    launches[count++] = launch_of(scene);
     return launches_check(scene, launches, count, error);
 }
 

@@ -175,6 +175,7 @@ const SteppingKind stepping_soft_step = {
                     .caption = "Box2D v3's solver",
                     .look = {METHOD_BLUE, METHOD_SQUARE},
                     .settings = settings,
+                    .own_settings = "substeps=4",
                     .no_push_out = true,
                     .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=8", "substeps=16"),
                     .chart_quick = METHOD_RUNS("substeps=4"),

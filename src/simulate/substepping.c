@@ -178,6 +178,7 @@ const SteppingKind stepping_substepping = {
                     .caption = "small steps of sequential impulses",
                     .look = {METHOD_PURPLE, METHOD_SQUARE},
                     .settings = settings,
+                    .own_settings = "substeps=4,k=1",
                     .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=10", "substeps=20", "substeps=50"),
                     .chart_quick = METHOD_RUNS("substeps=10"),
                     .stability_place = 4},

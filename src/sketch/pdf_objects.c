@@ -2,8 +2,8 @@
 #include "sketch/pdf_objects.h"
 
 #include "common/utf8.h"
-#include "sketch/plot_font.h"
-#include "sketch/type.h"
+#include "sketch/sketch_formats.h"
+#include "type/type.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,19 +50,25 @@ static unsigned read_big_endian(const unsigned char *bytes, int count) {
 }
 
 /* The table of an OpenType file that holds the outlines; PDF embeds it alone. */
-static const unsigned char *find_outlines(size_t *size) {
-    unsigned tables = read_big_endian(font_inter_regular_subset_otf + 4, 2);
+static const unsigned char *find_outlines(const FontFile *font, size_t *size) {
+    unsigned tables = read_big_endian(font->bytes + 4, 2);
     for (unsigned i = 0; i < tables; i++) {
-        const unsigned char *entry = font_inter_regular_subset_otf + 12 + 16 * i;
+        const unsigned char *entry = font->bytes + 12 + 16 * i;
         if (memcmp(entry, "CFF ", 4) != 0) continue;
         *size = read_big_endian(entry + 12, 4);
-        return font_inter_regular_subset_otf + read_big_endian(entry + 8, 4);
+        return font->bytes + read_big_endian(entry + 8, 4);
     }
     return NULL;
 }
 
+static int count_glyphs(const FontFile *font) {
+    int count = 0;
+    for (int i = 0; i < type_glyph_count; i++) count += type_regular.glyphs[i].index < font->glyphs;
+    return count;
+}
+
 /* The character of each glyph, so that text can be copied. */
-static bool write_to_unicode(Pdf *pdf) {
+static bool write_to_unicode(Pdf *pdf, const FontFile *font) {
     enum { MAX_ENTRIES = 100 }; /* the maximum length of a list */
     char *text = NULL;
     size_t size = 0;
@@ -70,11 +76,14 @@ static bool write_to_unicode(Pdf *pdf) {
     if (map == NULL) return false;
     fprintf(map, "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CMapName /Inter def\n"
                  "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");
+    int left = count_glyphs(font), listed = 0;
     for (int i = 0; i < type_glyph_count; i++) {
-        int left = type_glyph_count - i;
-        if (i % MAX_ENTRIES == 0) fprintf(map, "%d beginbfchar\n", left < MAX_ENTRIES ? left : MAX_ENTRIES);
-        fprintf(map, "<%04X> <%04X>\n", type_glyphs[i].index, type_glyphs[i].code);
-        if (i % MAX_ENTRIES == MAX_ENTRIES - 1 || left == 1) fprintf(map, "endbfchar\n");
+        const Glyph *glyph = &type_regular.glyphs[i];
+        if (glyph->index >= font->glyphs) continue;
+        if (listed == 0) fprintf(map, "%d beginbfchar\n", left < MAX_ENTRIES ? left : MAX_ENTRIES);
+        fprintf(map, "<%04X> <%04X>\n", glyph->index, glyph->code);
+        listed = (listed + 1) % MAX_ENTRIES;
+        if (--left == 0 || listed == 0) fprintf(map, "endbfchar\n");
     }
     fprintf(map, "endcmap\nend\nend\n");
     bool whole = !ferror(map);
@@ -85,7 +94,8 @@ static bool write_to_unicode(Pdf *pdf) {
 
 bool pdf_write_font(Pdf *pdf) {
     size_t size;
-    const unsigned char *outlines = find_outlines(&size);
+    const FontFile font = sketch_font(pdf->sketch);
+    const unsigned char *outlines = find_outlines(&font, &size);
     pdf_begin_object(pdf, FONT);
     fprintf(pdf->file,
             "<</Type/Font/Subtype/Type0/BaseFont/TWNBOX+Inter/Encoding/Identity-H/DescendantFonts[%d 0 R]"
@@ -96,8 +106,11 @@ bool pdf_write_font(Pdf *pdf) {
             "<</Type/Font/Subtype/CIDFontType0/BaseFont/TWNBOX+Inter/CIDSystemInfo<</Registry(Adobe)"
             "/Ordering(Identity)/Supplement 0>>/FontDescriptor %d 0 R/W[",
             DESCRIPTOR);
-    for (int i = 0; i < type_glyph_count; i++)
-        fprintf(pdf->file, "%u[%.3f]", type_glyphs[i].index, 1000.0 * type_glyphs[i].advance / type_units);
+    for (int i = 0; i < type_glyph_count; i++) {
+        const Glyph *glyph = &type_regular.glyphs[i];
+        if (glyph->index < font.glyphs)
+            fprintf(pdf->file, "%u[%.3f]", glyph->index, 1000.0 * glyph->advance / type_units);
+    }
     fprintf(pdf->file, "]>>\nendobj\n");
     pdf_begin_object(pdf, DESCRIPTOR);
     fprintf(pdf->file,
@@ -105,5 +118,5 @@ bool pdf_write_font(Pdf *pdf) {
             "/Ascent %d/Descent %d/CapHeight %d/StemV 80/FontFile3 %d 0 R>>\nendobj\n",
             FONT_ASCENT, FONT_DESCENT, FONT_CAPS, FONT_FILE);
     return outlines != NULL && pdf_write_stream(pdf, FONT_FILE, "/Subtype/CIDFontType0C", outlines, size) &&
-           write_to_unicode(pdf);
+           write_to_unicode(pdf, &font);
 }

@@ -2,7 +2,7 @@
 #include "sketch/plot.h"
 
 #include "picture/style.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 
 #include "common/array.h"
 #include "picture/style.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -51,7 +51,7 @@ typedef struct View {
 
 Point view_place(const View *view, Vec2 position);
 
-enum { SKETCH_TEXT_SIZE = 200 };
+enum { SKETCH_TEXT_SIZE = 2048 };
 
 typedef enum TextAlign { TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT } TextAlign;
 

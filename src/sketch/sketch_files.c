@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/file.h"
 #include "sketch/sketch_formats.h"
-#include "sketch/type.h"
+#include "type/type.h"
+#include "type/type_check.h"
 
 #include <limits.h>
 #include <math.h>
@@ -35,6 +36,13 @@ bool sketch_check_pixels(double width, double height, double dpi, Error *error) 
                        height, dpi, columns, rows, SKETCH_MAX_PIXELS);
 }
 
+bool sketch_check_texts(const Sketch *sketch, const char *where, Error *error) {
+    bool ok = type_check(sketch->title, where, error);
+    for (size_t i = 0; ok && i < sketch->mark_count; i++)
+        ok = sketch->marks[i].kind != MARK_TEXT || type_check(sketch->texts + sketch->marks[i].text, where, error);
+    return ok;
+}
+
 bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *output, Error *error) {
     SketchFormat format = SKETCH_PNG;
     size_t size;
@@ -54,6 +62,13 @@ bool sketch_draw(const Sketch *sketch, const char *stem, Error *error) {
         if (!sketch_write(sketch, path, &output, error)) return false;
     }
     return true;
+}
+
+FontFile sketch_font(const Sketch *sketch) {
+    bool small = true;
+    for (size_t i = 0; i < sketch->mark_count && small; i++)
+        small = sketch->marks[i].kind != MARK_TEXT || font_file_suffices(sketch->texts + sketch->marks[i].text);
+    return font_file(small);
 }
 
 size_t *sketch_order(const Sketch *sketch) {

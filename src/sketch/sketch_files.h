@@ -23,6 +23,9 @@ bool sketch_format(const char *path, SketchFormat *format, Error *error);
 /* ERROR_INPUT if a page of this size in mm would exceed SKETCH_MAX_PIXELS. */
 bool sketch_check_pixels(double width, double height, double dpi, Error *error);
 
+/* ERROR_INPUT if a text or the title has a character that the font lacks (type/type_check.h); `where` names the origin. */
+bool sketch_check_texts(const Sketch *sketch, const char *where, Error *error);
+
 /* Writes the format given by the path's ending. The file appears complete or not at all. */
 bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *output, Error *error);
 

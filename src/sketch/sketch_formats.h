@@ -8,6 +8,7 @@
    bytes in versions 1.2.13 and 1.3.1. */
 #pragma once
 #include "sketch/sketch_files.h"
+#include "type/font_file.h"
 
 char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
 char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
@@ -15,7 +16,10 @@ char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *si
 
 /* In SVG: the fonts of texts, best first; and the first one, embedded. */
 #define SVG_FONTS "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif"
-void svg_write_font(FILE *file);
+void svg_write_font(FILE *file, FontFile font);
+
+/* The font that the texts need. */
+FontFile sketch_font(const Sketch *sketch);
 
 /* The marks' indices from bottom to top, [mark_count]; NULL if out of memory. */
 size_t *sketch_order(const Sketch *sketch);

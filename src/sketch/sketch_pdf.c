@@ -3,7 +3,7 @@
    be searched and copied. */
 #include "sketch/pdf_objects.h"
 #include "sketch/sketch_formats.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static void write_halo(FILE *content, const TextPlace *place, const char *text) 
     for (int x = 0; *text != '\0';) {
         const Glyph *glyph = type_next(&text);
         for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
-            const OutlineStep *step = &type_steps[i];
+            const OutlineStep *step = &type_regular.steps[i];
             const int points = step->kind == OUTLINE_CURVE ? 3 : 1;
             if (step->kind == OUTLINE_MOVE && i > glyph->first) fprintf(content, "h\n");
             for (int k = 0; k < points; k++) fprintf(content, "%d %d ", x + step[k].x, step[k].y);

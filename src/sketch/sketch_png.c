@@ -2,7 +2,7 @@
 /* A sketch as pixels. Lines become polygons: a bar per segment and a disc per corner. */
 #include "sketch/raster.h"
 #include "sketch/sketch_formats.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -125,7 +125,7 @@ static void trace_curve(Tracer *tracer, Point b, Point c, Point d) {
 
 static void trace_glyph(Tracer *tracer, const Glyph *glyph) {
     for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
-        const OutlineStep *step = &type_steps[i];
+        const OutlineStep *step = &type_regular.steps[i];
         if (step->kind == OUTLINE_MOVE) {
             if (i > glyph->first) trace_line(tracer, tracer->start);
             tracer->start = tracer->at = glyph_point(tracer, step);

@@ -4,9 +4,8 @@
    holds its content. */
 #include "common/base64.h"
 #include "common/utf8.h"
-#include "sketch/plot_font.h"
 #include "sketch/sketch_formats.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +14,7 @@ static void write_glyph(FILE *file, const Glyph *glyph) {
     static const char letters[] = "MLC";
     fprintf(file, "<path id=\"g%u\" d=\"", glyph->index);
     for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
-        const OutlineStep *step = &type_steps[i];
+        const OutlineStep *step = &type_regular.steps[i];
         if (step->kind == OUTLINE_MOVE && i > glyph->first) fputc('Z', file);
         fprintf(file, "%c%d %d", letters[step->kind], step->x, step->y);
         if (step->kind != OUTLINE_CURVE) continue;
@@ -32,11 +31,11 @@ static bool write_glyphs(FILE *file, const Sketch *sketch) {
     for (size_t i = 0; i < sketch->mark_count; i++) {
         if (sketch->marks[i].kind != MARK_TEXT) continue;
         for (const char *text = sketch->texts + sketch->marks[i].text; *text != '\0';)
-            used[type_next(&text) - type_glyphs] = true;
+            used[type_next(&text) - type_regular.glyphs] = true;
     }
     fprintf(file, "<defs>\n");
     for (int i = 0; i < type_glyph_count; i++)
-        if (used[i] && type_glyphs[i].steps > 0) write_glyph(file, &type_glyphs[i]);
+        if (used[i] && type_regular.glyphs[i].steps > 0) write_glyph(file, &type_regular.glyphs[i]);
     fprintf(file, "</defs>\n");
     free(used);
     return true;
@@ -137,9 +136,9 @@ static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark
 }
 
 /* For texts; and the font, so that browsers show the same letters on every machine. */
-void svg_write_font(FILE *file) {
+void svg_write_font(FILE *file, FontFile font) {
     fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
-    base64_put(file, (const char *)font_inter_regular_subset_otf, font_inter_regular_subset_otf_size);
+    base64_put(file, (const char *)font.bytes, font.size);
     fprintf(file, ")}</style>\n");
 }
 
@@ -156,7 +155,7 @@ static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *out
         fprintf(file, "</title>\n");
     }
     if (output->outlines) return write_glyphs(file, sketch);
-    svg_write_font(file);
+    svg_write_font(file, sketch_font(sketch));
     return true;
 }
 

@@ -141,7 +141,7 @@ static void draw_links(const Layout *layout, int panel, GnuplotBox box) {
             map_cell_clip(clip, &cell);
             snprintf(target, sizeof target, "%s.mp4", clip);
             snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
-            for (char *c = title; *c != '\0'; c++) *c = chart_plain_letter(*c);
+            chart_make_plain(title);
             gnuplot_link(
                 layout->page,
                 (GnuplotBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},

@@ -42,8 +42,8 @@ static bool check_range(const SceneParameter *parameter, const char *text, doubl
                            parameter->name, parameter->from, parameter->to, space, parameter->unit);
     if (parameter->whole && (!is_whole(from) || !is_whole(to)))
         return error_input(error, "--vary", "%s must be a whole number ('%s')", parameter->name, text);
-    for (const char *c = parameter->unit; *c != '\0'; c++)
-        if (!csv_is_plain(*c))
+    for (const char *c = parameter->unit; *c != '\0'; c += csv_plain_length(c))
+        if (csv_plain_length(c) == 0)
             return error_input(error, "--vary",
                                "the unit '%s' of %s cannot stand in a table: only letters, digits, spaces and "
                                "-_.,:=+/()*[]",

@@ -124,7 +124,7 @@ void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const ch
     char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
     snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
     method_name(text, STABILITY_TEXT_SIZE, whole);
-    for (char *c = text; *c != '\0'; c++) *c = chart_plain_letter(*c);
+    chart_make_plain(text);
     gnuplot_truncate(text, most);
 }
 

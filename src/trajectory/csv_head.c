@@ -116,13 +116,14 @@ static bool take_camera(CsvHead *head, char *text) {
 }
 
 /* What a key states; in the order of the keys. */
-enum { KEY_SCENE, KEY_METHOD, KEY_SCENE_HASH, KEY_DT, KEY_BOMB, KEY_CAMERA, KEY_SIZE, KEYS };
+enum { KEY_SCENE, KEY_METHOD, KEY_SCENE_HASH, KEY_ITERATIONS, KEY_DT, KEY_BOMB, KEY_CAMERA, KEY_SIZE, KEYS };
 static const struct {
     const char *name, *form;
 } keys[KEYS] = {
     {"scene", "a name of at most 127 bytes"},
     {"method", "a name of at most 127 bytes"},
     {"scene_hash", "16 hexadecimal digits"},
+    {"iterations", "a whole number from 1"},
     {"dt", "a time in seconds such as 0.01 or 1/60"},
     {"bomb", "the number of a body"},
     {"camera", "X,Y,WIDTH,HEIGHT"},
@@ -134,6 +135,7 @@ static bool take_value(CsvHead *head, const char *path, int key, char *text, Err
     case KEY_SCENE: *right = take_name(head->scene, text); break;
     case KEY_METHOD: *right = take_name(head->method, text); break;
     case KEY_SCENE_HASH: *right = take_hash(text, &head->scene_hash); break;
+    case KEY_ITERATIONS: *right = parse_int(text, 1, INT32_MAX, &head->iterations); break;
     case KEY_DT: *right = parse_float(text, &head->dt) && head->dt > 0; break;
     case KEY_BOMB: *right = parse_int(text, 0, INT32_MAX - 1, &head->bomb); break;
     case KEY_CAMERA: *right = take_camera(head, text); break;

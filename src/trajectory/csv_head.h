@@ -12,6 +12,7 @@ typedef struct CsvBody {
 typedef struct CsvHead {
     char scene[TRAJECTORY_NAME_SIZE], method[TRAJECTORY_NAME_SIZE]; /* empty: not stated */
     uint64_t scene_hash;
+    int64_t iterations; /* 0: unknown */
     float dt;     /* 0: not stated */
     int64_t bomb; /* number in the file; -1: none */
     Vec2 camera[2];

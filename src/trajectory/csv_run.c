@@ -3,8 +3,7 @@
 #include "trajectory/csv_run.h"
 
 #include "common/file.h"
-#include "trajectory/csv_head.h"
-#include "trajectory/csv_rows.h"
+#include "trajectory/csv_import.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -16,22 +15,7 @@ static const size_t MAX_SIZE = (size_t)1 << 30;
 static const double TIME_TOLERANCE = 0.01;  /* of a step */
 static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
 
-typedef struct Import {
-    const char *path;
-    const CsvRunOptions *options;
-    CsvRunNotes *notes;
-    CsvHead head;
-    CsvRows rows;
-    int64_t count;                /* rows */
-    int64_t first, last;          /* frames of the file */
-    double first_time, last_time; /* of these frames, s */
-    int *row_counts;              /* of each body */
-    Trajectory *run;
-} Import;
-
-static void note(CsvRunNotes *notes, const char *format, ...) PRINTF_LIKE(2, 3);
-
-static void note(CsvRunNotes *notes, const char *format, ...) {
+void csv_import_note(CsvRunNotes *notes, const char *format, ...) {
     va_list arguments;
     if (notes->count == CSV_RUN_NOTES_MAX) return;
     va_start(arguments, format);
@@ -40,7 +24,7 @@ static void note(CsvRunNotes *notes, const char *format, ...) {
 }
 
 /* The first pass. */
-static bool survey(Import *import, Error *error) {
+static bool survey(CsvImport *import, Error *error) {
     const CsvHead *head = &import->head;
     CsvRow row;
     import->first = INT64_MAX;
@@ -62,7 +46,7 @@ static bool survey(Import *import, Error *error) {
 }
 
 /* A frame number far away would make a huge run of few rows. */
-static bool check_last(Import *import, Error *error) {
+static bool check_last(CsvImport *import, Error *error) {
     CsvRow row;
     if (import->last - import->first < import->count) return true;
     csv_rows_rewind(&import->rows);
@@ -73,15 +57,15 @@ static bool check_last(Import *import, Error *error) {
                           import->last, import->first, import->count);
 }
 
-static bool has_times(const Import *import) { return import->rows.field[COL_TIME] >= 0; }
+static bool has_times(const CsvImport *import) { return import->rows.field[COL_TIME] >= 0; }
 
-static bool choose_step(Import *import, float *dt, Error *error) {
+static bool choose_step(CsvImport *import, float *dt, Error *error) {
     const float stated = import->head.dt, given = import->options->dt;
     const int64_t steps = import->last - import->first;
     if (given > 0 || stated > 0) {
         *dt = given > 0 ? given : stated;
         if (given > 0 && stated > 0 && given != stated)
-            note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
+            csv_import_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
         return true;
     }
     if (!has_times(import) || steps == 0)
@@ -94,15 +78,15 @@ static bool choose_step(Import *import, float *dt, Error *error) {
     const double rate = rint(1 / step);
     if (fabs(rate * step - 1) < WHOLE_TOLERANCE) {
         step = 1 / rate;
-        note(import->notes, "dt is 1/%.0f s, from the column time", rate);
+        csv_import_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
     } else
-        note(import->notes, "dt is %.9g s, from the column time", step);
+        csv_import_note(import->notes, "dt is %.9g s, from the column time", step);
     *dt = (float)step;
     return true;
 }
 
 /* Times are checked only where they set the step. */
-static bool check_time(const Import *import, const CsvRow *row, Error *error) {
+static bool check_time(const CsvImport *import, const CsvRow *row, Error *error) {
     if (!has_times(import) || import->options->dt > 0 || import->head.dt > 0) return true;
     const double dt = (double)import->run->dt, due = import->first_time + dt * (double)(row->frame - import->first);
     return fabs(row->time - due) <= TIME_TOLERANCE * dt ||
@@ -111,13 +95,9 @@ static bool check_time(const Import *import, const CsvRow *row, Error *error) {
                           row->frame, due);
 }
 
-static size_t place(const Trajectory *run, int64_t frame, int body) {
-    return (size_t)frame * (size_t)run->bodies + (size_t)body;
-}
-
-static void set_state(Import *import, const CsvRow *row, int body) {
+static void set_state(CsvImport *import, const CsvRow *row, int body) {
     Trajectory *run = import->run;
-    const size_t i = place(run, row->frame - import->first, body);
+    const size_t i = csv_import_place(run, row->frame - import->first, body);
     const float *state = row->state;
     const bool degrees = import->options->degrees;
     const double unit = acos(-1) / 180;
@@ -129,7 +109,7 @@ static void set_state(Import *import, const CsvRow *row, int body) {
 }
 
 /* The second pass. */
-static bool fill(Import *import, Error *error) {
+static bool fill(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     CsvRow row;
     csv_rows_rewind(&import->rows);
@@ -153,7 +133,7 @@ static bool has_rows(const Trajectory *run, int frame) {
     return false;
 }
 
-static bool check_frames(Import *import, Error *error) {
+static bool check_frames(CsvImport *import, Error *error) {
     const Trajectory *run = import->run;
     for (int frame = 0; frame < run->frames; frame++) {
         CsvRow row;
@@ -169,84 +149,14 @@ static bool check_frames(Import *import, Error *error) {
     return true;
 }
 
-/* A body that is declared static, or has one row at the start of a run that declares none, stays where it is. */
-static bool stays(const Import *import, int body) {
-    const Trajectory *run = import->run;
-    if (import->head.states_static) return import->head.bodies[body].fixed;
-    return run->frames > 1 && import->row_counts[body] == 1 && trajectory_has(run, 0, body);
-}
-
-static void carry_on(Trajectory *run, int body) {
-    for (int frame = 1; frame < run->frames; frame++) {
-        const size_t i = place(run, frame, body), before = place(run, frame - 1, body);
-        if (trajectory_has(run, frame, body)) continue;
-        run->position[i] = run->position[before];
-        run->angle[i] = run->angle[before];
-        run->velocity[i] = run->velocity[before];
-        run->angular_velocity[i] = run->angular_velocity[before];
-    }
-}
-
-/* A body may come and go once. */
-static bool check_body(Import *import, int body, Error *error) {
-    const Trajectory *run = import->run;
-    const int64_t number = import->head.bodies[body].number;
-    int last = -1;
-    for (int frame = 0; frame < run->frames; frame++) {
-        if (!trajectory_has(run, frame, body)) continue;
-        const int gap = last + 1, before = last;
-        last = frame;
-        if (before < 0 || gap == frame) continue;
-        const int line = csv_rows_find(&import->rows, import->first + frame, number);
-        return csv_rows_error(&import->rows, line, error,
-                              "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64
-                              ", but not in frame %" PRId64,
-                              number, import->first + before, import->first + frame, import->first + gap);
-    }
-    return true;
-}
-
-static void note_static(const Import *import) {
-    const Trajectory *run = import->run;
-    char list[96] = "";
-    int count = 0;
-    for (int body = 0; body < run->bodies; body++) {
-        size_t used = strlen(list);
-        if (!run->fixed[body]) continue;
-        if (count++ < 8)
-            snprintf(list + used, sizeof list - used, "%s%" PRId64, used > 0 ? ", " : "",
-                     import->head.bodies[body].number);
-    }
-    if (import->head.states_static) return;
-    if (count == 0)
-        note(import->notes, "no body is static: each of them moves");
-    else
-        note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
-             count == 1 ? "s" : "");
-}
-
-static bool finish_bodies(Import *import, Error *error) {
-    Trajectory *run = import->run;
-    for (int body = 0; body < run->bodies; body++) {
-        run->size[body] = import->head.bodies[body].size;
-        run->fixed[body] = import->head.bodies[body].fixed;
-        if (stays(import, body))
-            carry_on(run, body);
-        else if (!check_body(import, body, error))
-            return false;
-    }
-    if (!import->head.states_static) trajectory_guess_fixed(run);
-    note_static(import);
-    return true;
-}
-
-static bool finish_head(Import *import, Error *error) {
+static bool finish_head(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     const CsvHead *head = &import->head;
     const char *name = import->options->name;
     snprintf(run->scene, sizeof run->scene, "%s", head->scene[0] != '\0' ? head->scene : name);
     snprintf(run->method, sizeof run->method, "%s", head->method[0] != '\0' ? head->method : name);
     run->scene_hash = head->scene_hash;
+    run->iterations = (int)head->iterations;
     run->bomb = head->bomb < 0 ? -1 : csv_head_body(head, head->bomb);
     run->camera_center = head->camera[0];
     run->camera_size = head->camera[1];
@@ -254,22 +164,24 @@ static bool finish_head(Import *import, Error *error) {
            error_input(error, import->path, "the bomb is body %" PRId64 ", which has no size", head->bomb);
 }
 
-static void note_numbers(const Import *import) {
+static void note_numbers(const CsvImport *import) {
     const CsvHead *head = &import->head;
     const int64_t least = head->bodies[0].number, most = head->bodies[head->count - 1].number;
     CsvRunNotes *notes = import->notes;
-    if (import->first != 0) note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
+    if (import->first != 0) csv_import_note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
     if (least != 0 || most >= (int64_t)head->count)
-        note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
-             head->count - 1);
-    if (head->scene[0] == '\0') note(notes, "the scene is called '%s'", import->run->scene);
-    if (head->method[0] == '\0') note(notes, "the method is called '%s'", import->run->method);
-    if (import->run->no_velocities) note(notes, "velocities are unknown: there are no columns vx, vy and omega");
-    if (import->rows.ignored[0] != '\0') note(notes, "unknown columns are left out: %s", import->rows.ignored);
-    note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
+        csv_import_note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
+                        head->count - 1);
+    if (head->scene[0] == '\0') csv_import_note(notes, "the scene is called '%s'", import->run->scene);
+    if (head->method[0] == '\0') csv_import_note(notes, "the method is called '%s'", import->run->method);
+    if (import->run->no_velocities)
+        csv_import_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
+    if (import->rows.ignored[0] != '\0')
+        csv_import_note(notes, "unknown columns are left out: %s", import->rows.ignored);
+    csv_import_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
 
-static bool make_run(Import *import, Error *error) {
+static bool make_run(CsvImport *import, Error *error) {
     float dt = 0;
     if (!survey(import, error) || !check_last(import, error) || !choose_step(import, &dt, error)) return false;
     import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
@@ -277,14 +189,14 @@ static bool make_run(Import *import, Error *error) {
     import->run->dt = dt;
     import->run->no_contacts = true;
     import->run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
+    if (!fill(import, error) || !check_frames(import, error) || !csv_import_finish_bodies(import, error) ||
         !finish_head(import, error))
         return false;
     note_numbers(import);
     return trajectory_check(import->run, import->path, error);
 }
 
-static bool read_text(Import *import, const char *text, Error *error) {
+static bool read_text(CsvImport *import, const char *text, Error *error) {
     int line;
     if (!csv_head_read(&import->head, import->path, &text, &line, import->options->sizes, error) ||
         !csv_rows_begin(&import->rows, import->path, text, line, error))
@@ -295,9 +207,11 @@ static bool read_text(Import *import, const char *text, Error *error) {
 
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
     size_t size;
-    Import import = {.path = path, .options = options, .notes = notes};
+    CsvImport import = {.path = path, .options = options, .notes = notes};
     notes->count = 0;
-    char *text = file_read(path, MAX_SIZE, &size, error);
+    const bool input = strcmp(path, "-") == 0;
+    if (input) import.path = path = "standard input";
+    char *text = input ? file_read_input(MAX_SIZE, &size, error) : file_read(path, MAX_SIZE, &size, error);
     bool done = text != NULL && (size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 read_text(&import, text, error);

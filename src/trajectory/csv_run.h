@@ -17,7 +17,8 @@ typedef struct CsvRunNotes {
     char lines[CSV_RUN_NOTES_MAX][CSV_RUN_NOTE_SIZE];
 } CsvRunNotes;
 
-/* NULL with error set ("path:line:column: error: ..."): a frame without rows, a body that is missing in a frame between two of
+/* path "-": standard input.
+   NULL with error set ("path:line:column: error: ..."): a frame without rows, a body that is missing in a frame between two of
    its own, two rows of a body in a frame, bodies without a size or without rows, anything that is not a finite number,
    times that are not equidistant, or a file above 1 GiB. */
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error);

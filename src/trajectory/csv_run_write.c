@@ -9,6 +9,7 @@
 /* Nine digits keep every bit of a float32. */
 static void print_head(FILE *out, const Trajectory *run) {
     fprintf(out, "# scene: %s\n# method: %s\n", run->scene, run->method);
+    if (run->iterations > 0) fprintf(out, "# iterations: %d\n", run->iterations);
     if (run->scene_hash != 0) fprintf(out, "# scene_hash: %016" PRIx64 "\n", run->scene_hash);
     fprintf(out, "# dt: %.9g\n", (double)run->dt);
     if (run->bomb >= 0) fprintf(out, "# bomb: %d\n", run->bomb);

@@ -17,6 +17,7 @@ static const struct {
     {"scene", ALONE, {NULL}},
     {"method", ALONE, {"engine", "solver", "simulator"}},
     {"scene_hash", ALONE, {NULL}},
+    {"iterations", ALONE, {NULL}},
     {"dt", ALONE, {"DT", "Dt", "delta_t", "h", "step", "time_step", "timestep"}},
     {"bomb", ALONE, {NULL}},
     {"camera", ALONE, {NULL}},

@@ -27,6 +27,7 @@ typedef struct Trajectory {
     char scene[TRAJECTORY_NAME_SIZE];  /* name, without folder and ending */
     char method[TRAJECTORY_NAME_SIZE]; /* as on the command line: "engine", "pair-net:network=..." */
     uint64_t scene_hash;               /* of the scene's contents: equal physics, equal hash */
+    int iterations;                    /* the scene's sweeps per step, unless the method sets its own; 0: unknown */
     float dt;                          /* s */
     int frames;                        /* T: steps + 1 */
     int bodies;                        /* N, static bodies and the bomb included */
@@ -81,7 +82,7 @@ uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
    these frames. The caller destroys it. step >= 1. */
 Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
 
-/* .npz: version, scene, method, scene_hash, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
+/* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
    contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. Without the velocities or the
    contacts where they are unknown. */

@@ -16,6 +16,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     memcpy(to->scene, from->scene, sizeof to->scene);
     memcpy(to->method, from->method, sizeof to->method);
     to->scene_hash = from->scene_hash;
+    to->iterations = from->iterations;
     to->dt = from->dt * (float)step;
     to->bomb = from->bomb;
     to->no_velocities = from->no_velocities;

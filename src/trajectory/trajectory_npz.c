@@ -11,7 +11,7 @@
 enum { POSITION, ANGLE, VELOCITY, ANGULAR_VELOCITY, CONTACT_START, BODIES, FEATURE, POINT, NORMAL, IMPULSE, GROWING };
 
 /* Those that do not. */
-enum { KNOWN = 9 };
+enum { KNOWN = 10 };
 
 /* Contacts that are split at a time; their arrays stay in the cache. */
 enum { BLOCK = 1024 };
@@ -36,7 +36,7 @@ struct TrajectoryNpz {
     char scene[TRAJECTORY_NAME_SIZE], method[TRAJECTORY_NAME_SIZE];
     uint64_t scene_hash;
     float dt;
-    int32_t version, bomb;
+    int32_t version, iterations, bomb;
     Vec2 camera[2];
     Vec2 *size;
     uint8_t *fixed;
@@ -61,6 +61,7 @@ static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
     memcpy(npz->scene, head->scene, sizeof npz->scene);
     memcpy(npz->method, head->method, sizeof npz->method);
     npz->scene_hash = head->scene_hash;
+    npz->iterations = head->iterations;
     npz->dt = head->dt;
     npz->version = TRAJECTORY_VERSION;
     npz->bomb = head->bomb;
@@ -81,10 +82,15 @@ static bool is_known(const TrajectoryNpz *npz, int array) {
 static bool add_arrays(TrajectoryNpz *npz, Error *error) {
     const int64_t bodies = npz->bodies;
     const NpzArray known[KNOWN] = {
-        {"version", NPZ_INT32, 0, {0}, &npz->version},   {"scene", NPZ_TEXT, 0, {0}, npz->scene},
-        {"method", NPZ_TEXT, 0, {0}, npz->method},       {"scene_hash", NPZ_UINT64, 0, {0}, &npz->scene_hash},
-        {"dt", NPZ_FLOAT32, 0, {0}, &npz->dt},           {"bomb", NPZ_INT32, 0, {0}, &npz->bomb},
-        {"camera", NPZ_FLOAT32, 2, {2, 2}, npz->camera}, {"size", NPZ_FLOAT32, 2, {bodies, 2}, npz->size},
+        {"version", NPZ_INT32, 0, {0}, &npz->version},
+        {"scene", NPZ_TEXT, 0, {0}, npz->scene},
+        {"method", NPZ_TEXT, 0, {0}, npz->method},
+        {"scene_hash", NPZ_UINT64, 0, {0}, &npz->scene_hash},
+        {"iterations", NPZ_INT32, 0, {0}, &npz->iterations},
+        {"dt", NPZ_FLOAT32, 0, {0}, &npz->dt},
+        {"bomb", NPZ_INT32, 0, {0}, &npz->bomb},
+        {"camera", NPZ_FLOAT32, 2, {2, 2}, npz->camera},
+        {"size", NPZ_FLOAT32, 2, {bodies, 2}, npz->size},
         {"fixed", NPZ_UINT8, 1, {bodies}, npz->fixed},
     };
     const NpzArray growing[GROWING] = {
@@ -100,7 +106,9 @@ static bool add_arrays(TrajectoryNpz *npz, Error *error) {
         [IMPULSE] = {"contact_impulse", NPZ_FLOAT32, 2, {0, 2}, NULL},
     };
     for (int i = 0; i < KNOWN; i++)
-        if (npz_stream_add(npz->stream, &known[i], error) < 0) return false;
+        if ((known[i].data != &npz->iterations || npz->iterations > 0) &&
+            npz_stream_add(npz->stream, &known[i], error) < 0)
+            return false;
     for (int i = 0; i < GROWING; i++)
         if (is_known(npz, i) && (npz->array[i] = npz_stream_add(npz->stream, &growing[i], error)) < 0) return false;
     return true;

@@ -29,15 +29,18 @@ static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *er
 }
 
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
-    int32_t bomb = -1;
+    int32_t bomb = -1, iterations = 0;
     const int64_t two_by_two[] = {2, 2};
     if (!read_version(file, path, error) || !read_names(t, file, path, error) ||
         (npz_has(file, "scene_hash") &&
          !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error)) ||
+        (npz_has(file, "iterations") &&
+         !npz_read_scalar(file, "iterations", NPZ_INT32, &iterations, sizeof iterations, error)) ||
         !npz_read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
         (npz_has(file, "bomb") && !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error)))
         return false;
     t->bomb = bomb;
+    t->iterations = iterations;
     if (!npz_has(file, "camera")) return true;
     Vec2 *camera = npz_read(file, "camera", NPZ_FLOAT32, 2, two_by_two, error);
     if (camera == NULL) return false;
@@ -172,6 +175,8 @@ static bool finite(Vec2 v) { return isfinite(v.x) && isfinite(v.y); }
 static bool check_head(const Trajectory *t, const char *path, Error *error) {
     if (!isfinite(t->dt) || !(t->dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)t->dt);
+    if (t->iterations < 0)
+        return error_input(error, path, "the number of iterations must not be negative (got %d)", t->iterations);
     if (t->bomb < -1 || t->bomb >= t->bodies)
         return error_input(error, path, "the bomb is body %d of %d", t->bomb, t->bodies);
     if (!finite(t->camera_center) || !finite(t->camera_size) || t->camera_size.x < 0 || t->camera_size.y < 0)

@@ -207,8 +207,14 @@ static void texts_become_plain(void **state) {
     chart_plain(plain, "engine, warm=off (k=10)");
     assert_string_equal(plain, "engine, warm=off (k=10)");
     /* Every character that gnuplot interprets within or around a text. */
-    chart_plain(plain, "'\"`\\@$#;!|&<>{}^~%\n\x7f\xc3\xa4?");
+    chart_plain(plain, "'\"`\\@$#;!|&<>{}^~%\n\x7f\xc3\xff?");
     assert_string_equal(plain, "???????????????????????");
+    /* Letters of the font are kept, a letter with its mark too; others, controls and lone marks are not. */
+    chart_plain(plain, "\xc3\xa4 a\xcc\x88 \xe6\x97\xa5 \xc2\x85 q\xcc\x88");
+    assert_string_equal(plain, "\xc3\xa4 a\xcc\x88 ? ? q?");
+    chart_plain(plain, "01234567890123456789012345678901234\xc3\xa4"
+                       "6789"); /* not cut within a letter */
+    assert_string_equal(plain, "01234567890123456789012345678901234...");
     chart_plain(plain, "0123456789012345678901234567890123456789");
     assert_string_equal(plain, "012345678901234567890123456789012345...");
 }

@@ -52,7 +52,7 @@ run 0 completion words -- completion ""
 
 mkdir work && cd work || exit 1
 mkdir drawn
-touch engine.npz "two words.npz" notes.txt tower.yaml figure.svg
+touch engine.npz "two words.npz" notes.txt our_wall.yaml figure.svg
 cp "$scenes/stability/stack_height.yaml" height.yaml
 
 # A line for each: the keys, then the command line that they make. All shells.
@@ -73,16 +73,18 @@ twinbox render --show ghosts,tr<TAB>|twinbox render --show ghosts,trails
 twinbox render --context os<TAB>|twinbox render --context osmesa 
 twinbox render two<TAB>|twinbox render two\ words.npz 
 twinbox render -o d<TAB>|twinbox render -o drawn/
-twinbox simulate tow<TAB>|twinbox simulate tower.yaml 
+twinbox simulate our<TAB>|twinbox simulate our_wall.yaml 
 twinbox simulate scenes/pyramid_s<TAB>|twinbox simulate scenes/pyramid_settled.yaml 
+twinbox simulate pyramid_se<TAB>|twinbox simulate pyramid_settled 
 twinbox simulate height.yaml --set hei<TAB>|twinbox simulate height.yaml --set height=
+twinbox simulate stack_height --set hei<TAB>|twinbox simulate stack_height --set height=
 twinbox figure nar<TAB>|twinbox figure narrow-phase 
 twinbox figure strip engine.npz -o fig<TAB>|twinbox figure strip engine.npz -o figure.svg 
 twinbox train --kind sce<TAB>|twinbox train --kind scene-net 
 twinbox dataset --inputs nei<TAB>|twinbox dataset --inputs neighbours 
 twinbox stability --study time_s<TAB>|twinbox stability --study time_step 
 twinbox stability height.yaml --vary hei<TAB>|twinbox stability height.yaml --vary height 
-twinbox completion fi<TAB>|twinbox completion fish 
+~/../prefix/bin/twinbox completion fi<TAB>|~/../prefix/bin/twinbox completion fish 
 END
 cut -d'|' -f1 alike >keys
 cut -d'|' -f2 alike >lines
@@ -109,7 +111,7 @@ twinbox diverge <ALL>|twinbox diverge drawn engine.npz two\ words.npz
 twinbox figure n<ALL>|twinbox figure narrow-phase network 
 twinbox render --png <ALL>|twinbox render --png fast small 
 twinbox problem --<ALL>|twinbox problem --bomb-x --frame --help --method --output --quiet --verbose --version 
-twinbox simulate tower.yaml <ALL>|twinbox simulate tower.yaml 
+twinbox simulate our_wall.yaml <ALL>|twinbox simulate our_wall.yaml 
 END
 cut -d'|' -f1 alike >keys
 cut -d'|' -f2 alike >lines
@@ -118,7 +120,7 @@ in_terminal bash "source '$bash_script'"
 # fish completes the word before the cursor; it adds the blank itself.
 if command -v fish >/dev/null; then
     while IFS='|' read -r keys line; do
-        equal "fish: $keys" "$(fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
+        equal "fish: $keys" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
     done <<'END'
 twinbox simu<TAB>|simulate
 twinbox simulate --meth<TAB>|--method
@@ -130,7 +132,9 @@ twinbox render two<TAB>|two words.npz
 twinbox render -o d<TAB>|drawn/
 twinbox simulate height.yaml --set hei<TAB>|height=
 twinbox simulate scenes/pyramid_s<TAB>|scenes/pyramid_settled.yaml
+twinbox simulate pyramid_se<TAB>|pyramid_settled
 twinbox figure strip engine.npz -o fi<TAB>|figure.svg
+~/../prefix/bin/twinbox completion fi<TAB>|fish
 END
 fi
 finish

@@ -12,8 +12,7 @@ for scene in stack pyramid; do
     run 0 simulate "$scenes/$scene.yaml" --frames 120 -o "$scene-engine.npz"
     sed 's/^frames: .*/frames: 120/' "$scenes/$scene.yaml" >"$scene.yaml"
     /usr/bin/python3 "$scenes/import/chipmunk.py" "$scene.yaml" "$scene-chipmunk.npz" 2>err || fail "chipmunk: $(tail -3 err)"
-    ./box2d "$scene.yaml" >"$scene-box2d.csv" || fail "box2d: exit status $?"
-    run 0 import "$scene-box2d.csv" -o "$scene-box2d.npz"
+    ./box2d "$scene.yaml" | "$twinbox" import - -o "$scene-box2d.npz" >out 2>err || fail "box2d: $(tail -1 err)"
     says "$scene by Box2D 2.4: 121 frames of"
     complains "assumed: velocities are unknown"
     for engine in chipmunk box2d; do

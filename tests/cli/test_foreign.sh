@@ -51,6 +51,19 @@ while IFS='|' read -r status text arguments; do
 done < <(table)
 [ ! -e x ] && [ ! -e x.png ] || fail "a refused command wrote something"
 
+# As JSON, what is unknown is null.
+run 1 compare theirs.npz other.npz --json
+cp out compared.json
+run 1 diverge theirs.npz other.npz --tolerance 0.1 --json
+cp out diverged.json
+/usr/bin/python3 - <<'PYTHON' || fail "JSON of runs without velocities and contacts"
+import json
+compared, diverged = json.load(open("compared.json")), json.load(open("diverged.json"))
+assert compared["poses_only"] and compared["first"]["speed"] is None and compared["first"]["distance"] > 0.7
+assert diverged["poses_only"] and diverged["cause"] == "unknown" and diverged["beyond"]["speed"] is None
+assert diverged["first"]["spin"] is None and diverged["contacts"] is None and diverged["beyond_contacts"] is None
+PYTHON
+
 # What is refused in theirs works in ours.
 run 0 render ours.npz --size 320x180 --frames 40 --show velocities,contacts,impulses --camera bomb -o full
 

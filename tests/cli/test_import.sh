@@ -38,11 +38,19 @@ for note in "bodies 1 to 11 of the file become bodies 0 to 10" "the scene is cal
     complains "twinbox: note: assumed: $note"
 done
 run 0 render rows.npz --size 320x180 --frames 40 -o rows
-sed -i 's/^3,1,1/3,1,0/' sizes.csv
-run 2 import rows.csv --sizes sizes.csv --dt 1/60 -o refused.npz
-complains "sizes.csv:4:5: error: height: '0' is less than 1e-06"
+sed 's/^3,1,1/3,1,0/' sizes.csv >flat.csv
+run 2 import rows.csv --sizes flat.csv --dt 1/60 -o refused.npz
+complains "flat.csv:4:5: error: height: '0' is less than 1e-06"
 run 2 import rows.csv --sizes ours.csv --dt 1/60 -o refused.npz
 complains "ours.csv:"
+
+# Standard input may be a pipe. The run is called after its file, and errors have the line.
+"$twinbox" import - --sizes sizes.csv --dt 1/60 -o piped.npz <rows.csv >out 2>err || fail "import -: $(<err)"
+says "piped by piped: 91 frames of 11 bodies"
+cat ours.csv | "$twinbox" import - -o piped.npz >out || fail "import - of a pipe"
+cmp -s piped.npz back.npz || fail "standard input is read differently"
+head -c 3000 ours.csv | "$twinbox" import - -o refused.npz >out 2>err && fail "half a line is taken"
+grep -q "^standard input:[0-9]*:*[0-9]*: error: " err || fail "no line of standard input: $(<err)"
 
 # Hostile files end at once, and nothing is written.
 truncate -s 2G huge.csv

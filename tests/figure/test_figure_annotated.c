@@ -4,7 +4,7 @@
 #include "figure/run_figure.h"
 #include "render/mesa.h"
 #include "sketch/label_place.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <math.h>
 

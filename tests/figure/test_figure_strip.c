@@ -2,7 +2,7 @@
 #include "testing.h"
 
 #include "figure/run_figure.h"
-#include "sketch/type.h"
+#include "type/type.h"
 #include "render/mesa.h"
 
 static void every_run_has_a_row_and_every_moment_a_column(void **state) {

@@ -89,8 +89,32 @@ static void parts_and_panels_do_not_overlap(void **state) {
     }
 }
 
+/* A wall 60 m long or high, whose panels are not those of other scenes. */
+static void make_box(Vec2 size) {
+    for (int i = 0; i < RUNS; i++) {
+        runs[i]->bomb = -1;
+        for (int body = FIRST_BOX; body <= BOMB_BODY; body++) {
+            runs[i]->size[body] = size;
+            for (int frame = 0; frame < FRAMES; frame++)
+                *run_position(runs[i], frame, body) = vec2(0.1F * (float)i, size.y / 2);
+        }
+    }
+}
+
+static void every_mark_of_long_scenes_is_in_a_part(void **state) {
+    (void)state;
+    for (int wide = 0; wide < 2; wide++) {
+        make_box(wide ? vec2(60, 3) : vec2(3, 60));
+        for (int i = 0; i < SIZES; i++)
+            for (int count = 1; count <= RUNS; count++)
+                check(&(RenderLook){.show = count > 1 ? ALL_SHOWN : 0}, count, sizes[i][0], sizes[i][1]);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(every_mark_is_in_a_part, make, destroy),
-                                       cmocka_unit_test_setup_teardown(parts_and_panels_do_not_overlap, make, destroy)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_mark_is_in_a_part, make, destroy),
+        cmocka_unit_test_setup_teardown(every_mark_of_long_scenes_is_in_a_part, make, destroy),
+        cmocka_unit_test_setup_teardown(parts_and_panels_do_not_overlap, make, destroy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,6 +28,11 @@ static const char *const six[] = {"trajectories/stack-engine",
                                   NULL};
 static const char *const three[] = {"gallery/stack-reference", "trajectories/stack-engine", "gallery/stack-momentum",
                                     NULL};
+/* By other engines: scenes/import. */
+static const char *const stacks[] = {"trajectories/stack-engine", "gallery/stack-chipmunk", "gallery/stack-box2d",
+                                     NULL};
+static const char *const engines[] = {"trajectories/pyramid-engine", "gallery/pyramid-chipmunk",
+                                      "gallery/pyramid-box2d", NULL};
 static const char *const one[] = {"trajectories/pyramid-engine", NULL};
 
 #define STORED(frame) \
@@ -64,6 +69,8 @@ static const struct {
      false},
     {"slow_motion", near_pair, SLOW, {.show = LOOK_TRAILS | LOOK_TIMELINE}, false},
     {"all", near_pair, STORED(36), {.show = 127, .costs = {"3.8 \xC2\xB5s a step", "8.3 \xC2\xB5s a step"}}, true},
+    {"engines_stack", stacks, STORED(60), {0}, false},
+    {"engines_pyramid", engines, STORED(40), {0}, false},
     {"title", three, {MOMENT_TITLE, 0, 0, 1, 1}, {0}, true},
     {"end", three, {MOMENT_END, 75, 0, 1, 1}, {0}, true},
 };

@@ -6,7 +6,7 @@
 #include "common/hash.h"
 #include "common/process.h"
 #include "sketch/sketch_formats.h"
-#include "sketch/type.h"
+#include "type/type.h"
 
 #include <inttypes.h>
 #include <math.h>

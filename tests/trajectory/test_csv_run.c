@@ -114,6 +114,7 @@ static void what_is_written_is_read_back(void **state) {
     Error error = {0};
     Trajectory *t = example_trajectory();
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
+    t->iterations = 12;
     assert_ok(csv_run_write(t, path, &error), error);
     Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
     assert_ok(run != NULL, error);
@@ -122,6 +123,7 @@ static void what_is_written_is_read_back(void **state) {
     assert_true(difference.equal && !difference.poses_only && run->no_contacts);
     assert_string_equal(run->scene, t->scene);
     assert_string_equal(run->method, t->method);
+    assert_int_equal(run->iterations, 12);
     assert_true(run->scene_hash == t->scene_hash && run->bomb == t->bomb && run->dt == t->dt);
     assert_memory_equal(&run->camera_center, &t->camera_center, sizeof(Vec2));
     assert_memory_equal(&run->camera_size, &t->camera_size, sizeof(Vec2));

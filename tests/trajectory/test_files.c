@@ -17,10 +17,12 @@ static void written_is_read(void **state) {
     (void)state;
     const char *path = temporary_path("run.npz");
     Trajectory *t = example_trajectory();
+    t->iterations = 12;
     write_file(t, path);
     Error error = {0};
     Trajectory *r = trajectory_read(path, &error);
     assert_ok(r != NULL, error);
+    assert_int_equal(r->iterations, 12);
     assert_string_equal(r->scene, t->scene);
     assert_string_equal(r->method, t->method);
     assert_true(r->scene_hash == t->scene_hash && r->dt == t->dt && r->bomb == t->bomb);

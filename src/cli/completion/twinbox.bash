@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # bash completion for twinbox. The program answers what a word may become (src/cli/completion.h).
 # shellcheck shell=bash
 
@@ -55,6 +56,6 @@ _twinbox() {
             COMPREPLY+=("${word#"$had"}")
             ;;
         esac
-    done < <("${COMP_WORDS[0]}" completion words -- "${words[@]:1}" 2>/dev/null)
+    done < <("${COMP_WORDS[0]/#\~/$HOME}" completion words -- "${words[@]:1}" 2>/dev/null)
 }
 complete -F _twinbox twinbox

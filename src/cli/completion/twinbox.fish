@@ -1,9 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # fish completion for twinbox. The program answers what a word may become (src/cli/completion.h).
 
 function __twinbox_complete
     set -l words (commandline -opc)
     set -l typed (commandline -ct)
-    for line in ($words[1] completion words -- $words[2..-1] "$typed" 2>/dev/null)
+    set -l program (string replace -r '^~' $HOME -- $words[1])
+    for line in ($program completion words -- $words[2..-1] "$typed" 2>/dev/null)
         set -l parts (string split -m 1 \t -- $line)
         if string match -q -- '<files>*' $line
             set -l begin (string replace -- '<files>' '' $parts[1])

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Build-time tool: prints a font's outlines and widths as C (sketch/type.h) in unscaled font units, so that they do
-   not depend on the version of FreeType. Usage: make_outlines FONT.otf OUTPUT.c */
-#include "sketch/type.h"
+/* Build-time tool: prints the outlines and widths of two fonts as C (type/type.h) in unscaled font units, so that they do
+   not depend on the version of FreeType. Usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c; the characters of
+   SMALL.otf must have the indices of REGULAR.otf there. */
+#include "type/type.h"
 
 #include <ft2build.h>
 #include <stdio.h>
@@ -9,7 +10,7 @@
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
-enum { GLYPHS_MAX = 512, STEPS_MAX = 1 << 16 };
+enum { GLYPHS_MAX = 2048, STEPS_MAX = 1 << 17 };
 
 static OutlineStep steps[STEPS_MAX];
 static Glyph glyphs[GLYPHS_MAX];
@@ -60,30 +61,52 @@ static void add_glyph(FT_Face face, unsigned code, unsigned index) {
     glyphs[glyph_count++] = (Glyph){code, index, (int)face->glyph->metrics.horiAdvance, first, step_count - first};
 }
 
-static void print(FILE *output, int units) {
-    fprintf(output, "#include \"sketch/type.h\"\nconst int type_units = %d, type_glyph_count = %d;\n", units,
-            glyph_count);
-    fputs("const Glyph type_glyphs[] = {\n", output);
+static void print(FILE *output, const char *name) {
+    fprintf(output, "static const Glyph %s_glyphs[] = {\n", name);
     for (int i = 0; i < glyph_count; i++)
         fprintf(output, "{%u,%u,%d,%d,%d},\n", glyphs[i].code, glyphs[i].index, glyphs[i].advance, glyphs[i].first,
                 glyphs[i].steps);
-    fputs("};\nconst OutlineStep type_steps[] = {\n", output);
+    fprintf(output, "};\nstatic const OutlineStep %s_steps[] = {\n", name);
     for (int i = 0; i < step_count; i++) fprintf(output, "{%d,%d,%d},\n", steps[i].kind, steps[i].x, steps[i].y);
-    fputs("};\n", output);
+    fprintf(output, "};\nconst Typeface type_%s = {%s_glyphs, %s_steps};\n", name, name, name);
+}
+
+static FT_Face open_font(FT_Library library, const char *path) {
+    FT_Face face = NULL;
+    if (FT_New_Face(library, path, 0, &face) != 0) quit("cannot read a font");
+    return face;
+}
+
+static void write_face(FILE *output, FT_Face face, const char *name) {
+    FT_UInt index;
+    glyph_count = step_count = 0;
+    for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index))
+        add_glyph(face, (unsigned)code, index);
+    print(output, name);
+}
+
+static void check_small(FT_Face small, FT_Face whole) {
+    FT_UInt index;
+    for (FT_ULong code = FT_Get_First_Char(small, &index); index != 0; code = FT_Get_Next_Char(small, code, &index))
+        if (FT_Get_Char_Index(whole, code) != index) quit("a glyph of the small font has another index");
 }
 
 int main(int argc, char **argv) {
     FT_Library library;
-    FT_Face face = NULL;
-    if (argc != 3) quit("usage: make_outlines FONT.otf OUTPUT.c");
-    FILE *output = fopen(argv[2], "w");
+    if (argc != 5) quit("usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c");
+    FILE *output = fopen(argv[4], "w");
     if (output == NULL) quit("cannot write the output");
-    if (FT_Init_FreeType(&library) != 0 || FT_New_Face(library, argv[1], 0, &face) != 0) quit("cannot read the font");
-    FT_UInt index;
-    for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index))
-        add_glyph(face, (unsigned)code, index);
-    print(output, face->units_per_EM);
-    FT_Done_Face(face);
+    if (FT_Init_FreeType(&library) != 0) quit("cannot start FreeType");
+    FT_Face regular = open_font(library, argv[1]), semibold = open_font(library, argv[2]);
+    FT_Face small = open_font(library, argv[3]);
+    check_small(small, regular);
+    fprintf(output, "#include \"type/type.h\"\n");
+    write_face(output, regular, "regular");
+    const int count = glyph_count;
+    write_face(output, semibold, "semibold");
+    if (glyph_count != count || semibold->units_per_EM != regular->units_per_EM) quit("the faces differ in kind");
+    fprintf(output, "const int type_units = %d, type_glyph_count = %d;\nconst unsigned type_small_count = %ld;\n",
+            regular->units_per_EM, count, small->num_glyphs);
     FT_Done_FreeType(library);
     if (fclose(output) != 0) quit("cannot write the output");
     return 0;

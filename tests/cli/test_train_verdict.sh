@@ -1,0 +1,45 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Training ends with a verdict, and --from never replaces a network by a worse one.
+. "$(dirname "$0")/checks.sh"
+
+sed 's/^frames:.*/frames: 60/' "$scenes/single.yaml" >single.yaml
+sed '/scene-net:/d; s/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
+run 0 dataset single.yaml -o pairs.npz --bomb-x=-2:2:0.5
+
+# Random weights are no better than always predicting the mean; 20 steps of Levenberg-Marquardt are.
+run 0 train pairs.npz -o net.npz --iterations 0
+says "of the constant predictor's: no better than the constant"
+run 0 train pairs.npz -o net.npz --optimizer lm --iterations 20
+equal "no better than the constant" "$(grep -c 'no better' out)" 0
+share=$(sed -nE 's/^verdict: held-out error [0-9.]+, ([0-9.]+) of the constant predictor.s$/\1/p' out)
+awk -v share="$share" 'BEGIN { exit !(share > 0 && share < 1) }' || fail "share of the constant's error: '$share'"
+# The last line of the table and the verdict have the same error (training that ends at its best).
+equal "held-out error" "$(awk '$1 == 20 { print $2 }' out)" "$(sed -nE 's/^verdict: held-out error ([0-9.]+),.*/\1/p' out)"
+
+# Ten more steps lower the training error and raise the held-out error: the file keeps the network that it had.
+cp net.npz kept.npz
+run 1 train pairs.npz --from net.npz -o net.npz --optimizer lm --iterations 10
+says "verdict: worse than the network in net.npz, which is kept: held-out error "
+cmp -s net.npz kept.npz || fail "a network was replaced by a worse one"
+run 0 train pairs.npz --from net.npz -o other.npz --optimizer lm --iterations 10
+run 0 train pairs.npz --from net.npz -o net.npz --iterations 0
+run 0 train pairs.npz -o net.npz --iterations 0
+cmp -s net.npz kept.npz && fail "training without --from did not replace the file"
+
+# Sixteen launches and few epochs are not enough: the network is worse than sweeps, and the figures say the same.
+run 0 train --kind scene-net stack.yaml -o scene.npz --launches 16 --rounds 2 --iterations 6 --width 16 --seed 3
+says "verdict: "
+/usr/bin/python3 - <<'PYTHON' || fail "the verdict on the scene network: $(tail -n 2 out)"
+import re
+lines = open("out").read().splitlines()
+table = [line.split() for line in lines if re.match(r" +[0-9]+ ", line)][-1]
+found = re.match(r"held out: the network and its sweeps ([0-9.]+) m/s in ([0-9.e+]+) us; momentum in that time, "
+                 r"([0-9]+) sweeps, ([0-9.]+); with 20 sweeps ([0-9.]+)$", lines[-2])
+network, at_equal_time, at_20 = (float(found[i]) for i in (1, 4, 5))
+assert at_20 == float(table[4]) and 1 <= int(found[3]) <= 200 and float(found[2]) > 0
+words = re.match(r"verdict: (better|worse) than momentum at equal time; (better|worse) than momentum with 20 sweeps$", lines[-1])
+assert words[1] == ("better" if network < at_equal_time else "worse")
+assert words[2] == ("better" if network < at_20 else "worse") and words[2] == "worse"
+PYTHON
+finish
