@@ -6,6 +6,7 @@
 #include "cli/compare_watch.h"
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
+#include "common/standard_io.h"
 #include "common/hash.h"
 #include "common/text_add.h"
 #include "report/regression_github.h"
@@ -20,6 +21,7 @@
 
 static bool is_trajectory(const char *path) {
     size_t length = strlen(path);
+    if (path_is_standard(path)) return true; /* pictures come in folders */
     return length > 4 && strcmp(path + length - 4, ".npz") == 0;
 }
 

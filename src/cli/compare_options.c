@@ -32,7 +32,7 @@ static const Option option_table[] = {
      OPTION_READ(read_antialias, CompareOptions, tolerance)},
     {"--rules", 0, "FILE",
      "Limits and masks for files of certain names (default: " RULES_NAME " in EXPECTED, if it is there)",
-     OPTION_TEXT(CompareOptions, rules)},
+     OPTION_PATH(CompareOptions, rules)},
     {"--mask", 0, "FILE.png|X,Y,W,H",
      "Pixels to ignore: where this picture is neither black nor transparent, or a rectangle (may be repeated)",
      OPTION_READ(read_mask, CompareOptions, mask)},
@@ -62,7 +62,7 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "EXPECTED ACTUAL",
               .needed = "two inputs are needed",
-              OPTION_TEXTS(CompareOptions, paths, count)},
+              OPTION_PATHS(CompareOptions, paths, count)},
     .inputs = {2, 2, "input"},
     .help =
         "Compare two trajectories (.npz) or two PNG sequences (folders with their subfolders, or single files). "

@@ -16,7 +16,8 @@ typedef struct Options {
 static const char *view_names[PAIR_VIEWS + 1]; /* of pair_views, in the order of PairView */
 
 static const Option option_table[] = {
-    {"--output", 'o', "DATA.npz", "Dataset to write", OPTION_TEXT(Options, output), .needed = "-o DATA.npz is needed"},
+    {"--output", 'o', "DATA.npz", "Dataset to write", OPTION_BINARY(Options, output),
+     .needed = "-o DATA.npz is needed"},
     {"--bomb-x", 0, "A:B:STEP",
      "Launches of each scene: x from A to B in steps of STEP, m (default: 201 of the scene's family; none with only "
      "--random)",

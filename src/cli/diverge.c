@@ -27,13 +27,13 @@ static const Option option_table[] = {
      "last body",
      OPTION_PATH(Options, scene)},
     {"--csv", 0, "FILE", "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m",
-     OPTION_TEXT(Options, csv)},
+     OPTION_OUTPUT(Options, csv)},
     {OPTION_JSON(Options, json)},
     {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "RUN RUN", .needed = "two runs (.npz) are needed", OPTION_TEXTS(Options, paths, count)},
+    .input = {.value = "RUN RUN", .needed = "two runs (.npz) are needed", OPTION_PATHS(Options, paths, count)},
     .inputs = {2, 2, "run"},
     .help =
         "Find why two runs diverge: the first frame, body and contact that differ, whether the solver or an earlier "
@@ -82,6 +82,7 @@ static bool find(Divergence *d, const Options *options, Error *error) {
 bool command_diverge(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (!json_output_check(options.json, error)) return false;
     Divergence divergence = {.paths = options.paths, .tolerance = options.tolerance};
     bool ok = find(&divergence, &options, error);
     if (ok && options.json)

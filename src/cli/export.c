@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "common/standard_io.h"
 #include "trajectory/csv_run.h"
 #include "trajectory/run_export.h"
 
@@ -13,12 +14,12 @@ typedef struct Options {
 
 static const Option option_table[] = {{"--output", 'o', "FILE",
                                        "File to write; its ending states the format: .csv, .json or .blend.py",
-                                       OPTION_TEXT(Options, output), .needed = "-o FILE is needed"},
+                                       OPTION_OUTPUT(Options, output), .needed = "-o FILE is needed"},
                                       {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "RUN", .needed = "a run (.npz) is needed", OPTION_TEXT(Options, input)},
+    .input = {.value = "RUN", .needed = "a run (.npz) is needed", OPTION_PATH(Options, input)},
     .inputs = {1, 1, "run"},
     .help =
         "Write a run for other programs: as CSV, which twinbox import reads back; as JSON; or as a script that builds "
@@ -35,6 +36,7 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 
 /* -1: none has this ending. */
 static int find_format(const char *path) {
+    if (path_is_standard(path)) return 0;
     const size_t length = strlen(path);
     for (int i = 0; i < FORMATS; i++) {
         const size_t tail = strlen(formats[i].ending);

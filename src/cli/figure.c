@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/camera_option.h"
 #include "cli/commands.h"
-#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/picture_notes.h"
 #include "cli/progress_bar.h"
@@ -25,7 +24,7 @@ typedef struct Options {
 static OptionRead read_input, read_times, read_bodies, read_width;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_TEXT(Options, output),
+    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output),
      .needed = "-o FILE is needed"},
     {"--at", 0, "T,T,...", "Moments to show, seconds from the start of the run, rising",
      OPTION_READ(read_times, Options, figure)},
@@ -77,12 +76,9 @@ static void write_help(char help[HELP_SIZE]) {
 
 /* The kind, then runs. */
 static bool read_input(const Option *option, const char *text, void *value, Error *error) {
-    (void)option, (void)error;
     Options *options = value;
-    if (options->kind == NULL)
-        options->kind = text;
-    else
-        options->inputs[options->input_count++] = installed_path(text);
+    if (options->kind != NULL) return option_path(option, text, &options->inputs[options->input_count++], error);
+    options->kind = text;
     return true;
 }
 

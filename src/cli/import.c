@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/notes.h"
 #include "cli/options.h"
+#include "common/standard_io.h"
 #include "trajectory/csv_run.h"
 #include "trajectory/trajectory_name.h"
 
@@ -15,9 +16,9 @@ typedef struct Options {
 } Options;
 
 static const Option option_table[] = {
-    {"--output", 'o', "RUN.npz", "Run to write", OPTION_TEXT(Options, output), .needed = "-o RUN.npz is needed"},
+    {"--output", 'o', "RUN.npz", "Run to write", OPTION_BINARY(Options, output), .needed = "-o RUN.npz is needed"},
     {"--sizes", 0, "FILE.csv", "Sizes of the bodies: body,width,height in m; static, 0 or 1, may follow",
-     OPTION_TEXT(Options, sizes)},
+     OPTION_PATH(Options, sizes)},
     {"--dt", 0, "S", "Time step, s: a number or a fraction such as 1/60 (default: the file's)",
      OPTION_FLOAT(Options, dt, SCENE_MIN_DT, SCENE_MAX_DT)},
     {"--degrees", 0, NULL, "Angles and angular velocities of the file are in degrees", OPTION_FLAG(Options, degrees)},
@@ -25,7 +26,7 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "FILE.csv", .needed = "a CSV file is needed", OPTION_TEXT(Options, input)},
+    .input = {.value = "FILE.csv", .needed = "a CSV file is needed", OPTION_PATH(Options, input)},
     .inputs = {1, 1, "file"},
     .help =
         "Read the run of another program from CSV and store it as a run of twinbox. The columns are frame, body, x, y, "
@@ -62,7 +63,7 @@ bool command_import(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const size_t length = strlen(options.output);
-    if (length <= 4 || strcmp(options.output + length - 4, ".npz") != 0)
+    if (!path_is_standard(options.output) && (length <= 4 || strcmp(options.output + length - 4, ".npz") != 0))
         return error_input(error, options.output, "the name of a run must end in .npz");
     return import_run(&options, error);
 }

@@ -2,6 +2,7 @@
 #include "cli/json_output.h"
 
 #include "common/file.h"
+#include "common/standard_io.h"
 
 #include <stdlib.h>
 
@@ -18,6 +19,11 @@ static void print(FILE *out, const void *context) {
     json_put_text(&json, "format", output->format);
     output->write(&json, output->context);
     json_end(&json);
+}
+
+bool json_output_check(bool json, Error *error) {
+    return !json || !standard_output_is_reserved() ||
+           error_input(error, "--json", "cannot be combined with a file written to standard output");
 }
 
 /* Through memory, because JsonWriter needs the C locale. */

@@ -10,6 +10,9 @@
     "--json", 0, NULL, "Print the result as one JSON object on standard output", OPTION_FLAG(T, member)
 
 /* Prints what `write` puts between the format and the end of the object. */
+/* Refuses --json where a file is written to standard output. */
+bool json_output_check(bool json, Error *error);
+
 typedef void JsonOutputWrite(JsonWriter *json, const void *context);
 bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error);
 

@@ -2,9 +2,11 @@
 #include "cli/installed.h"
 #include "cli/options.h"
 #include "common/names.h"
+#include "common/standard_io.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 bool option_text(const Option *option, const char *text, void *value, Error *error) {
     (void)option, (void)error;
@@ -12,8 +14,25 @@ bool option_text(const Option *option, const char *text, void *value, Error *err
     return true;
 }
 
+/* Only one input can be standard input. */
+static bool check_input(const char *text, Error *error) {
+    static int count;
+    return !path_is_standard(text) || ++count == 1 ||
+           error_input(error, "-", "only one file can be read from standard input");
+}
+
 bool option_path(const Option *option, const char *text, void *value, Error *error) {
-    return option_text(option, installed_path(text), value, error);
+    return check_input(text, error) && option_text(option, installed_path(text), value, error);
+}
+
+bool option_output(const Option *option, const char *text, void *value, Error *error) {
+    return (!path_is_standard(text) || standard_output_reserve(error)) && option_text(option, text, value, error);
+}
+
+bool option_binary(const Option *option, const char *text, void *value, Error *error) {
+    if (path_is_standard(text) && isatty(STDOUT_FILENO))
+        return error_input(error, option->name, "binary data cannot go to a terminal; redirect standard output");
+    return option_output(option, text, value, error);
 }
 
 bool option_flag(const Option *option, const char *text, void *value, Error *error) {
@@ -98,7 +117,7 @@ bool option_texts(const Option *option, const char *text, void *value, Error *er
 }
 
 bool option_paths(const Option *option, const char *text, void *value, Error *error) {
-    return option_texts(option, installed_path(text), value, error);
+    return check_input(text, error) && option_texts(option, installed_path(text), value, error);
 }
 
 bool option_range(const Option *option, const char *text, void *value, Error *error) {

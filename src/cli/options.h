@@ -37,7 +37,11 @@ struct Option {
 
 /* What follows the help in the row of an option. T is the command's Options. */
 #define OPTION_TEXT(T, member) .read = option_text, .at = OPTION_AT(T, member, const char *)
-#define OPTION_PATH(T, member) .read = option_path, .at = OPTION_AT(T, member, const char *) /* installed_path() */
+#define OPTION_PATH(T, member) .read = option_path, .at = OPTION_AT(T, member, const char *) /* to read */
+/* A file to write; "-" makes the results go to standard error (standard_output_reserve). Binary ones are refused where
+   standard output is a terminal. */
+#define OPTION_OUTPUT(T, member) .read = option_output, .at = OPTION_AT(T, member, const char *)
+#define OPTION_BINARY(T, member) .read = option_binary, .at = OPTION_AT(T, member, const char *)
 #define OPTION_FLAG(T, member) .read = option_flag, .at = OPTION_AT(T, member, bool)
 #define OPTION_SEED(T, member) .read = option_seed, .at = OPTION_AT(T, member, uint64_t)
 #define OPTION_RANGE(T, member) .read = option_range, .at = OPTION_AT(T, member, FloatRange)
@@ -73,7 +77,7 @@ typedef struct SceneSettings {
         OPTION_READ(option_set, T, member)
 
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,
-    option_enum, option_flags, option_texts, option_paths, option_set;
+    option_enum, option_flags, option_texts, option_paths, option_set, option_output, option_binary;
 
 typedef struct CommandSpec {
     const Option *options; /* ended by {0} */

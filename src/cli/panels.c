@@ -3,6 +3,7 @@
 
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
+#include "common/standard_io.h"
 #include "common/file.h"
 #include "scene/launch.h"
 #include "simulate/simulate.h"
@@ -74,6 +75,7 @@ static bool add_scene(Panels *panels, const char *input, const SceneSettings *se
 
 static bool is_stored(const char *input) {
     const char *ending = strrchr(input, '.');
+    if (path_is_standard(input)) return standard_input_is_zip();
     return ending != NULL && strcmp(ending, ".npz") == 0;
 }
 

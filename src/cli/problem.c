@@ -17,7 +17,7 @@ typedef struct Options {
 static const Option option_table[] = {
     {"--frame", 0, "N", "Number of the step, from 1: the step that leads to frame N of a run",
      OPTION_INT(Options, frame, 1, SCENE_MAX_FRAMES), .needed = "--frame N is needed"},
-    {"--output", 'o', "P.npz", "Contact problem to write", OPTION_TEXT(Options, output),
+    {"--output", 'o', "P.npz", "Contact problem to write", OPTION_BINARY(Options, output),
      .needed = "-o P.npz is needed"},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m (default: the scene's x)",
      OPTION_FLOAT(Options, bomb_x, -SCENE_MAX_POSITION, SCENE_MAX_POSITION)},

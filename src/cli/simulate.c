@@ -5,6 +5,7 @@
 #include "cli/progress_bar.h"
 #include "cli/simulate_print.h"
 #include "common/output_check.h"
+#include "common/standard_io.h"
 #include "simulate/recorder.h"
 
 #include <math.h>
@@ -22,11 +23,11 @@ typedef struct Options {
 
 static const Option option_table[] = {
     {"--output", 'o', "RUN", "Trajectory to write: RUN.npz, or RUN.csv for poses as text",
-     OPTION_TEXT(Options, output)},
+     OPTION_BINARY(Options, output)},
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
      OPTION_TEXT(Options, method)},
-    {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_TEXT(Options, hashes)},
-    {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_TEXT(Options, verdict)},
+    {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_OUTPUT(Options, hashes)},
+    {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_OUTPUT(Options, verdict)},
     {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz; they are most of it",
      OPTION_FLAG(Options, no_contacts)},
     {OPTION_JSON(Options, json)},
@@ -137,7 +138,7 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
 
 static bool check_outputs(const Options *options, Error *error) {
     const char *output = options->output;
-    if (output != NULL && !ends_with(output, ".npz") && !ends_with(output, ".csv"))
+    if (output != NULL && !path_is_standard(output) && !ends_with(output, ".npz") && !ends_with(output, ".csv"))
         return error_input(error, output, "the name of a trajectory must end in .npz or .csv");
     if (output != NULL &&
         !(ends_with(output, ".csv") ? output_check_file(output, ".csv", error) : output_check_npz(output, NULL, error)))
@@ -149,7 +150,7 @@ static bool check_outputs(const Options *options, Error *error) {
 bool command_simulate(int argc, char **argv, Error *error) {
     Options options = {.method = "engine", .bomb_x = NAN, .bomb_frame = -1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!check_outputs(&options, error)) return false;
+    if (!json_output_check(options.json, error) || !check_outputs(&options, error)) return false;
     Method method;
     if (!method_parse(&method, options.method, error)) return false;
     Scene *scene = scene_read_with(options.scene, options.set.items, options.set.count, error);

@@ -26,7 +26,7 @@ static const Option option_table[] = {{"--method", 'm', "NAME[:KEY=VALUE,...]", 
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "P.npz", .needed = "a contact problem (.npz) is needed", OPTION_TEXT(Options, path)},
+    .input = {.value = "P.npz", .needed = "a contact problem (.npz) is needed", OPTION_PATH(Options, path)},
     .inputs = {1, 1, "problem"},
     .help =
         "Solve one contact problem with each method and score it against the converged solution: RMS error of the "

@@ -68,7 +68,7 @@ static void add_kind(Options *options, HelpTexts *texts, int k) {
 static void make_table(Options *options, HelpTexts *texts) {
     snprintf(texts->kind, TEXT_SIZE, "What to train: %s", name_kinds(NULL).text);
     add_row(options, (Option){"--output", 'o', "NET.npz", "File that the network is written to",
-                              OPTION_TEXT(Options, output), .needed = "-o NET.npz is needed"});
+                              OPTION_BINARY(Options, output), .needed = "-o NET.npz is needed"});
     for (int k = 0; k < KINDS; k++) texts->names[k] = train_kinds[k]->name;
     add_row(options, (Option){"--kind", 0, "NAME", texts->kind, OPTION_TEXT(Options, kind), .names = texts->names,
                               .standard = train_kinds[0]->name});

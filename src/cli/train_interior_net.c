@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 #include "cli/train.h"
+#include "common/standard_io.h"
 #include "common/file.h"
 #include "interior_training/net_training.h"
 
@@ -32,6 +33,8 @@ static bool run(const TrainRequest *request, Error *error) {
     NetTraining training = {.on_score = print_score};
     InteriorNet net;
     char command[sizeof net.command], state[PATH_SIZE];
+    if (path_is_standard(request->output))
+        return error_input(error, "-o", "interior-net keeps its state beside the network; give the network a name");
     if (!train_read(request, &training, error) || !file_path(state, sizeof state, error, "%s.part", request->output))
         return false;
     train_describe(request, command, sizeof command);

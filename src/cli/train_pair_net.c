@@ -28,7 +28,7 @@ static const Option options[] = {
      "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
      "held-out "
      "error than the result, it is kept (exit status 1)",
-     OPTION_TEXT(Options, from)},
+     OPTION_PATH(Options, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
      OPTION_TEXT(Options, training.hidden)},
     {"--output-activation", 0, "NAME", "sigmoid or linear (default: sigmoid for two outputs, linear for six)",

@@ -3,6 +3,7 @@
 #include "common/file.h"
 
 #include "common/array.h"
+#include "common/standard_io.h"
 #include "common/trace.h"
 
 #include <ctype.h>
@@ -79,6 +80,10 @@ static char *read_and_close(int file, const char *path, size_t limit, size_t *si
 }
 
 char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
+    if (path_is_standard(path)) {
+        const int input = standard_input_open(error);
+        return input >= 0 ? read_and_close(input, path, limit, size, error) : NULL;
+    }
     return read_and_close(open(path, OPEN_TO_READ), path, limit, size, error);
 }
 

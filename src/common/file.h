@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading and writing whole files. */
+/* Reading and writing whole files. The path "-" is standard input or output (common/standard_io.h). */
 #pragma once
 #include "common/error.h"
 

@@ -2,6 +2,7 @@
 /* Whole files out. */
 #include "common/file.h"
 
+#include "common/standard_io.h"
 #include "common/trace.h"
 
 #include <errno.h>
@@ -152,6 +153,7 @@ static bool write_into(int file, const Contents *contents) {
 
 static bool put(const char *path, const Contents *contents, bool wait) {
     struct stat status;
+    if (path_is_standard(path)) return write_into(dup(standard_output()), contents);
     if (lstat(path, &status) != 0) return replace(AT_FDCWD, path, contents, wait);
     bool is_link = S_ISLNK(status.st_mode);
     if (is_link && stat(path, &status) != 0) return false;
@@ -207,7 +209,8 @@ static bool draft_folder(const char *path, char folder[PATH_MAX]) {
     struct stat status;
     const char *temporary = getenv("TMPDIR");
     char target[PATH_MAX];
-    if (stat(path, &status) == 0 && (!S_ISREG(status.st_mode) || is_standard_output(&status)))
+    if (path_is_standard(path) ||
+        (stat(path, &status) == 0 && (!S_ISREG(status.st_mode) || is_standard_output(&status))))
         return snprintf(folder, PATH_MAX, "%s", temporary != NULL && temporary[0] != '\0' ? temporary : "/tmp") <
                PATH_MAX;
     if (realpath(path, target) == NULL && snprintf(target, sizeof target, "%s", path) >= PATH_MAX) return false;

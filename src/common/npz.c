@@ -6,6 +6,7 @@
 #include "common/utf8.h"
 #include "common/file.h"
 #include "common/lfs_pointer.h"
+#include "common/standard_io.h"
 #include "common/trace.h"
 #include "common/zip_directory.h"
 
@@ -122,7 +123,8 @@ static bool refuse_pointer(int descriptor, const char *path, Error *error) {
 /* Opens the file and checks that it is safe to pass to libzip. */
 static int open_checked(const char *path, Error *error) {
     /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
-    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    int descriptor =
+        path_is_standard(path) ? standard_input_open(error) : open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status;
     if (descriptor < 0) {
         file_open_error(path, error);

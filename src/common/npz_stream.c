@@ -128,7 +128,7 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
     if (size == 0) return true;
     if (column->spill < 0 && column->used + size >= NPZ_LARGE && !spill(stream, column, error)) return false;
     if (column->spill >= 0) return npz_pack_put(&column->pack, rows, size, error);
-    if (!array_reserve(&column->kept, &column->capacity, column->used + size, 1))
+    if (!array_reserve(&column->kept, &column->capacity, column->used + size, 1) || column->kept == NULL)
         return error_memory(error, stream->path);
     memcpy((char *)column->kept + column->used, rows, size);
     column->used += size;

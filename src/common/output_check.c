@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "common/npz.h"
+#include "common/standard_io.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -42,7 +43,7 @@ static bool is_standard_output(const struct stat *status) {
 bool output_check_file(const char *path, const char *ending, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
-    if (strcmp(path, "-") == 0) return true;
+    if (path_is_standard(path)) return true;
     const bool there = stat(path, &status) == 0;
     if (there && S_ISDIR(status.st_mode)) return error_input(error, path, "is a folder; expected the name of a file");
     if (there && (!S_ISREG(status.st_mode) || is_standard_output(&status))) return true;
@@ -68,7 +69,8 @@ bool output_check_npz(const char *path, const char *kind, Error *error) {
     struct stat status;
     char found[KIND_SIZE];
     if (!output_check_file(path, ".npz", error)) return false;
-    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 || is_standard_output(&status))
+    if (path_is_standard(path) || stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 ||
+        is_standard_output(&status))
         return true;
     find_kind(path, found);
     if (strcmp(found, kind != NULL ? kind : "run") == 0) return true;

@@ -21,6 +21,8 @@ typedef struct VideoFormat {
     double max_rate;         /* highest frame rate, Hz; 0: any */
     double usual_rate;       /* the same unless a rate was chosen */
     const char *encoder[24]; /* arguments for ffmpeg */
+    const char *ahead;       /* its argument for the number of frames that it looks ahead, */
+    int ahead_frames;        /* and its default; NULL: none */
 } VideoFormat;
 
 /* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
@@ -31,14 +33,28 @@ typedef struct VideoFormat {
 #define GIF_SCALE "scale=w='min(800,iw)':h='min(800,ih)':force_original_aspect_ratio=decrease:flags=area"
 
 static const VideoFormat formats[] = {
-    {".mp4", true, 0, 0, {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
+    {".mp4",
+     true,
+     0,
+     0,
+     {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"},
+     "-rc-lookahead",
+     40},
     {".webm",
      true,
      0,
      0,
-     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"}},
+     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"},
+     "-lag-in-frames",
+     25},
     /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform and small. */
-    {".gif", false, 50, 25, {"-lavfi", GIF_SCALE "[x];[x][1:v]paletteuse=dither=none", "-fps_mode", "passthrough"}},
+    {".gif",
+     false,
+     50,
+     25,
+     {"-lavfi", GIF_SCALE "[x];[x][1:v]paletteuse=dither=none", "-fps_mode", "passthrough"},
+     NULL,
+     0},
 };
 
 static const VideoFormat *find_format(const char *path) {
@@ -115,16 +131,28 @@ static bool write_raw(void *context, const Image *image) {
     return process_write(&target->process, target->rgb, 3 * pixels);
 }
 
+/* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it keeps no more
+   pixels than of full HD, in as many threads on every machine; otherwise 3840x2160 takes 1.7 GB with two cores. */
+static void bound_memory(Arguments *arguments, const Encoding *encoding, char ahead[16]) {
+    enum { FULL_HD = 1920 * 1080, AHEAD_LEAST = 2 };
+    const long pixels = (long)encoding->width * encoding->height;
+    if (encoding->format->ahead == NULL || pixels <= FULL_HD) return;
+    const long frames = encoding->format->ahead_frames * (long)FULL_HD / pixels;
+    snprintf(ahead, 16, "%ld", frames > AHEAD_LEAST ? frames : AHEAD_LEAST);
+    ADD(arguments, encoding->format->ahead, ahead, "-threads", "4");
+}
+
 /* Feeds all pictures to an ffmpeg with these further arguments. */
 static bool run_ffmpeg(const Encoding *encoding, const char *const *format_arguments, const char *output,
                        Error *error) {
-    char size[32], rate[32];
+    char size[32], rate[32], ahead[16];
     Arguments arguments = {0};
     snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
     snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
     ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
     ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
     add(&arguments, format_arguments);
+    bound_memory(&arguments, encoding, ahead);
     ADD(&arguments, output);
     RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);

@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include "common/file.h"
+#include "common/standard_io.h"
 #include "common/trace.h"
 #include "scene/parameters.h"
 #include "scene/scene_bodies.h"
@@ -126,7 +127,7 @@ static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings
 /* The name is used in captions and file names, so it must be printable. */
 static void name_scene(Scene *scene, const char *path) {
     char file[NAME_MAX + 1];
-    snprintf(file, sizeof file, "%s", path + file_folder_length(path));
+    snprintf(file, sizeof file, "%s", path_is_standard(path) ? "stdin" : path + file_folder_length(path));
     char *ending = strrchr(file, '.');
     if (ending != NULL && ending != file) *ending = '\0';
     source_printable(scene->name, sizeof scene->name, file);

@@ -21,6 +21,10 @@ bool sketch_format(const char *path, SketchFormat *format, Error *error) {
             *format = (SketchFormat)i;
             return true;
         }
+    if (strcmp(path, "-") == 0) {
+        *format = SKETCH_SVG;
+        return true;
+    }
     return error_input(error, path, "the name of a figure must end in .png, .svg or .pdf");
 }
 

@@ -2,6 +2,7 @@
 #include "trajectory/trajectory_name.h"
 
 #include "common/file.h"
+#include "common/standard_io.h"
 #include "common/utf8.h"
 
 #include <string.h>
@@ -26,7 +27,7 @@ void trajectory_file_name(const Trajectory *const *runs, int index, char name[TR
 }
 
 void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]) {
-    const char *file = path + file_folder_length(path), *ending = strrchr(file, '.');
+    const char *file = path_is_standard(path) ? "stdin" : path + file_folder_length(path), *ending = strrchr(file, '.');
     size_t length = ending != NULL && ending > file ? (size_t)(ending - file) : strlen(file), used = 0;
     for (size_t at = 0, width; at < length && used + 4 < TRAJECTORY_NAME_SIZE; at += width > 0 ? width : 1) {
         uint32_t character;
