@@ -148,8 +148,10 @@ ViewText view_difference(const View *expected, const View *actual) {
     for (int i = 0; i < expected->panel_count; i++) {
         const ViewPanel *a = &expected->panels[i], *b = &actual->panels[i];
         if (!same_rect(&a->rect, &b->rect)) {
-            snprintf(words.text, sizeof words.text, "the place of panel %d differs: (%d, %d) and (%d, %d)", i + 1,
-                     a->rect.left, a->rect.top, b->rect.left, b->rect.top);
+            snprintf(words.text, sizeof words.text,
+                     "the place of panel %d differs: (%d, %d) to (%d, %d) and (%d, %d) to (%d, %d)", i + 1,
+                     a->rect.left, a->rect.top, a->rect.right, a->rect.bottom, b->rect.left, b->rect.top, b->rect.right,
+                     b->rect.bottom);
             return words;
         }
         if (a->scale == b->scale && a->left == b->left && a->top == b->top) continue;

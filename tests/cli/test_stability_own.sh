@@ -76,7 +76,7 @@ refused() {
 cat >walls.yaml <<'YAML'
 parameters:
   gap: {value: 2, from: 0.5, to: 3, unit: m}
-  rows: {value: 2, from: 1, to: 4, unit: m², whole: on}
+  rows: {value: 2, from: 1, to: 4, unit: "m;", whole: on}
 gravity: [0, -10]
 dt: 1/60
 iterations: 10
@@ -92,7 +92,7 @@ refused "'gap=0:2' is not within the scene's bounds of gap: 0.5 to 3 m" walls.ya
 refused "'gap=2:4' is not within" walls.yaml --vary gap=2:4
 refused "'gap=2' is not NAME=FROM:TO" walls.yaml --vary gap=2
 refused "with FROM less than TO" walls.yaml --vary gap=2:2
-refused "the unit 'm²' of rows cannot stand in a table" walls.yaml --vary rows
+refused "the unit 'm;' of rows cannot stand in a table" walls.yaml --vary rows
 refused "this is the scene for --vary with gap = 0.5" walls.yaml --vary gap
 refused "the parameter 'gap' is given twice" walls.yaml --vary gap=1:2 --vary gap=1:3
 refused "at most 2 parameters" "$ramp" --vary slope --vary friction --vary slope

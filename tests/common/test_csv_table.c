@@ -119,7 +119,7 @@ static void wrong_fields_are_refused_with_their_place(void **state) {
         {"t,0123456789012345678901234567890123456789,red,1,2,3,\n", "2:3: error: name: '01234567890123456789012345678"
                                                                     "90123456789' is longer than 39 bytes"},
         {"t,a;b,red,1,2,3,\n", "2:3: error: name: 'a;b' may only have letters, digits, spaces and -_.,:=+/()*[]"},
-        {"\xc3\xa4,\xc3\xa4,red,1,2,3,\n", "2:3: error: name: '\?\?' may only have"},
+        {"\xc3\xa4,\xc3\xa4\xc2\x85,red,1,2,3,\n", "2:3: error: name: '\?\?\?\?' may only have"}, /* a control */
         {"t,n,Red,1,2,3,\n", "2:5: error: word: 'Red' is not one of red, green, blue"},
         {"t,n,,1,2,3,\n", "2:5: error: word: the field is empty"},
         {"t,n,red,1.5,2,3,\n", "2:9: error: integer: '1.5' is not a whole number"},

@@ -319,10 +319,11 @@ static void a_camera_that_follows_the_run(void **state) {
     assert_verdicts(&regression, "vppppp", "physics changed");
     assert_int_equal(regression.frames[0].states, STATES_DIFFER_ELSEWHERE);
     assert_int_equal(regression.runs[0].difference.frame, 1);
-    /* The camera is the first cause, of all frames; the states are the second, of all others. */
+    /* The view, higher and so in a narrower panel, is the first cause, of all frames; the states are the second, of all
+       others. */
     assert_int_equal(regression.cause_count, 2);
     assert_true(regression.causes[0].of_view && regression.causes[0].count == FRAMES);
-    assert_non_null(strstr(cause_words(&regression.causes[0]).text, "frames 0 to 5: the camera differs: "));
+    assert_non_null(strstr(cause_words(&regression.causes[0]).text, "frames 0 to 5: the place of panel 1 differs: "));
     assert_string_equal(cause_words(&regression.causes[1]).text, "frames 1 to 5: states differ, body 1 first");
     regression_free(&regression);
     remove_runs();
