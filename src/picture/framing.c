@@ -50,13 +50,36 @@ static bool most_leave(const Extent *region, const Trajectory *run, int last) {
     return 2 * inside < all;
 }
 
+static int first_frame_of_bomb(const Trajectory *run) {
+    int first = 0;
+    while (first + 1 < run->frames && !trajectory_has(run, first, run->bomb)) first++;
+    return first;
+}
+
 /* The bomb where it appears, and its way to the impact, as far as within reach. */
 static void include_bomb(Extent *extent, const Trajectory *run, const Extent *reach, int impact) {
-    int first = 0;
     if (run->bomb < 0) return;
-    while (first + 1 < run->frames && !trajectory_has(run, first, run->bomb)) first++;
+    const int first = first_frame_of_bomb(run);
     for (int frame = first; frame == first || frame <= impact; frame++)
         if (extent_holds(reach, run, frame, run->bomb)) extent_include(extent, run, frame, run->bomb);
+}
+
+/* What is struck from the side falls to the far side, about as far as it is high. */
+static void include_far_side(Extent *extent, const Extent *standing, const Trajectory *run, const Extent *reach,
+                             int impact) {
+    if (run->bomb < 0 || impact < 1) return;
+    const int last = impact - 1;
+    int first = first_frame_of_bomb(run);
+    while (first < last && !extent_holds(reach, run, first, run->bomb)) first++;
+    if (first >= last) return;
+    const Vec2 *from = &run->position[(size_t)first * (size_t)run->bodies + (size_t)run->bomb];
+    const Vec2 *to = &run->position[(size_t)last * (size_t)run->bodies + (size_t)run->bomb];
+    const double along = (double)to->x - (double)from->x, height = standing->top - standing->bottom;
+    if (!(fabs(along) > fabs((double)to->y - (double)from->y))) return;
+    if (along > 0)
+        extent->right = fmax(extent->right, standing->right + height);
+    else
+        extent->left = fmin(extent->left, standing->left - height);
 }
 
 /* All that the moving bodies reach; without them, the static ones. */
@@ -75,6 +98,7 @@ Framing framing_of(const Trajectory *run) {
     if (most_leave(&near, run, impact >= 0 ? impact : run->frames - 1)) return frame_whole_run(run);
     Framing framing = {standing, (standing.left + standing.right) / 2};
     include_bomb(&framing.extent, run, &reach, impact);
+    include_far_side(&framing.extent, &standing, run, &reach, impact);
     return framing;
 }
 

@@ -131,6 +131,32 @@ static void a_bomb_from_far_away_does_not_count(void **state) {
     assert_true(far.scale >= near.scale);
 }
 
+/* Boxes on the ground, from -2 m to 2 m and 5 m high; the bomb comes by this way from the left or the right. */
+static Camera struck(float side, Vec2 way, const int size[2]) {
+    *run_position(run, 0, FIRST_BOX) = vec2(-1.5F, 0.5F);
+    *run_position(run, 0, SECOND_BOX) = vec2(1.5F, 4.5F);
+    run->size[FIRST_BOX] = run->size[SECOND_BOX] = vec2(1, 1);
+    *run_angle(run, 0, FIRST_BOX) = *run_angle(run, 0, SECOND_BOX) = 0;
+    for (int frame = 2; frame < run->frames; frame++) {
+        const float left = frame < 8 ? (float)(8 - frame) / 6 : 0; /* of the way */
+        *run_position(run, frame, BOMB_BODY) = vec2(side * (2.5F + left * way.x), 2.5F + left * way.y);
+    }
+    return camera_fit(run, size[0], size[1]);
+}
+
+static void what_is_struck_from_the_side_has_room_to_fall(void **state) {
+    (void)state;
+    add_impact(9);
+    static const int high[2] = {300, 900}; /* the width decides the scale */
+    for (int i = 0; i < SIZES; i++) {
+        const Camera from_left = struck(-1, vec2(4, 1), sizes[i]), from_right = struck(1, vec2(4, 1), sizes[i]);
+        assert_inside(&from_left, 2 + 5, 0, sizes[i]);
+        assert_inside(&from_right, -2 - 5, 0, sizes[i]);
+    }
+    const Camera steep = struck(-1, vec2(4, 4.1F), high), flat = struck(-1, vec2(4, 3.9F), high);
+    assert_true(steep.scale > 1.3 * flat.scale);
+}
+
 /* With room at both sides, the boxes from -2.5 m to 3 m are in the middle, wherever the bomb comes from. */
 static void what_stands_is_in_the_middle(void **state) {
     (void)state;
@@ -249,6 +275,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(where_most_bodies_leave_all_their_way_is_held, make, destroy),
         cmocka_unit_test_setup_teardown(a_bomb_from_far_away_does_not_count, make, destroy),
         cmocka_unit_test_setup_teardown(what_stands_is_in_the_middle, make, destroy),
+        cmocka_unit_test_setup_teardown(what_is_struck_from_the_side_has_room_to_fall, make, destroy),
         cmocka_unit_test_setup_teardown(a_view_is_shown_where_it_is, make, destroy),
         cmocka_unit_test_setup_teardown(a_look_sets_the_view, make, destroy),
         cmocka_unit_test_setup_teardown(the_ground_does_not_count, make, destroy),
