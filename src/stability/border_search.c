@@ -151,12 +151,14 @@ static bool add(BorderList *list, const Sample *holds, const Sample *fails, Verd
 
 /* No border: all decided values hold, or all fail. */
 static bool add_one_sided(const Search *search, BorderList *list, Error *error) {
-    const Sample *last = NULL, *first = NULL; /* last that holds; first that fails */
+    const Sample *last = NULL, *first = NULL; /* last that holds, before any that is undecided; first that fails */
+    bool decided = true;
     Verdict worst = VERDICT_SETTLES;
     for (int i = 0; i < search->count; i++) {
         const Sample *sample = sample_at(search, i);
         if (sample->verdict > worst) worst = sample->verdict;
-        if (sample->side == SIDE_HOLDS) last = sample;
+        decided = decided && sample->side != SIDE_UNDECIDED;
+        if (sample->side == SIDE_HOLDS && decided) last = sample;
         if (sample->side == SIDE_FAILS && first == NULL) first = sample;
     }
     return add(list, last, first, first != NULL ? first->verdict : worst, error);

@@ -165,6 +165,19 @@ static void undecided_values_at_the_end_are_reported(void **state) {
     assert_border(&list, 2, 32, NAN, VERDICT_EXPLODES);
 }
 
+/* From 19 to 26 only the first seed explodes; all other values hold. */
+static void undecided_values_in_the_middle_end_what_holds(void **state) {
+    (void)state;
+    Made made = {.undecided_from = 19, .undecided_to = 26, .failing_seed = 0, .how = VERDICT_FALLS};
+    BorderList list = search(&heights, &made);
+    assert_int_equal(list.count, 1);
+    assert_border(&list, 0, 18, NAN, VERDICT_EXPLODES);
+    BorderScan backwards = heights;
+    backwards.fails_low = true;
+    list = search(&backwards, &made);
+    assert_border(&list, 0, 27, NAN, VERDICT_EXPLODES);
+}
+
 static void values_are_rounded_as_in_tables(void **state) {
     (void)state;
     double values[BORDER_POINTS_MAX];
@@ -196,6 +209,7 @@ int main(void) {
                                        cmocka_unit_test(without_a_border_there_is_one_side),
                                        cmocka_unit_test(undecided_values_are_no_side_of_a_border),
                                        cmocka_unit_test(undecided_values_at_the_end_are_reported),
+                                       cmocka_unit_test(undecided_values_in_the_middle_end_what_holds),
                                        cmocka_unit_test(values_are_rounded_as_in_tables),
                                        cmocka_unit_test(a_failing_evaluation_ends_the_search)};
     return cmocka_run_group_tests(tests, NULL, NULL);
