@@ -6,7 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "study/speed_accuracy.h"
 #include "type/type_check.h"
 

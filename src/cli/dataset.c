@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "dataset/dataset.h"
 
 #include <stdio.h>

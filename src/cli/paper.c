@@ -4,7 +4,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "paper/figures/illustrations.h"
 #include "paper/figures/plots.h"
 #include "paper/report/paper_report.h"

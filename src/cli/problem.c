@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "dynamics/problem_file.h"
 #include "simulate/simulate.h"
 

@@ -4,7 +4,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/simulate_print.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "common/standard_io.h"
 #include "simulate/recorder.h"
 

@@ -7,7 +7,7 @@
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
 #include "cli/stability_print.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 #include "stability/stability_case.h"
 #include "stability/stability_figures.h"
 #include "stability/stability_studies.h"

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/notes.h"
 #include "common/names.h"
-#include "common/output_check.h"
+#include "npz/output_check.h"
 
 #include <assert.h>
 #include <stdio.h>

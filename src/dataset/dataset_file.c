@@ -4,7 +4,7 @@
    changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and, if recorded, context [rows, 17]. */
 #include "dataset/dataset.h"
 
-#include "common/npz.h"
+#include "npz/npz.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads contact problems from untrusted files. */
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "dynamics/problem_fields.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "dynamics/problem_fields.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A network: its layers, their widths, its weights. */
 #include "common/file.h"
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "figure/network_drawing.h"
 #include "figure/figure_kinds.h"
 #include "figure/latex.h"

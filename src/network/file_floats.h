@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The float32 arrays of a network's file: one list for writing and reading. */
 #pragma once
-#include "common/npz.h"
+#include "npz/npz.h"
 
 /* The range of the numbers, which must be finite. */
 typedef struct FloatRange {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Launches: start conditions of the bomb, and tables of them for training and studies. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "scene/scene.h"
 
 enum { LAUNCHES_MAX = 10000 };

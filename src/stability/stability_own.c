@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/stability_own.h"
 
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "common/names.h"
 #include "common/parse.h"
 

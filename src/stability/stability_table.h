@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of a stability study: their rows and layouts (common/csv_table.h), used by the study, the figures and the
+/* The tables of a stability study: their rows and layouts (csv/csv_table.h), used by the study, the figures and the
    command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a network. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "stability/verdict_look.h"
 
 enum {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* chart.csv: speed and accuracy of every method; one row for each scene, method, setting, protocol and phase. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "simulate/phases.h"
 
 enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };

@@ -2,7 +2,7 @@
 /* Every method's error next to the error that its best rival (rival_curves.h) has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "study/rival_curves.h"
 
 typedef struct EqualTimeRow {

@@ -2,7 +2,7 @@
 #include "trajectory/csv_head.h"
 
 #include "common/array.h"
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "common/nearest.h"
 #include "common/parse.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory/csv_rows.h"
 
-#include "common/csv.h"
+#include "csv/csv.h"
 #include "common/nearest.h"
 #include "common/parse.h"
 

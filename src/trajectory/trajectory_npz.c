@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory/trajectory_npz.h"
 
-#include "common/npz_stream.h"
+#include "npz/npz_stream.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "common/trace.h"
 #include "trajectory/run_arrays.h"
 #include "trajectory/trajectory.h"

@@ -145,8 +145,8 @@ kill -INT $training
 wait $training
 equal "status after Ctrl-C" $? 0
 grep -q "stopped early; 132 parameters -> cut.npz" cut.out || fail "Ctrl-C: $(tail -n 2 cut.out cut.err)"
-run 0 train pairs.npz -o more.npz --iterations 1 --from cut.npz
-rm cut.npz
+run 0 train pairs.npz -o after.npz --iterations 1 --from cut.npz
+rm cut.npz after.npz
 
 for optimizer in bfgs gd lm; do
     run 0 train pairs.npz -o $optimizer.npz --optimizer $optimizer --iterations 5

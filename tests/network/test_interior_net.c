@@ -2,7 +2,7 @@
 /* Files of interior-net, and the logarithm and power that its kernels take from bits. */
 #include "testing.h"
 
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "network/interior_net.h"
 
 #include <math.h>

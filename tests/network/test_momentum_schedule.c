@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "network/momentum_schedule.h"
 
 #include <math.h>

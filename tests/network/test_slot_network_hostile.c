@@ -3,7 +3,7 @@
 #include "slot_networks.h"
 
 #include "common/file.h"
-#include "common/npz.h"
+#include "npz/npz.h"
 
 /* A valid file of two slots between two bodies, array by array, for tests that change one. */
 static const int32_t version = SLOT_NETWORK_VERSION, zero, one = 1, two = 2, a[2] = {0, 0}, b[2] = {1, 1};

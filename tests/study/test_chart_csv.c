@@ -78,7 +78,7 @@ static void expect_refused(const char *path, const char *message) {
     assert_error(error, ERROR_INPUT, message);
 }
 
-/* The kinds of the columns: common/csv_table. */
+/* The kinds of the columns: csv/csv_table. */
 static void broken_tables_are_refused_with_their_place(void **state) {
     (void)state;
     static const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/report/template_value.h"
 
-#include "common/csv.h"
+#include "csv/csv.h"
 #include "common/file.h"
 #include "common/utf8.h"
 

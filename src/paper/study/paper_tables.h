@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The CSV files that the paper's study writes: their rows and layouts (common/csv_table.h), for the study and for the
+/* The CSV files that the paper's study writes: their rows and layouts (csv/csv_table.h), for the study and for the
    figures and the report that read them. NAN where a number is not applicable. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 #include "paper/study/pair_rates.h"
 #include "paper/study/paper_data.h"
 #include "training/law_weights.h"

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading .npz. */
-#include "common/npz.h"
+#include "npz/npz.h"
 
-#include "common/npy.h"
+#include "npz/npy.h"
 #include "common/utf8.h"
 #include "common/file.h"
 #include "common/lfs_pointer.h"
 #include "common/standard_io.h"
 #include "common/trace.h"
-#include "common/zip_directory.h"
+#include "npz/zip_directory.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "common/csv.h"
+#include "csv/csv.h"
 
 static const char *write_table(const char *text, size_t size) {
     return write_bytes(temporary_path("table.csv"), text, size);

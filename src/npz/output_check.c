@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/output_check.h"
+#include "npz/output_check.h"
 
 #include "common/file.h"
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "common/standard_io.h"
 
 #include <errno.h>

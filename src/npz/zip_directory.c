@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checks a zip's directory before libzip reads it. */
-#include "common/zip_directory.h"
+#include "npz/zip_directory.h"
 
 #include <errno.h>
 #include <stddef.h>

@@ -2,7 +2,7 @@
 /* The header of one .npy array (NumPy format specification). npz_stream.c writes it before the data of each member,
    npz.c parses it. Only those two and npy_convert.c include this file. */
 #pragma once
-#include "common/npz.h"
+#include "npz/npz.h"
 
 #include <stdbool.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/csv_cell.h"
+#include "csv/csv_cell.h"
 
 #include "common/names.h"
 #include "common/parse.h"

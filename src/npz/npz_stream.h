@@ -3,9 +3,9 @@
    are kept, the rest is in unnamed files beside the output. npz_write() is the same with all arrays given at once, and
    gives the same bytes. */
 #pragma once
-#include "common/npz.h"
+#include "npz/npz.h"
 
-/* From this size on, an array is packed while it grows (common/npz_pack.h). */
+/* From this size on, an array is packed while it grows (npz/npz_pack.h). */
 enum { NPZ_LARGE = 1 << 20 };
 
 typedef struct NpzStream NpzStream;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* RFC 4180 in one pass: fields are unquoted in place and end in NUL. */
-#include "common/csv.h"
+#include "csv/csv.h"
 
 #include "common/array.h"
 #include "common/file.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/npz_stream.h"
+#include "npz/npz_stream.h"
 
 #include "common/array.h"
 #include "common/file.h"
-#include "common/npy.h"
-#include "common/npz_pack.h"
+#include "npz/npy.h"
+#include "npz/npz_pack.h"
 #include "common/utf8.h"
-#include "common/zip_write.h"
+#include "npz/zip_write.h"
 
 #include <assert.h>
 #include <errno.h>

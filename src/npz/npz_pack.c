@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/npz_pack.h"
+#include "npz/npz_pack.h"
 
 #include "common/file.h"
 

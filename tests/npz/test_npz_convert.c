@@ -2,7 +2,7 @@
 /* Arrays of other types and orders, as NumPy writes them: converted exactly, or refused with the value that does not fit. */
 #include "testing.h"
 
-#include "common/npz.h"
+#include "npz/npz.h"
 #include "python.h"
 
 #include <math.h>

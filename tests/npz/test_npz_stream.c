@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "common/file.h"
-#include "common/npz_stream.h"
+#include "npz/npz_stream.h"
 
 #include <dirent.h>
 #include <signal.h>

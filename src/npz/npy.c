@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The header of one .npy array. */
-#include "common/npy.h"
+#include "npz/npy.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Part of csv_table: one field of a row. */
 #pragma once
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 
 typedef struct CsvCell {
     const Csv *csv;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 
 #include "common/file.h"
 

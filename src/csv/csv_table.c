@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/csv_table.h"
+#include "csv/csv_table.h"
 
-#include "common/csv_cell.h"
+#include "csv/csv_cell.h"
 #include "common/file.h"
 #include "common/names.h"
 #include "common/utf8.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of structs, read from and written to CSV files (common/csv.h). The module that writes a file declares its layout
+/* Rows of structs, read from and written to CSV files (csv/csv.h). The module that writes a file declares its layout
    once, as a constant beside the row's struct; writers and readers share it:
 
      typedef struct RateRow {
@@ -16,7 +16,7 @@
      const CsvLayout rate_layout = CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000);
 */
 #pragma once
-#include "common/csv.h"
+#include "csv/csv.h"
 
 enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 24, CSV_PATH_SIZE = 4096 };
 

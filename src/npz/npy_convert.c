@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Arrays of other types and orders than those that twinbox writes. */
-#include "common/npy.h"
+#include "npz/npy.h"
 
 #include <inttypes.h>
 #include <math.h>

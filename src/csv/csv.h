@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV files (RFC 4180): a header line, then rows with the same number of fields. Fields are separated by commas. A field
-   in double quotes may contain commas and doubled quotes. Typed rows: common/csv_table.h. */
+   in double quotes may contain commas and doubled quotes. Typed rows: csv/csv_table.h. */
 #pragma once
 #include "common/error.h"
 

@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "common/file.h"
-#include "common/npz.h"
+#include "npz/npz.h"
 
 #include <time.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What all readers of .npz files share. */
-#include "common/npz.h"
+#include "npz/npz.h"
 
 #include <stdlib.h>
 #include <string.h>

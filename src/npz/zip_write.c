@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
-#include "common/zip_write.h"
+#include "npz/zip_write.h"
 
 #include "common/array.h"
 #include "common/file.h"
