@@ -1,184 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading .npz. */
-#include "npz/npz.h"
+/* Reading the arrays of .npz. */
+#include "npz/npz_file.h"
 
-#include "npz/npy.h"
 #include "common/utf8.h"
-#include "common/file.h"
-#include "common/lfs_pointer.h"
-#include "common/standard_io.h"
-#include "common/trace.h"
-#include "npz/zip_directory.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <zip.h>
-
-enum { MAX_ARRAYS = 256, NAME_SIZE = 64 };
-
-/* Deflate cannot exceed this ratio, so a member that claims more is invalid. */
-enum { DEFLATE_BEST_RATIO = 1032 };
-
-typedef struct StoredArray {
-    char name[NAME_SIZE]; /* without .npy */
-    NpyHead head;
-} StoredArray;
-
-struct NpzFile {
-    zip_t *archive;
-    char *path;
-    uint64_t bytes_read; /* inflated so far, against NPZ_MAX_BYTES */
-    bool converts;
-    zip_uint64_t count;
-    StoredArray arrays[MAX_ARRAYS]; /* in the order of the archive */
-};
-
-/* Errors of libzip are input errors, except these two. */
-static bool zip_failed(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
-    int code = zip_error_code_zip(cause);
-    if (code == ZIP_ER_MEMORY) return error_memory(error, file->path);
-    if (code == ZIP_ER_READ) return error_system(error, file->path, "cannot read: %s", zip_error_strerror(cause));
-    return error_input(error, file->path, "array '%s' is damaged: %s", name, zip_error_strerror(cause));
-}
-
-static const StoredArray *find(const NpzFile *file, const char *name) {
-    for (zip_uint64_t i = 0; i < file->count; i++)
-        if (strcmp(file->arrays[i].name, name) == 0) return &file->arrays[i];
-    return NULL;
-}
-
-/* The member's name without ".npy". Only letters, digits, '_', '-' and '.', since messages print it on a terminal. */
-static bool take_name(NpzFile *file, const char *member, char name[NAME_SIZE], Error *error) {
-    size_t length = strlen(member);
-    bool plain = length > 4 && length - 4 < NAME_SIZE;
-    for (size_t i = 0; plain && i < length; i++) plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
-    if (!plain || strcmp(member + length - 4, ".npy") != 0)
-        return error_input(error, file->path, "holds a member that is not a named .npy array");
-    memcpy(name, member, length - 4);
-    if (find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
-    return true;
-}
-
-/* Before any data is inflated, the directory's entry of a member must agree with its header. */
-static bool check_member(const NpzFile *file, const StoredArray *array, const zip_stat_t *status, Error *error) {
-    if (status->encryption_method != ZIP_EM_NONE)
-        return error_input(error, file->path, "array '%s' is encrypted", array->name);
-    if (status->comp_method != ZIP_CM_STORE && status->comp_method != ZIP_CM_DEFLATE)
-        return error_input(error, file->path, "array '%s' is neither stored nor deflated", array->name);
-    if (status->size / DEFLATE_BEST_RATIO > status->comp_size)
-        return error_input(error, file->path, "array '%s' is damaged: it cannot hold %" PRIu64 " bytes", array->name,
-                           (uint64_t)status->size);
-    return true;
-}
-
-static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uint64_t declared, Error *error) {
-    zip_file_t *member = zip_fopen_index(file->archive, index, 0);
-    if (member == NULL) return zip_failed(file, array->name, zip_get_error(file->archive), error);
-    char text[NPY_HEAD_MAX], reason[NPY_REASON_SIZE];
-    zip_int64_t size = zip_fread(member, text, sizeof text);
-    bool done;
-    if (size < 0)
-        done = zip_failed(file, array->name, zip_file_get_error(member), error);
-    else if (!npy_parse_head(&array->head, text, (size_t)size, reason))
-        done = error_input(error, file->path, "'%s' is %s", array->name, reason);
-    else if (array->head.head_size + array->head.data_size != declared)
-        done = error_input(error, file->path, "array '%s' is damaged: %" PRIu64 " bytes instead of %" PRIu64,
-                           array->name, declared, array->head.head_size + array->head.data_size);
-    else
-        done = true;
-    zip_fclose(member);
-    return done;
-}
-
-static bool read_directory(NpzFile *file, Error *error) {
-    zip_int64_t count = zip_get_num_entries(file->archive, 0);
-    if (count < 1 || count > MAX_ARRAYS)
-        return error_input(error, file->path, "holds %" PRId64 " arrays; expected 1 to %d", (int64_t)count, MAX_ARRAYS);
-    for (; file->count < (zip_uint64_t)count; file->count++) {
-        StoredArray *array = &file->arrays[file->count];
-        zip_stat_t status;
-        if (zip_stat_index(file->archive, file->count, 0, &status) != 0)
-            return zip_failed(file, "?", zip_get_error(file->archive), error);
-        if (!take_name(file, status.name, array->name, error) || !check_member(file, array, &status, error) ||
-            !read_head(file, file->count, array, status.size, error))
-            return false;
-    }
-    return true;
-}
-
-static bool refuse_pointer(int descriptor, const char *path, Error *error) {
-    char start[64];
-    ssize_t size = pread(descriptor, start, sizeof start, 0);
-    return size < 0 ? error_system(error, path, "cannot read: %s", strerror(errno))
-                    : lfs_pointer_refuse(start, (size_t)size, path, error);
-}
-
-/* Opens the file and checks that it is safe to pass to libzip. */
-static int open_checked(const char *path, Error *error) {
-    /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
-    int descriptor =
-        path_is_standard(path) ? standard_input_open(error) : open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    struct stat status;
-    if (descriptor < 0) {
-        file_open_error(path, error);
-        return -1;
-    }
-    bool done;
-    if (fstat(descriptor, &status) != 0)
-        done = error_system(error, path, "cannot read: %s", strerror(errno));
-    else if (!S_ISREG(status.st_mode))
-        done = error_input(error, path, "not a regular file");
-    else if ((uint64_t)status.st_size > NPZ_MAX_BYTES)
-        done = error_input(error, path, "larger than 2 GiB");
-    else
-        done = refuse_pointer(descriptor, path, error) &&
-               zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
-    if (done) trace_line("read %s, %jd bytes", path, (intmax_t)status.st_size);
-    if (done) return descriptor;
-    close(descriptor);
-    return -1;
-}
-
-static bool open_archive(NpzFile *file, Error *error) {
-    int descriptor = open_checked(file->path, error), cause;
-    if (descriptor < 0) return false;
-    file->archive = zip_fdopen(descriptor, 0, &cause);
-    if (file->archive != NULL) return true;
-    zip_error_t reason;
-    zip_error_init_with_code(&reason, cause);
-    if (cause == ZIP_ER_MEMORY)
-        error_memory(error, file->path);
-    else
-        error_input(error, file->path, "not an intact .npz: %s", zip_error_strerror(&reason));
-    zip_error_fini(&reason);
-    close(descriptor);
-    return false;
-}
-
-NpzFile *npz_open(const char *path, Error *error) {
-    NpzFile *file = calloc(1, sizeof *file);
-    if (file != NULL) file->path = strdup(path);
-    if (file == NULL || file->path == NULL)
-        error_memory(error, path);
-    else if (open_archive(file, error) && read_directory(file, error))
-        return file;
-    npz_close(file);
-    return NULL;
-}
-
-void npz_close(NpzFile *file) {
-    if (file == NULL) return;
-    if (file->archive != NULL) zip_discard(file->archive);
-    free(file->path);
-    free(file);
-}
 
 void npz_convert(NpzFile *file) { file->converts = true; }
 
@@ -188,7 +17,7 @@ const char *npz_name(const NpzFile *file, size_t index) {
 
 const char *npz_path(const NpzFile *file) { return file->path; }
 
-bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
+bool npz_has(const NpzFile *file, const char *name) { return npz_find(file, name) != NULL; }
 
 static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
     return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
@@ -201,7 +30,7 @@ static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
 }
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
-    const StoredArray *array = find(file, name);
+    const StoredArray *array = npz_find(file, name);
     if (array == NULL) {
         error_input(error, file->path, "has no array '%s'", name);
         return NULL;
@@ -235,7 +64,7 @@ static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *me
     zip_int64_t head = zip_fread(member, skipped, array->head.head_size);
     zip_int64_t size = head < 0 ? -1 : zip_fread(member, data, array->head.data_size);
     zip_int64_t after = size < 0 ? -1 : zip_fread(member, &more, 1);
-    if (after < 0) return zip_failed(file, array->name, zip_file_get_error(member), error);
+    if (after < 0) return npz_failed(file, array->name, zip_file_get_error(member), error);
     if ((uint64_t)size == array->head.data_size && after == 0) return true;
     return error_input(error, file->path, "array '%s' is damaged: %s", array->name, after > 0 ? "too long" : "cut off");
 }
@@ -254,7 +83,7 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     }
     zip_file_t *member = zip_fopen_index(file->archive, (zip_uint64_t)(array - file->arrays), 0);
     bool done = member != NULL ? inflate_data(file, array, member, data, error)
-                               : zip_failed(file, array->name, zip_get_error(file->archive), error);
+                               : npz_failed(file, array->name, zip_get_error(file->archive), error);
     if (member != NULL) zip_fclose(member);
     if (done && array->head.big_endian) npy_swap(&array->head, data);
     if (done) return data;
