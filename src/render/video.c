@@ -170,8 +170,8 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
 
 /* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
 static bool run_for_gif(const Encoding *encoding, Error *error) {
-    static const char *const find[] = {"-vf", GIF_SCALE ",palettegen=stats_mode=full", "-frames:v", "1", "-update", "1",
-                                       NULL};
+    static const char filter[] = GIF_SCALE ",palettegen=stats_mode=full";
+    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-update", "1", NULL};
     Arguments use = {0};
     ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
     add(&use, encoding->format->encoder);

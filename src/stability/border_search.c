@@ -189,8 +189,9 @@ bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *
     Search search = {.scan = &turned, .probe = probe};
     list->count = 0;
     bool ok = scan_coarsely(&search, error);
-    if (ok && scan->either)
-        turned.fails_low = search.samples[0].side == SIDE_FAILS && search.samples[search.count - 1].side == SIDE_HOLDS;
+    const Sample *first = search.samples;
+    if (ok && scan->either && first != NULL)
+        turned.fails_low = first->side == SIDE_FAILS && first[search.count - 1].side == SIDE_HOLDS;
     ok = ok && refine(&search, error) && list_borders(&search, list, error);
     free(search.samples);
     return ok;

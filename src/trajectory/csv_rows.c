@@ -47,13 +47,13 @@ static char *trim(char *text) {
 /* Takes the next line. */
 static bool split(CsvRows *rows, Fields *fields, Error *error) {
     size_t length = strcspn(rows->at, "\n"), used = length;
+    fields->count = 0;
     if (used > 0 && rows->at[used - 1] == '\r') used--;
     if (used == 0) return csv_rows_error(rows, rows->line, error, "the line is empty");
     if (used >= LINE_SIZE) return csv_rows_error(rows, rows->line, error, "longer than %d bytes", LINE_SIZE - 1);
     memcpy(fields->line, rows->at, used);
     fields->line[used] = '\0';
     rows->at += length + (rows->at[length] == '\n');
-    fields->count = 0;
     for (char *next = fields->line; next != NULL;) {
         char *field = next, *comma = strchr(field, ',');
         if (fields->count == FIELDS_MAX)
