@@ -64,9 +64,12 @@ static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *me
     zip_int64_t head = zip_fread(member, skipped, array->head.head_size);
     zip_int64_t size = head < 0 ? -1 : zip_fread(member, data, array->head.data_size);
     zip_int64_t after = size < 0 ? -1 : zip_fread(member, &more, 1);
-    if (after < 0) return npz_failed(file, array->name, zip_file_get_error(member), error);
     if ((uint64_t)size == array->head.data_size && after == 0) return true;
-    return error_input(error, file->path, "array '%s' is damaged: %s", array->name, after > 0 ? "too long" : "cut off");
+    if (after < 0)
+        npz_failed(file, array->name, zip_file_get_error(member), error);
+    else
+        error_input(error, file->path, "array '%s' is damaged: %s", array->name, after > 0 ? "too long" : "cut off");
+    return false;
 }
 
 static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
@@ -82,9 +85,11 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
         return NULL;
     }
     zip_file_t *member = zip_fopen_index(file->archive, (zip_uint64_t)(array - file->arrays), 0);
-    bool done = member != NULL ? inflate_data(file, array, member, data, error)
-                               : npz_failed(file, array->name, zip_get_error(file->archive), error);
-    if (member != NULL) zip_fclose(member);
+    bool done = member != NULL && inflate_data(file, array, member, data, error);
+    if (member != NULL)
+        zip_fclose(member);
+    else
+        npz_failed(file, array->name, zip_get_error(file->archive), error);
     if (done && array->head.big_endian) npy_swap(&array->head, data);
     if (done) return data;
     free(data);
