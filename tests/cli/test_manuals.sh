@@ -70,6 +70,9 @@ for name in $commands; do
     done
 done
 
+# Indented lines of a description are code.
+shown "$pages/man1/twinbox-import.1" | grep -qx ' *# dt: 1/60' || fail "the code in the page of import is filled"
+
 # Each line of code and each key of a table is in the page of its format.
 for name in $formats; do
     line=$(grep "^$name|" "$manuals/pages.txt")

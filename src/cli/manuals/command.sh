@@ -62,6 +62,7 @@ help2man --no-info --section 1 --manual Twinbox --source "twinbox $version" --ve
     --include "$include" "sh '$0' --as-help '$twinbox' $command" |
     sed -e "/^\.\\\\\" DO NOT MODIFY/d" \
         -e "s/^\.TH .*/.TH TWINBOX$(printf %s "${command:+-$command}" | tr a-z A-Z) 1 \"\" \"twinbox $version\" Twinbox/" \
-        -e "/^\.SH NAME/{n;s/.*/twinbox${command:+\\\\-$command} \\\\- $summary/;}" >"$include.page"
+        -e "/^\.SH NAME/{n;s/.*/twinbox${command:+\\\\-$command} \\\\- $summary/;}" |
+    awk -f "$folder/code.awk" >"$include.page"
 grep -q '^\.SH OPTIONS' "$include.page" || [ -z "$command" ]
 cp "$include.page" "$page"

@@ -31,14 +31,14 @@ function(add_manual section name)
 endfunction()
 
 add_manual(1 twinbox SCRIPT ${folder}/command.sh $<TARGET_FILE:twinbox>
-           "rigid-box physics engine and neural networks, side by side" DEPENDS twinbox ${folder}/help.awk)
+           "rigid-box physics engine and neural networks, side by side" DEPENDS twinbox ${folder}/help.awk ${folder}/code.awk)
 file(READ ${commands_header} text)
 string(REGEX MATCHALL "COMMAND\\([a-z]+, *\"[^\"]*\"" lines "${text}")
 foreach(line ${lines})
     string(REGEX MATCH "COMMAND\\(([a-z]+), *\"([^\"]*)\"" line "${line}")
     set(command ${CMAKE_MATCH_1})
     add_manual(1 twinbox-${command} SCRIPT ${folder}/command.sh $<TARGET_FILE:twinbox> "${CMAKE_MATCH_2}" ${command}
-               DEPENDS twinbox ${folder}/help.awk)
+               DEPENDS twinbox ${folder}/help.awk ${folder}/code.awk)
 endforeach()
 
 file(STRINGS ${folder}/pages.txt lines)
