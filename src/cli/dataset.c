@@ -2,8 +2,8 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "npz/output_check.h"
 #include "dataset/dataset.h"
+#include "npz/output_check.h"
 
 #include <stdio.h>
 

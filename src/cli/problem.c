@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "npz/output_check.h"
 #include "dynamics/problem_file.h"
+#include "npz/output_check.h"
 #include "simulate/simulate.h"
 
 #include <math.h>

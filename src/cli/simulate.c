@@ -4,8 +4,9 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/simulate_print.h"
-#include "npz/output_check.h"
+#include "common/file.h"
 #include "common/standard_io.h"
+#include "npz/output_check.h"
 #include "simulate/recorder.h"
 
 #include <math.h>
@@ -80,17 +81,13 @@ static bool override_scene(Scene *scene, const Options *options, Error *error) {
     return override_bomb(&scene->bomb, options, error);
 }
 
-static bool ends_with(const char *text, const char *ending) {
-    size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && strcmp(text + length - tail, ending) == 0;
-}
+static bool is_csv(const char *path) { return file_name_ends_with(path, ".csv"); }
 
 static Recorder *create_recorder(const Scene *scene, const Method *method, const Options *options, Error *error) {
     RecorderOutput outputs[RECORDER_OUTPUTS_MAX];
     int count = 0;
     if (options->output != NULL)
-        outputs[count++] =
-            (RecorderOutput){options->output, ends_with(options->output, ".csv") ? TRAJECTORY_CSV : TRAJECTORY_NPZ};
+        outputs[count++] = (RecorderOutput){options->output, is_csv(options->output) ? TRAJECTORY_CSV : TRAJECTORY_NPZ};
     if (options->hashes != NULL) outputs[count++] = (RecorderOutput){options->hashes, TRAJECTORY_HASHES};
     return recorder_create_to(scene, method, outputs, count, options->no_contacts, error);
 }
@@ -138,10 +135,10 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
 
 static bool check_outputs(const Options *options, Error *error) {
     const char *output = options->output;
-    if (output != NULL && !path_is_standard(output) && !ends_with(output, ".npz") && !ends_with(output, ".csv"))
+    if (output != NULL && !path_is_standard(output) && !file_name_ends_with(output, ".npz") && !is_csv(output))
         return error_input(error, output, "the name of a trajectory must end in .npz or .csv");
     if (output != NULL &&
-        !(ends_with(output, ".csv") ? output_check_file(output, ".csv", error) : output_check_npz(output, NULL, error)))
+        !(is_csv(output) ? output_check_file(output, ".csv", error) : output_check_npz(output, NULL, error)))
         return false;
     return (options->hashes == NULL || output_check_file(options->hashes, NULL, error)) &&
            (options->verdict == NULL || output_check_file(options->verdict, NULL, error));

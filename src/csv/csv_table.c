@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "csv/csv_table.h"
 
-#include "csv/csv_cell.h"
 #include "common/file.h"
 #include "common/names.h"
 #include "common/utf8.h"
+#include "csv/csv_cell.h"
 
 #include <assert.h>
 #include <stdarg.h>

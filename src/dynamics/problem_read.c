@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads contact problems from untrusted files. */
-#include "npz/npz.h"
 #include "dynamics/problem_fields.h"
+#include "npz/npz.h"
 
 #include <math.h>
 #include <stdlib.h>

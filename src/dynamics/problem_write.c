@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "npz/npz.h"
 #include "dynamics/problem_fields.h"
+#include "npz/npz.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A network: its layers, their widths, its weights. */
 #include "common/file.h"
-#include "npz/npz.h"
-#include "figure/network_drawing.h"
 #include "figure/figure_kinds.h"
 #include "figure/latex.h"
+#include "figure/network_drawing.h"
 #include "figure/run_view.h"
+#include "npz/npz.h"
 #include "picture/style.h"
 
 #include <math.h>

@@ -3,9 +3,9 @@
 
 #include "common/array.h"
 #include "common/file.h"
+#include "common/utf8.h"
 #include "npz/npy.h"
 #include "npz/npz_pack.h"
-#include "common/utf8.h"
 #include "npz/zip_write.h"
 
 #include <assert.h>

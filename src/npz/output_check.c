@@ -2,8 +2,8 @@
 #include "npz/output_check.h"
 
 #include "common/file.h"
-#include "npz/npz.h"
 #include "common/standard_io.h"
+#include "npz/npz.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -14,11 +14,6 @@
 #include <unistd.h>
 
 enum { KIND_SIZE = 64 };
-
-static bool ends_with(const char *text, const char *ending) {
-    const size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && strcmp(text + length - tail, ending) == 0;
-}
 
 /* Makes a file and removes it: permissions alone do not tell, as for root, full tables or /proc. `folder` ends in a
    slash or is empty. */
@@ -47,7 +42,8 @@ bool output_check_file(const char *path, const char *ending, Error *error) {
     const bool there = stat(path, &status) == 0;
     if (there && S_ISDIR(status.st_mode)) return error_input(error, path, "is a folder; expected the name of a file");
     if (there && (!S_ISREG(status.st_mode) || is_standard_output(&status))) return true;
-    if (ending != NULL && !ends_with(path, ending)) return error_input(error, path, "the name must end in %s", ending);
+    if (ending != NULL && !file_name_ends_with(path, ending))
+        return error_input(error, path, "the name must end in %s", ending);
     return file_path(folder, sizeof folder, error, "%.*s", (int)file_folder_length(path), path) &&
            try_folder(folder, path, error);
 }

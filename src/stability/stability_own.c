@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/stability_own.h"
 
-#include "csv/csv_table.h"
 #include "common/names.h"
 #include "common/parse.h"
+#include "csv/csv_table.h"
 
 #include <ctype.h>
 #include <math.h>

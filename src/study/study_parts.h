@@ -2,8 +2,8 @@
 /* A long study in parts. Each finished part is stored in a file, so that an interrupted study can be resumed at the
    part that it was working on. A part's text has lines "TABLE:row"; the tables are assembled from them at the end. */
 #pragma once
-#include "csv/csv_table.h"
 #include "common/progress.h"
+#include "csv/csv_table.h"
 
 #include <stdint.h>
 

@@ -2,9 +2,9 @@
 #include "trajectory/csv_head.h"
 
 #include "common/array.h"
-#include "csv/csv_table.h"
 #include "common/nearest.h"
 #include "common/parse.h"
+#include "csv/csv_table.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

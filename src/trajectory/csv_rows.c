@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory/csv_rows.h"
 
-#include "csv/csv.h"
 #include "common/nearest.h"
 #include "common/parse.h"
+#include "csv/csv.h"
 
 #include <stdarg.h>
 #include <stdio.h>

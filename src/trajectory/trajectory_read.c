@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads trajectories from untrusted files. */
-#include "npz/npz.h"
 #include "common/trace.h"
+#include "npz/npz.h"
 #include "trajectory/run_arrays.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/trajectory_name.h"

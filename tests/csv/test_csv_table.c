@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "csv/csv_table.h"
 #include "common/file.h"
+#include "csv/csv_table.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "npz/npz.h"
 #include "dataset/dataset.h"
+#include "npz/npz.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 /* Files of interior-net, and the logarithm and power that its kernels take from bits. */
 #include "testing.h"
 
-#include "npz/npz.h"
 #include "network/interior_net.h"
+#include "npz/npz.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/report/template.h"
 
-#include "csv/csv.h"
 #include "common/file.h"
 #include "common/parse.h"
+#include "csv/csv.h"
 #include "paper/report/template_value.h"
 
 #include <limits.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "paper/report/template_value.h"
 
-#include "csv/csv.h"
 #include "common/file.h"
 #include "common/utf8.h"
+#include "csv/csv.h"
 
 #include <ctype.h>
 #include <math.h>
