@@ -5,7 +5,7 @@
 
 bool path_is_standard(const char *path);
 
-/* Opens a copy of standard input, from its beginning and each time anew, so that it can be read more than once and sought.
+/* Opens a copy of standard input, each time from its beginning, so that it can be read more than once and sought.
    The copy has no name. -1 with error set. */
 int standard_input_open(Error *error);
 
