@@ -13,7 +13,7 @@ typedef struct CompletionWords {
 } CompletionWords;
 
 /* Prints what the last word may become, one line each: the whole word, a tab, a description. A line
-   "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if there are none, whose names follow BEGIN
+   "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if none is given, whose names follow BEGIN
    in the word; "<folders>BEGIN" stands for folders. */
 void completion_print(const CompletionWords *words);
 

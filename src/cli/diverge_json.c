@@ -15,7 +15,7 @@ static void write_run(JsonWriter *json, const char *path, const Trajectory *run)
     json_end(json);
 }
 
-/* The number of a frame; negative: there is none. */
+/* The number of a frame; negative: no frame. */
 static void put_frame(JsonWriter *json, const char *key, int frame) {
     if (frame >= 0)
         json_put_int(json, key, frame);

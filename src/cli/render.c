@@ -36,8 +36,7 @@ static const Option option_table[] = {
      OPTION_INT(Options, render.slow, 2, RENDER_SLOW_MAX)},
     {"--fps", 0, "N",
      "Pictures per second, 1 to 240, in real time: frames are left out, or poses interpolated between them (default: "
-     "every "
-     "frame of the run)",
+     "every frame of the run)",
      OPTION_DOUBLE(Options, render.fps, RENDER_FPS_MIN, RENDER_FPS_MAX)},
     {"--duration", 0, "SECONDS", "Length of the film with its cards; the run is shown faster or slower to fit",
      OPTION_DOUBLE(Options, render.duration, RENDER_DURATION_MIN, RENDER_DURATION_MAX)},
@@ -76,8 +75,7 @@ static const Option option_table[] = {
     {"--theme", 0, "light|dark", "Colours (default: light)", OPTION_ENUM(Options, render.look.theme, look_theme_names)},
     {"--caption", 0, "TEXT",
      "Caption of a run, instead of its method's name and description (may be repeated: one per run, in their order; "
-     "\"\" keeps "
-     "the name)",
+     "\"\" keeps the name)",
      OPTION_TEXTS(Options, render.captions, caption_count)},
     {"--costs", 0, "FILE.csv", "Add the time per step to the captions, from a chart.csv of 'twinbox chart'",
      OPTION_TEXT(Options, costs)},

@@ -68,7 +68,7 @@ static const char *compare(double error, double rival) {
     return error < rival ? "better than" : error > rival ? "worse than" : "as good as";
 }
 
-/* Of the last round; without held-out impacts there is none. */
+/* Of the last round; absent without held-out impacts. */
 static void print_verdict(const SceneNetVerdict *verdict) {
     if (verdict->samples == 0) {
         printf("verdict: none, as no held-out launch has an impact\n");

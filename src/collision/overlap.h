@@ -15,10 +15,10 @@ typedef struct OverlapSpan {
     double from, to; /* m */
 } OverlapSpan;
 
-/* The x of b's centre at which it would overlap a by more than `depth`. Empty (from >= to) if there is none. With
+/* The x of b's centre at which it would overlap a by more than `depth`. Empty (from >= to) if it never would. With
    any_rotation, b may be turned: the span contains those of all its rotations. */
 OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation);
 
-/* Finds two boxes, not both fixed, that overlap by more than `depth`; found->a is -1 if there are none. Stops at the
+/* Finds two boxes, not both fixed, that overlap by more than `depth`; found->a is -1 if no two do. Stops at the
    first pair, so that memory is linear in `count` for any boxes. False when memory is short. */
 bool overlap_find(const Box *boxes, const bool *fixed, int count, double depth, BodyPair *found);

@@ -22,7 +22,7 @@ struct NpzFile {
     StoredArray arrays[NPZ_MAX_ARRAYS]; /* in the order of the archive */
 };
 
-/* NULL if there is none of this name. */
+/* NULL if no array has this name. */
 const StoredArray *npz_find(const NpzFile *file, const char *name);
 
 /* Sets the error for a failure of libzip at this array, and returns false. */

@@ -51,7 +51,7 @@ typedef enum PairTarget {
 
 extern const char *const pair_target_names[PAIR_TARGETS + 1]; /* ends in NULL */
 
-/* Finds the view by its inputs; false if there is none. */
+/* Finds the view by its inputs; false if no view has them. */
 bool pair_view_of_inputs(const char *inputs, PairView *view);
 
 /* Fills inputs[pair_views[view].count] of the pair whose contacts begin at `first`. now: velocities and impulses so

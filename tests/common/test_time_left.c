@@ -24,7 +24,7 @@ static double true_left(const Work *work, double time) {
 
 enum { REPORTS_PER_SECOND = 50 };
 
-/* Reports up to `time`, then the estimate; NaN if there is none. */
+/* Reports up to `time`, then the estimate; NaN without one. */
 static double estimate_at(const Work *work, double time) {
     TimeLeft left;
     time_left_begin(&left);

@@ -5,6 +5,7 @@
 
 #include "common/file.h"
 #include "npz/npz_stream.h"
+#include "render/folders.h"
 
 #include <dirent.h>
 #include <signal.h>
@@ -41,17 +42,6 @@ static size_t file_size(const char *path) {
     struct stat status;
     assert_int_equal(stat(path, &status), 0);
     return (size_t)status.st_size;
-}
-
-static void assert_same_file(const char *a, const char *b) {
-    Error error = {0};
-    size_t size_a, size_b;
-    char *bytes_a = file_read(a, 1 << 30, &size_a, &error), *bytes_b = file_read(b, 1 << 30, &size_b, &error);
-    assert_ok(bytes_a != NULL && bytes_b != NULL, error);
-    assert_int_equal(size_a, size_b);
-    assert_memory_equal(bytes_a, bytes_b, size_a);
-    free(bytes_a);
-    free(bytes_b);
 }
 
 /* Rows in pieces of rising size, from 0 on. */
@@ -118,7 +108,8 @@ static void blocks_are_deflated_where_that_pays(void **state) {
     assert_in_range(file_size(path), 1, half / 50);
 }
 
-static int count_files(const char *folder) {
+/* Hidden ones, too. */
+static int count_entries(const char *folder) {
     int count = 0;
     DIR *directory = opendir(folder);
     assert_non_null(directory);
@@ -140,9 +131,9 @@ static void an_unfinished_stream_leaves_nothing(void **state) {
     assert_ok(stream != NULL, error);
     const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
     assert_ok(npz_stream_append(stream, array, noise, 2 * ROWS, &error), error);
-    assert_int_equal(count_files(folder), 0); /* so a program that is killed leaves nothing either */
+    assert_int_equal(count_entries(folder), 0); /* so a program that is killed leaves nothing either */
     npz_stream_destroy(stream);
-    assert_int_equal(count_files(folder), 0);
+    assert_int_equal(count_entries(folder), 0);
     assert_null(npz_stream_create(temporary_path("nowhere/run.npz"), 1, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/run.npz: error: cannot write: ");
 }

@@ -27,7 +27,7 @@ static inline int count_files(const char *directory, const char *ending) {
 
 static inline char *read_whole(const char *path, size_t *size) {
     Error error = {0};
-    char *data = file_read(path, 1 << 24, size, &error);
+    char *data = file_read(path, 1 << 30, size, &error);
     assert_ok(data != NULL, error);
     return data;
 }

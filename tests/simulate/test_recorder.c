@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "common/file.h"
+#include "render/folders.h"
 #include "simulate/recorder.h"
 
 static Scene *read_scene(const char *name, int frames) {
@@ -13,17 +14,6 @@ static Scene *read_scene(const char *name, int frames) {
     assert_ok(scene != NULL, error);
     scene->frames = frames;
     return scene;
-}
-
-static void assert_same_file(const char *a, const char *b) {
-    Error error = {0};
-    size_t size_a, size_b;
-    char *bytes_a = file_read(a, 1 << 30, &size_a, &error), *bytes_b = file_read(b, 1 << 30, &size_b, &error);
-    assert_ok(bytes_a != NULL && bytes_b != NULL, error);
-    assert_int_equal(size_a, size_b);
-    assert_memory_equal(bytes_a, bytes_b, size_a);
-    free(bytes_a);
-    free(bytes_b);
 }
 
 static void record_to(const Scene *scene, const Method *method, const RecorderOutput *outputs, bool no_contacts,

@@ -146,7 +146,7 @@ static void wrong_names_are_suggested(void **state) {
     expect_refused("a['omega'] = a['angle']", "did you mean 'angular_velocity'?");
 }
 
-/* A near name is no mistake where the right one is there, and a far one is none at all. */
+/* A near name is no mistake where the right one is there; a far one never is. */
 static void other_arrays_are_ignored(void **state) {
     (void)state;
     Trajectory *t = read_changed("run.npz", "a.update(sizes=[1], mass=[1, 2, 3], box=1, time=[0, 1], colour='red',\n"
