@@ -65,6 +65,7 @@ bool npz_has(const NpzFile *file, const char *name);
    zeros to 1/230. A program that deflates better reaches 1/1032, but only with arrays that hold almost nothing. */
 #define NPZ_ALWAYS (UINT64_C(16) << 20)
 #define NPZ_RATIO UINT64_C(256)
+uint64_t npz_budget(uint64_t size);
 
 /* Fills shape[rank] of an array. False with error set if it is missing or has another type or rank. */
 bool npz_shape(const NpzFile *file, const char *name, NpzType type, int rank, int64_t *shape, Error *error);

@@ -94,12 +94,16 @@ static bool read_directory(NpzFile *file, Error *error) {
     return true;
 }
 
+uint64_t npz_budget(uint64_t size) {
+    const uint64_t budget = NPZ_ALWAYS + NPZ_RATIO * size;
+    return budget < NPZ_MAX_BYTES ? budget : NPZ_MAX_BYTES;
+}
+
 /* A bomb is refused here, whatever reads it. */
 static bool check_budget(NpzFile *file, Error *error) {
     uint64_t total = 0;
     for (zip_uint64_t i = 0; i < file->count; i++) total += file->arrays[i].head.data_size;
-    file->budget = NPZ_ALWAYS + NPZ_RATIO * file->size;
-    if (file->budget > NPZ_MAX_BYTES) file->budget = NPZ_MAX_BYTES;
+    file->budget = npz_budget(file->size);
     if (total <= file->budget) return true;
     if (total > NPZ_MAX_BYTES) return error_input(error, file->path, "its arrays are larger than 2 GiB together");
     return error_input(error, file->path,

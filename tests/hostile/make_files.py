@@ -205,6 +205,8 @@ def make_csv():
     save("line.csv", b"# size: 0,1,1\nframe,body,x,y,angle\n" + b"0," * MiB)
     save("far.csv", b"# size: 0,1,1\nframe,body,x,y,angle\n0,0,0,0,0\n2000000000,0,0,0,0\n")
     save("run.csv", b"# size: 0,1,1\n# dt: 1\nframe,body,x,y,angle\n" + b"".join(b"%d,0,0,0,0\n" % i for i in range(300000)))
+    save("sparse.csv", b"".join(b"# size: %d,1,1\n" % i for i in range(1000)) + b"# dt: 1\nframe,body,x,y,angle\n" +
+         b"".join(b"%d,%d,0,0,0\n" % (i, min(i, 999)) for i in range(80000)))
     save("launches.csv", b"x,rotation,spin\n" + b"1,2,3\n" * 3 * MiB)
 
 
