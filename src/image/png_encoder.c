@@ -117,7 +117,8 @@ bool png_encode(PngEncoder *encoder, const Image *image, const bool *changed, co
     encoder->info = encoder->png == NULL ? NULL : png_create_info_struct(encoder->png);
     bool ok = encoder->info != NULL || error_memory(error, "image");
     if (ok && !write_file(encoder, image, texts, count, pixels, pixels_size))
-        ok = encoder->memory_short ? error_memory(error, "image") : error_system(error, "image", "%s", encoder->problem);
+        ok =
+            encoder->memory_short ? error_memory(error, "image") : error_system(error, "image", "%s", encoder->problem);
     png_destroy_write_struct(&encoder->png, &encoder->info);
     *data = encoder->data;
     *size = encoder->size;

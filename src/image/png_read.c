@@ -23,7 +23,7 @@ typedef struct Decoder {
     size_t size, position;
     int64_t max_pixels;
     Image *image;
-    uint8_t *row; /* 16-bit samples */
+    uint8_t *row;      /* 16-bit samples */
     bool memory_short; /* png_memory.h */
     Error *error;
 } Decoder;
@@ -48,8 +48,8 @@ static void ignore_warning(png_structp png, png_const_charp message) { (void)png
 
 static bool open_decoder(Decoder *decoder, const uint8_t *data, size_t size, const char *path, Error *error) {
     *decoder = (Decoder){.path = path, .error = error, .data = data, .size = size};
-    decoder->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning, &decoder->memory_short,
-                                            png_memory_take, png_memory_release);
+    decoder->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning,
+                                            &decoder->memory_short, png_memory_take, png_memory_release);
     if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
     return decoder->info != NULL || error_memory(error, path);
 }

@@ -37,8 +37,7 @@ static const Trajectory *known_run(const ShownFolder *folder, const char *name, 
 }
 
 static bool name_changes(const ShownFolder *const folders[SIDES], const Texts texts[SIDES],
-                         const Image *const images[SIDES], const uint8_t *masked, FrameChanges *changes,
-                         Error *error) {
+                         const Image *const images[SIDES], const uint8_t *masked, FrameChanges *changes, Error *error) {
     const View *view = &folders[EXPECTED]->view;
     NamingScene scene = {.view = view};
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {

@@ -10,7 +10,8 @@
 #include "png_parts.h"
 #include "pngs.h"
 
-static const ImageText text = {"Scene", "a stack of boxes, long enough for libpng to lengthen its buffers once or twice"};
+static const ImageText text = {"Scene",
+                               "a stack of boxes, long enough for libpng to lengthen its buffers once or twice"};
 
 /* Runs `work` with the n-th allocation failing, for each n. Returns how often it failed. */
 static int count_failures(void (*work)(Error *error)) {
