@@ -81,7 +81,7 @@ swaps() {
 touch going
 swaps 2>/dev/null &
 swapping=$!
-for _ in {1..20}; do
+for _ in {1..8}; do
     rm -f expected/b.png
     cp "$base/expected.kept/a.png" expected/a.png
     cp "$base/expected.kept/sub/c.png" expected/sub/c.png 2>/dev/null
@@ -90,6 +90,13 @@ done
 rm going
 wait $swapping
 equal "outside, while a folder turned into a link" "$(cd "$base" && sha256sum outside/*.png outside/sub/*.png)" "$outside"
+rm -rf expected
+cp -r "$base/expected.kept" expected
+
+# A file that has a second name outside is replaced, not written to.
+ln -f expected/a.png "$base/outside/a.png"
+run 0 approve report
+equal "outside, with a second name of an expected file" "$(cd "$base" && sha256sum outside/*.png outside/sub/*.png)" "$outside"
 rm -rf expected
 cp -r "$base/expected.kept" expected
 
