@@ -165,9 +165,30 @@ static void a_kill_leaves_nothing(void **state) {
     all_have_names = false;
 }
 
-static int sweep_by_another(void) {
+static pid_t other;
+static int signal_to_other;
+
+/* A process that has not seen the folder yet, and writes into it when it is told to. */
+static void start_other(void) {
+    int ends[2];
+    char byte;
+    Error error = {0};
+    assert_int_equal(pipe(ends), 0);
+    other = fork();
+    if (other == 0) {
+        close(ends[1]);
+        _exit(read(ends[0], &byte, 1) == 0 && file_write(below("other"), "x", 1, &error) ? 0 : 1);
+    }
+    close(ends[0]);
+    signal_to_other = ends[1];
+}
+
+static int let_other_write(void) {
+    int status;
     before_rename = NULL;
-    return write_in_child(replace_file, "other", NO_CALL);
+    close(signal_to_other);
+    assert_int_equal(waitpid(other, &status, 0), other);
+    return status;
 }
 
 static void files_in_use_stay(void **state) {
@@ -176,12 +197,13 @@ static void files_in_use_stay(void **state) {
         make_folder();
         all_have_names = names == 1;
         assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
-        before_rename = sweep_by_another;
+        start_other();
+        before_rename = let_other_write;
         Error error = {0};
         assert_ok(file_write(below("file"), "new", 3, &error), error);
         assert_null(before_rename);
         expect_file(below("file"), "new");
-        assert_int_equal(count_entries(), 1);
+        assert_int_equal(count_entries(), 2);
     }
     all_have_names = false;
 }
