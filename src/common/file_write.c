@@ -22,12 +22,13 @@ typedef struct Contents {
     int draft; /* -1: the block */
 } Contents;
 
-static bool write_all(int file, const char *data, size_t size) {
+bool file_write_all(int file, const void *data, size_t size) {
+    const char *bytes = data;
     while (size > 0) {
-        ssize_t written = write(file, data, size);
+        ssize_t written = write(file, bytes, size);
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return false;
-        data += written;
+        bytes += written;
         size -= (size_t)written;
     }
     return true;
@@ -42,7 +43,7 @@ bool file_copy(int to, int from) {
         ssize_t got = pread(from, block, BLOCK, at);
         if (got < 0 && errno == EINTR) continue;
         if (got == 0) break;
-        done = got > 0 && write_all(to, block, (size_t)got);
+        done = got > 0 && file_write_all(to, block, (size_t)got);
         if (done) at += got;
     }
     int cause = errno;
@@ -52,7 +53,8 @@ bool file_copy(int to, int from) {
 }
 
 static bool write_contents(int file, const Contents *contents) {
-    return contents->draft >= 0 ? file_copy(file, contents->draft) : write_all(file, contents->data, contents->size);
+    return contents->draft >= 0 ? file_copy(file, contents->draft)
+                                : file_write_all(file, contents->data, contents->size);
 }
 
 /* An entry that cannot be opened or does not support fsync counts as synced. */
@@ -169,6 +171,10 @@ bool file_write_soon(const char *path, const void *data, size_t size, Error *err
     return finish(put(path, &(Contents){data, size, -1}, false), path, size, error);
 }
 
+bool file_remove(const char *path, Error *error) {
+    return unlink(path) == 0 || errno == ENOENT || error_system(error, path, "cannot be removed: %s", strerror(errno));
+}
+
 bool file_sync(const char *path, Error *error) {
     return sync_entry(path) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
@@ -191,7 +197,7 @@ int file_draft(const char *path, Error *error) {
 }
 
 bool file_draft_write(int draft, const char *path, const void *data, size_t size, Error *error) {
-    return write_all(draft, data, size) || error_system(error, path, "cannot write: %s", strerror(errno));
+    return file_write_all(draft, data, size) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
 bool file_draft_publish(int draft, const char *path, Error *error) {
