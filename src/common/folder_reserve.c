@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -53,7 +54,7 @@ static long find_holder(const struct stat *file) {
             holder = process;
     }
     fclose(locks);
-    return holder > 0 ? holder : 0;
+    return holder > 0 && (kill((pid_t)holder, 0) == 0 || errno == EPERM) ? holder : 0;
 }
 
 static bool refuse(const char *folder, long holder, Error *error) {
