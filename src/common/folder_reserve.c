@@ -66,7 +66,7 @@ static bool refuse(const char *folder, long holder, Error *error) {
 
 /* The drawing processes of a render that was killed end after their frame, which must not replace one drawn later. */
 static bool take_lock(int file, const char *folder, const struct stat *status, Error *error) {
-    static const double patience = 1, patience_with_children = 30; /* s */
+    static const double patience = 0.2, patience_with_children = 30; /* s */
     const double begun = clock_seconds();
     while (flock(file, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) continue;

@@ -40,7 +40,7 @@ static pid_t start_holder(bool leave) {
         if (!folder_reserve(folder, &error) || (leave && fork() != 0)) _exit(0);
         if (write(ends[1], "x", 1) != 1) _exit(1);
         if (!leave) pause();
-        sleep(2); /* longer than a living process is waited for */
+        sleep(1); /* longer than a living process is waited for */
         _exit(0);
     }
     close(ends[1]);
