@@ -75,7 +75,7 @@ static void check_masks(const Rules *rules, const char *name, const Image *pictu
 /* Rules, then behind a NUL the PNG file mask.png. */
 void fuzz_rules(const uint8_t *data, size_t size) {
     static const char *const names[] = {"a.png", "stack_000001.png"};
-    static uint8_t mask[1 << 16], pixels[8 * 8 * 4];
+    static uint8_t mask[1 << 10], pixels[8 * 8 * 4]; /* deflated pixels take 32 KiB for each byte, as RGBA */
     const Image picture = {.width = 8, .height = 8, .pixels = pixels};
     const uint8_t *end = memchr(data, '\0', size);
     const size_t length = end == NULL ? size : (size_t)(end - data), rest = end == NULL ? 0 : size - length - 1;
