@@ -15,8 +15,13 @@
 #endif
 
 #ifdef COUNTS_MEMORY
-#include <sanitizer/allocator_interface.h>
 #include <stdatomic.h>
+
+/* sanitizer/allocator_interface.h, which gcc does not have. */
+int __sanitizer_install_malloc_and_free_hooks(void (*allocated)(const volatile void *block, size_t size),
+                                              void (*freed)(const volatile void *block));
+int __sanitizer_get_ownership(const volatile void *block);
+size_t __sanitizer_get_allocated_size(const volatile void *block);
 
 /* Bytes allocated since fuzz_begin(), now and at most; of any thread. */
 static atomic_int_fast64_t held, peak;
@@ -29,7 +34,7 @@ static void allocated(const volatile void *block, size_t size) {
 }
 
 static void freed(const volatile void *block) {
-    if (block != NULL && __sanitizer_get_ownership((const void *)block))
+    if (block != NULL && __sanitizer_get_ownership(block))
         atomic_fetch_sub(&held, (int_fast64_t)__sanitizer_get_allocated_size(block));
 }
 
