@@ -111,8 +111,7 @@ static bool scan_file(PngRows *rows, int64_t max_pixels) {
     for (at = next; !scan.ended && png_chunk_next(rows->file, rows->size, &next, &chunk); at = next)
         if (!is_sound(&chunk) || !scan_chunk(rows, &scan, &chunk, at)) return false;
     /* Before memory is allocated for pixels that the file cannot hold. */
-    return scan.ended && rows->bytes < UINT32_MAX / 2 &&
-           png_rows_size(rows) / DEFLATE_BEST_RATIO <= rows->compressed;
+    return scan.ended && rows->bytes < UINT32_MAX / 2 && png_rows_size(rows) / DEFLATE_BEST_RATIO <= rows->compressed;
 }
 
 bool png_rows_open(PngRows *rows, const uint8_t *file, size_t size, int64_t max_pixels) {

@@ -143,8 +143,10 @@ static void put_entry(Output *out, const Entry *entry, bool directory) {
 
 /* Raw deflate; 0 if it does not fit. */
 static size_t deflate_member(const Member *member, uint8_t *out, size_t room) {
-    z_stream stream = {.next_in = (Bytef *)(uintptr_t)member->bytes, .avail_in = (uInt)member->size,
-                       .next_out = out, .avail_out = (uInt)room};
+    z_stream stream = {.next_in = (Bytef *)(uintptr_t)member->bytes,
+                       .avail_in = (uInt)member->size,
+                       .next_out = out,
+                       .avail_out = (uInt)room};
     if (deflateInit2(&stream, 1, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) != Z_OK) return 0;
     const int status = deflate(&stream, Z_FINISH);
     deflateEnd(&stream);

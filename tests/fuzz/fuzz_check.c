@@ -83,9 +83,18 @@ static const char *skip_numbers(const char *text) {
     return text;
 }
 
+/* A terminal must not obey a file. */
+static void check_visible(const char *message) {
+    for (const char *c = message; *c != '\0'; c++)
+        if (((unsigned char)*c < ' ' && *c != '\n' && *c != '\t') || *c == '\x7f')
+            fuzz_fail("a control character, %d, in: %s", *c, message);
+}
+
 static void check_refusal(const Error *error, const char *place) {
     static const char mark[] = ": error: ";
-    if (error->kind != ERROR_INPUT) fuzz_fail("an error of kind %d for a file's content: %s", error->kind, error->message);
+    check_visible(error->message);
+    if (error->kind != ERROR_INPUT)
+        fuzz_fail("an error of kind %d for a file's content: %s", error->kind, error->message);
     const size_t length = place != NULL ? strlen(place) : 0;
     const char *rest = place != NULL ? skip_numbers(error->message + length) : strstr(error->message, mark);
     if (strncmp(error->message, place != NULL ? place : "", length) != 0)

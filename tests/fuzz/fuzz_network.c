@@ -33,8 +33,13 @@ static void predict_slots(const SlotNetwork *network) {
     static const float zeros[VALUES], ones[1] = {1};
     static float inputs[8 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[2];
     const int32_t slot = 0, impulses[2] = {0, 1};
-    const SlotView view = {.bomb = zeros, .state = zeros, .slot_count = 1, .slots = &slot, .impulses = impulses,
-                           .ones = ones, .warm = zeros};
+    const SlotView view = {.bomb = zeros,
+                           .state = zeros,
+                           .slot_count = 1,
+                           .slots = &slot,
+                           .impulses = impulses,
+                           .ones = ones,
+                           .warm = zeros};
     if (slot_network_inputs(network) > (int)(sizeof inputs / sizeof *inputs)) fuzz_fail("too many inputs");
     slot_network_look(network, &view, inputs);
     slot_network_predict(network, inputs, &view, first, second, outputs);

@@ -66,7 +66,8 @@ static void check_run(const Trajectory *run) {
     if (again == NULL) fuzz_fail("a run that was read is lost: %s", error.message);
     if (again->frames != run->frames || again->bodies != run->bodies) fuzz_fail("the size of a run changes");
     for (int frame = 0; frame < run->frames; frame++)
-        if (trajectory_frame_hash(again, frame) != trajectory_frame_hash(run, frame)) fuzz_fail("frame %d changes", frame);
+        if (trajectory_frame_hash(again, frame) != trajectory_frame_hash(run, frame))
+            fuzz_fail("frame %d changes", frame);
     trajectory_destroy(again);
 }
 

@@ -73,10 +73,11 @@ static void read_others(const uint8_t *data, size_t size) {
     fuzz_end(ok, &error, "picture.png");
     if (ok && !same(images[0], images[1])) fuzz_fail("a picture differs from itself");
     image_destroy_pair(images);
+    error = (Error){0};
     fuzz_begin();
-    image_find_text(data, size, "Frame", value, sizeof value);
-    fuzz_end(true, &(Error){0}, "");
-    if (memchr(value, '\0', sizeof value) == NULL) fuzz_fail("a text without an end");
+    const bool found = image_find_text(data, size, "Frame", value, sizeof value, &error);
+    fuzz_end(true, &error, "");
+    if (!found || memchr(value, '\0', sizeof value) == NULL) fuzz_fail("a text without an end");
 }
 
 void fuzz_png(const uint8_t *data, size_t size) {
@@ -115,12 +116,21 @@ static size_t build(const uint8_t *data, size_t size, uint8_t *out, size_t room)
     Builder file = {out, 0};
     memcpy(out, "\x89PNG\r\n\x1a\n", 8);
     file.size = 8;
-    const uint8_t header[13] = {[3] = (uint8_t)(1 + head[0] % 128), [7] = (uint8_t)(1 + head[1] % 128), head[2], head[3],
-                                0, 0, (uint8_t)(head[4] % 2)};
+    const uint8_t header[13] = {[3] = (uint8_t)(1 + head[0] % 128),
+                                [7] = (uint8_t)(1 + head[1] % 128),
+                                head[2],
+                                head[3],
+                                0,
+                                0,
+                                (uint8_t)(head[4] % 2)};
     put_chunk(&file, "IHDR", header, sizeof header);
     if ((head[6] & 1) != 0 && size >= HEAD + PALETTE) put_chunk(&file, "PLTE", more, 3 * (size_t)(1 + head[7] % 16));
     if ((head[6] & 2) != 0 && size >= HEAD + EXTRA) put_chunk(&file, "tRNS", more, head[7] % EXTRA);
-    if ((head[6] & 4) != 0 && size >= HEAD + EXTRA) put_chunk(&file, "tEXt", (const uint8_t *)"Frame\0" "12", 8);
+    if ((head[6] & 4) != 0 && size >= HEAD + EXTRA)
+        put_chunk(&file, "tEXt",
+                  (const uint8_t *)"Frame\0"
+                                   "12",
+                  8);
     const size_t count = size - HEAD, copies = (head[6] & 8) != 0 ? COPIES : 1;
     size_t used = 0;
     for (size_t i = 0; i < copies && count > 0 && used + count <= sizeof rows; i++, used += count)
