@@ -83,6 +83,13 @@ static void check_size(Decoder *decoder) {
         png_longjmp(decoder->png, 1);
 }
 
+/* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
+static void check_amount(Decoder *decoder) {
+    const double rows = (double)png_get_rowbytes(decoder->png, decoder->info) *
+                        (double)png_get_image_height(decoder->png, decoder->info);
+    if (rows > 1032.0 * (double)decoder->size) png_error(decoder->png, "too few bytes for its pixels");
+}
+
 /* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
    valid here, as libpng has checked everything up to the pixels. */
 static void refuse_animation(Decoder *decoder) {
@@ -146,6 +153,7 @@ static bool decode(Decoder *decoder) {
     png_read_info(png, decoder->info);
     check_size(decoder);
     refuse_animation(decoder);
+    check_amount(decoder);
     request_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
