@@ -157,6 +157,7 @@ def png(width, height, depth=8, color=6, interlace=0, before=b"", pixels=None):
 
 def make_png():
     save("small.png", png(8, 8))
+    save("grey.png", png(8, 8, color=0))
     save("honest.png", png(3000, 3000, 16))
     save("changed.png", png(3000, 3000, 16, 2))
     save("deep.png", png(10000, 10000, 16))
