@@ -156,7 +156,9 @@ class Judge:
             return f"exit status {result.status}: {result.err.strip()[-200:] or 'no message'}"
         if not result.err.strip():
             return "no message"
-        if REASONS.get(call, "") not in result.err or "Success" in result.err or "No error" in result.err:
+        # A stream keeps no reason.
+        named = REASONS.get(call, "") in result.err or "standard output: error: cannot write" in result.err
+        if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
         for path, digest in self.before.items():
             if path not in result.files and path in self.reference.files:
@@ -167,7 +169,9 @@ class Judge:
             if any(path == f"work/{journal}" for journal in self.bench.case.journals):
                 continue
             if digest is None and path.startswith("work/"):
-                continue  # an empty folder
+                continue  # a folder
+            if call == "unlink" and path not in self.before:
+                continue
             return f"{path} is damaged" if path in self.before else f"{path} is left over"
         return None
 
