@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs commands of twinbox with one failing call each (shim.c), and judges what they do.
 
-    faults.py TWINBOX SOURCES [--call CALL]... [--every] [--jobs N] [--case NAME]...
+    faults.py TWINBOX SOURCES [--call CALL]... [--every] [--sample K] [--jobs N] [--case NAME]...
 
 A run with a fault must either do what the run without does (the same status, output and files), or end with exit status 3,
 a message, every old file intact, and no file left over. Short moves and interrupted reads and writes must not be noticed.
@@ -19,6 +19,7 @@ import sys
 import tempfile
 import threading
 import time
+import zlib
 
 from cases import LONG, PREPARATION, SHORT
 
@@ -26,9 +27,12 @@ CALLS = ["malloc", "libmalloc", "open", "read", "write", "fsync", "rename", "unl
          "process", "wait"]
 MODES = {"malloc": ["fail", "rest"], "read": ["fail", "short", "eintr"], "write": ["fail", "rest", "short", "eintr"],
          "wait": ["eintr"]}
+ALL_MODES = {mode for modes in MODES.values() for mode in modes}
 # What the message of a failure names.
-REASONS = {"malloc": "memory", "libmalloc": "memory", "open": "Too many open files", "write": "No space left",
-           "mkdir": "No space left", "process": "Resource temporarily unavailable"}
+NO_THREAD = "Resource temporarily unavailable"
+REASONS = {"malloc": ["memory"], "libmalloc": ["memory", NO_THREAD], "open": ["Too many open files"],
+           "write": ["No space left"], "mkdir": ["No space left"], "process": [NO_THREAD]}
+STREAM = "standard output: error: cannot write"  # a stream keeps no reason
 HUNG = 120  # s
 
 Result = collections.namedtuple("Result", "status out err files counts struck place strays")
@@ -156,8 +160,7 @@ class Judge:
             return f"exit status {result.status}: {result.err.strip()[-200:] or 'no message'}"
         if not result.err.strip():
             return "no message"
-        # A stream keeps no reason.
-        named = REASONS.get(call, "") in result.err or "standard output: error: cannot write" in result.err
+        named = any(reason in result.err for reason in [*REASONS.get(call, [""]), STREAM])
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
         for path, digest in self.before.items():
@@ -212,11 +215,14 @@ class Driver:
             if done.returncode not in (0, 1):
                 raise SystemExit(f"{line}: {done.stderr}")
 
-    def numbers(self, judge, call):
-        """Which calls of a kind are to fail: all, or the first from each place."""
-        if self.options.every or (judge.bench.case in SHORT and call == "malloc"):
-            return range(1, judge.reference.counts[call] + 1)
-        return [int(n) for kind, n, _ in judge.sites if kind == call]
+    def numbers(self, judge, call, mode):
+        """Which calls of a kind are to fail: all, or the first from each place. Of these, one in K, not always the first."""
+        if call == "malloc" or (self.options.every and call != "write"):
+            numbers = range(1, judge.reference.counts[call] + 1)
+        else:
+            numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
+        first = zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % self.options.sample
+        return numbers[first :: self.options.sample]
 
     def try_fault(self, judge, call, n, mode):
         result = judge.bench.run(f"{call}:{n}:{mode}")
@@ -232,8 +238,8 @@ class Driver:
         try:
             judge = Judge(bench)
             for call in self.options.call or CALLS:
-                for mode in MODES.get(call, ["fail"]):
-                    for n in self.numbers(judge, call):
+                for mode in set(MODES.get(call, ["fail"])) & set(self.options.mode or ALL_MODES):
+                    for n in self.numbers(judge, call, mode):
                         self.try_fault(judge, call, n, mode)
         finally:
             bench.close()
@@ -265,11 +271,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program")
     parser.add_argument("sources")
-    parser.add_argument("--call", action="append", choices=CALLS)
+    parser.add_argument("--call", action="append", choices=[*CALLS, "system"])
+    parser.add_argument("--mode", action="append")
     parser.add_argument("--every", action="store_true")
+    parser.add_argument("--sample", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--case", action="append")
-    sys.exit(Driver(parser.parse_args()).run())
+    options = parser.parse_args()
+    if options.call == ["system"]:
+        options.call = [call for call in CALLS if not call.endswith("malloc")]
+    sys.exit(Driver(options).run())
 
 
 if __name__ == "__main__":
