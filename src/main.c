@@ -53,8 +53,6 @@ static void check_exit(int status, void *command_ended) {
 }
 
 int main(int argc, char **argv) {
-    static bool command_ended;
-    on_exit(check_exit, &command_ended);
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;
@@ -76,6 +74,8 @@ int main(int argc, char **argv) {
     char name[64];
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[1] = name;
+    static bool command_ended;
+    on_exit(check_exit, &command_ended);
     Error error = {0};
     bool same = command->run(argc - 1, argv + 1, &error);
     note_end();
