@@ -86,7 +86,7 @@ class Bench:
         environment = {"PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1", "TMPDIR": os.path.join(self.folder, "run", "tmp"),
                        "LD_PRELOAD": os.path.join(os.path.dirname(self.program), "tests", "libfault_shim.so"),
                        "TWINBOX_FAULT": fault, "TWINBOX_FAULT_COUNTS": self.counts,
-                       "ASAN_OPTIONS": "verify_asan_link_order=0:allocator_may_return_null=1",
+                       "ASAN_OPTIONS": "exitcode=99:verify_asan_link_order=0:allocator_may_return_null=1",
                        "LSAN_OPTIONS": f"suppressions={self.sources}/tests/known_leaks.txt:print_suppressions=0"}
         if sites:
             environment["TWINBOX_FAULT_SITES"] = sites
@@ -129,7 +129,8 @@ class Judge:
     def __init__(self, bench):
         self.bench = bench
         sites = os.path.join(bench.folder, "sites")
-        self.reference, again = bench.run("malloc:0:fail", sites), bench.run("malloc:0:fail")
+        bench.run("malloc:0:fail", sites)
+        self.reference, again = bench.run("malloc:0:fail"), bench.run("malloc:0:fail")
         self.before = bench.state
         if self.reference.status not in (0, 1):
             raise SystemExit(f"{bench.case.name}: exit status {self.reference.status}: {self.reference.err}")
