@@ -7,6 +7,7 @@
 #include "cli/notes.h"
 #include "common/names.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,7 @@ static void check_exit(int status, void *command_ended) {
 }
 
 int main(int argc, char **argv) {
+    signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;

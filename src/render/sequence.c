@@ -2,6 +2,8 @@
 /* Distributes the frames of a sequence over worker processes and reads their reports. Workers are forked before any
    OpenGL context is created: a context does not survive a fork. */
 #include "common/file.h"
+#include "common/memory_limit.h"
+#include "common/folder_reserve.h"
 #include "render/worker.h"
 
 #include <errno.h>
@@ -81,15 +83,15 @@ static void await_end(Worker *worker, Error *error) {
     while (waitpid(worker->process, &status, 0) < 0 && errno == EINTR) continue;
     worker->process = 0;
     if (WIFSIGNALED(status))
-        error_system(error, "render", "a drawing process was killed by signal %d", WTERMSIG(status));
+        error_system(error, "render", "a drawing process was killed by signal %d%s", WTERMSIG(status),
+                     memory_limit().text);
     else if (WEXITSTATUS(status) != 0)
         error_system(error, "render", "a drawing process failed without an error message");
 }
 
 static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
     WorkerReport report;
-    ssize_t size = read(worker->pipe, &report, sizeof report);
-    if (size < 0 && errno == EINTR) return true;
+    const ssize_t size = file_read_all(worker->pipe, &report, sizeof report);
     if (size == sizeof report && report.error.kind == ERROR_NONE) {
         sequence->done++;
         sequence->kept += report.kept;
@@ -156,7 +158,7 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
     int first, last;
     if (!choose_range(options, picture, &first, &last, error) ||
         !moments_plan(&plan, picture->runs, picture->count, first, last, options, error) ||
-        !picture_apply_options(picture, options, error) || !file_make_directory(options->directory, error))
+        !picture_apply_options(picture, options, error) || !folder_reserve(options->directory, error))
         return false;
     result->first = first;
     result->last = moments_last(&plan);
