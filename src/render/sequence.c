@@ -2,8 +2,8 @@
 /* Distributes the frames of a sequence over worker processes and reads their reports. Workers are forked before any
    OpenGL context is created: a context does not survive a fork. */
 #include "common/file.h"
-#include "common/memory_limit.h"
 #include "common/folder_reserve.h"
+#include "common/memory_limit.h"
 #include "render/worker.h"
 
 #include <errno.h>
