@@ -181,7 +181,8 @@ def make_json():
                         ("members", ",".join('{"%d": 0}' % i for i in range(200000)))):
         os.makedirs(name, exist_ok=True)
         save(f"{name}/results.json", (start + value).encode())
-    os.makedirs("names", exist_ok=True)
+    for folder in ("names", "e", "a"):
+        os.makedirs(folder, exist_ok=True)
     items = [json.dumps({**item, "shown": False, "actual": {"name": f"{i}.png", "xxh3": "0" * 16}}) for i in range(60000)]
     save("names/results.json", (start + ",\n".join(items) + "]}").encode())
     for folder in ("expected", "actual"):
