@@ -6,6 +6,7 @@
 
 #undef error_input
 #undef error_system
+#undef error_interrupted
 #undef error_memory
 
 static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments)
@@ -32,6 +33,14 @@ bool error_system(Error *error, const char *where, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     set(error, ERROR_SYSTEM, where, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_interrupted(Error *error, const char *where, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set(error, ERROR_INTERRUPTED, where, format, arguments);
     va_end(arguments);
     return false;
 }
