@@ -7,6 +7,7 @@
 #include "cli/notes.h"
 #include "common/names.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,6 +48,7 @@ static int refuse_command(const char *name) {
 
 int main(int argc, char **argv) {
     interrupt_handle();
+    signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;

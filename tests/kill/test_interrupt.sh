@@ -18,9 +18,10 @@ start() {
     "$twinbox" "$@" >out 2>err <&3 &
     running=$!
     # Bit 14 of the caught signals is SIGTERM; before, the process is still the shell.
-    until [ "$(readlink /proc/$running/exe)" = "$(readlink -f "$twinbox")" ] &&
-        grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$running/status; do
-        kill -0 $running 2>/dev/null || break
+    for _ in $(seq 500); do
+        [ "$(readlink /proc/$running/exe)" = "$(readlink -f "$twinbox")" ] &&
+            grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$running/status && break
+        sleep 0.01
     done 2>/dev/null
 }
 
