@@ -84,7 +84,7 @@ run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o two --quick --methods 
 PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
 PATH="$PWD/ffmpeg-ends:$PATH" run 130 render a.npz -o frames --size 64x64 --video new.mp4
 equal "files" "$(ls -A drawn; ls -A | grep mp4)" ""
-printf '#!/bin/sh\nmkdir once 2>/dev/null && kill -TERM $PPID\nexec %s "$@"\n' "$(command -v gnuplot)" >gnuplot-ends/gnuplot
+printf '#!/bin/sh\nmkdir %s/once 2>/dev/null && kill -TERM $PPID\nexec %s "$@"\n' "$PWD" "$(command -v gnuplot)" >gnuplot-ends/gnuplot
 PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
 complains "stopped; chart.csv is finished"
 equal "charts" "$(ls -A drawn | tr '\n' ' ')" "chart-single.pdf chart-single.png chart-single.svg "
