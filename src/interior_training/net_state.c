@@ -63,7 +63,7 @@ static bool read_all(NpzFile *file, NetState *state, Error *error) {
     NpzArray arrays[ARRAYS];
     double *const numbers[ARRAYS] = {state->weights, state->mean, state->square, state->drivers[0]};
     list(state, arrays);
-    if (!read_place(file, state, error)) return false;
+    if (!npz_expect(file, arrays, ARRAYS, error) || !read_place(file, state, error)) return false;
     for (int i = 0; i < ARRAYS; i++)
         if (!read_numbers(file, &arrays[i], numbers[i], error)) return false;
     return true;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "naming/view.h"
 
+#include "image/sequence.h"
 #include "json/json_read.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_SIZE = 1 << 26, MAX_SIDE = 1 << 16 };
+/* Members before the view: render writes 13. */
+enum { MAX_SIZE = 1 << 26, MAX_SIDE = 1 << 16, MAX_MEMBERS = 32 };
 static const double MAX_PLACE = 1e9; /* pixels */
 
 static bool bad(const JsonReader *json, Error *error, const char *what) {
@@ -41,7 +43,8 @@ static bool read_panel(const JsonReader *json, const json_t *item, ViewPanel *pa
         return bad(json, error, "'runs' of a panel");
     for (size_t i = 0; i < json_array_size(runs); i++) {
         const char *run = json_string_value(json_array_get(runs, i));
-        if (run == NULL || strlen(run) >= VIEW_NAME_SIZE || strchr(run, '/') != NULL || run[0] == '.')
+        if (run == NULL || strlen(run) >= VIEW_NAME_SIZE || strchr(run, '/') != NULL || run[0] == '.' ||
+            !name_is_text(run))
             return bad(json, error, "'runs' with file names");
         strcpy(i == 0 ? panel->run : panel->outlines[panel->outline_count++], run);
     }
@@ -107,7 +110,8 @@ static void read_look(const json_t *value, View *view) {
 /* The members before the view, and the view. */
 static bool read_members(JsonReader *json, View *view, Error *error) {
     if (!json_read_char(json, '{')) return bad(json, error, "'{'");
-    for (bool more = true; more;) {
+    int members = 0;
+    for (bool more = true; more && members++ < MAX_MEMBERS;) {
         char key[32];
         const json_t *value = json_read_value(json, error);
         if (value == NULL) return false;

@@ -150,7 +150,7 @@ bool regression_measure_first(Regression *regression, Error *error) {
     for (int i = 0; i < regression->count; i++) {
         RegressionFrame *frame = &regression->frames[i];
         if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
-        bool wanted = (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
+        bool wanted = !frame->sizes_alone && (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
         return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
     }
     return true;

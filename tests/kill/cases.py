@@ -49,7 +49,6 @@ CASES = [
     render("render-jobs", "--jobs 3", ""),
     render("render-over-older", "--jobs 2 --frames 0:5", "out=older"),
     render("video", "--jobs 1 --video film.mp4 --video film.gif", "film.mp4", most=32),
-    render("video-webm", "--jobs 1 --video film.webm", "", most=12),
     Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz"),
     Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o net.npz --iterations 1 --bomb-x=1:2:1"),
     Case("train-scene-net", SCENE_NET),

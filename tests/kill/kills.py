@@ -136,11 +136,11 @@ class Bench:
 
     def points(self, most):
         """About so many calls, of each kind the first and the last, else spread evenly; one of a kind is in the middle."""
-        kinds = [kind for kind in STRUCK if self.calls[kind] > 0]
-        share = -(-most // max(1, len(kinds)))
-        for kind in kinds:
+        kinds = sorted((kind for kind in STRUCK if self.calls[kind] > 0), key=self.calls.get)
+        for place, kind in enumerate(kinds):
             count = self.calls[kind]
-            taken = min(count, share)
+            taken = min(count, max(1, most // (len(kinds) - place)))
+            most -= taken
             for i in range(taken):
                 yield kind, 1 + (i * (count - 1) // (taken - 1) if taken > 1 else count // 2)
 
