@@ -56,5 +56,5 @@ CASES = [
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz"),
     Case("approve", "approve report --expected expected", "report expected actual", most=32),
     Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz"),
-    Case("compare", "compare expected actual --report report", "expected actual report", status=1),
+    Case("compare", "compare expected actual --report report", "expected actual report", status=1, times="report/junit.xml"),
 ]

@@ -28,7 +28,7 @@ STRUCK = ["rename", "write", "unlink", "fsync"]
 INTERRUPTED = 130
 # What may differ between two runs: times in the tables, and what is drawn from them; gnuplot's time in a PDF.
 DATE = re.compile(rb"/CreationDate \(D:[^)]*\)")
-ENDS = {".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".pdf": b"%%EOF", ".csv": b""}
+ENDS = {".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".pdf": b"%%EOF", ".csv": b""}
 
 
 class Finding(Exception):
