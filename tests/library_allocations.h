@@ -2,13 +2,8 @@
 /* Lets allocations fail, also those of shared libraries: these functions replace the C library's in the program that
    includes this. Not under a sanitizer, which has its own; then none fails. allocations.h: only a program's own. */
 #pragma once
+#include "failing_allocations.h"
 #include "testing.h"
-
-#include <errno.h>
-
-static int failing_allocation; /* the N-th from now on fails; 0: none */
-static bool later_ones_fail;   /* too, until failing_allocation is set to 0 */
-static int failed_allocations;
 
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 #define SANITIZED
@@ -22,18 +17,6 @@ static int failed_allocations;
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *block, size_t size);
-
-static bool allocation_fails(void) {
-    if (failing_allocation == 0) return false;
-    if (failing_allocation > 1) {
-        failing_allocation--;
-        return false;
-    }
-    if (!later_ones_fail) failing_allocation = 0;
-    failed_allocations++;
-    errno = ENOMEM;
-    return true;
-}
 
 void *malloc(size_t size) { return allocation_fails() ? NULL : __libc_malloc(size); }
 void *calloc(size_t count, size_t size) { return allocation_fails() ? NULL : __libc_calloc(count, size); }
