@@ -32,7 +32,8 @@ ALL_MODES = {mode for modes in MODES.values() for mode in modes}
 NO_THREAD = "Resource temporarily unavailable"
 REASONS = {"malloc": ["memory"], "libmalloc": ["memory", NO_THREAD], "open": ["Too many open files"],
            "write": ["No space left"], "mkdir": ["No space left"], "process": [NO_THREAD]}
-STREAM = "standard output: error: cannot write"  # a stream keeps no reason
+# A stream keeps no reason; a process that cannot write its report has none.
+UNNAMED = ["standard output: error: cannot write", "a drawing process failed without an error message"]
 HUNG = 120  # s
 
 Result = collections.namedtuple("Result", "status out err files counts struck place strays")
@@ -161,7 +162,7 @@ class Judge:
             return f"exit status {result.status}: {result.err.strip()[-200:] or 'no message'}"
         if not result.err.strip():
             return "no message"
-        named = any(reason in result.err for reason in [*REASONS.get(call, [""]), STREAM])
+        named = any(reason in result.err for reason in [*REASONS.get(call, [""]), *UNNAMED])
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
         for path, digest in self.before.items():
