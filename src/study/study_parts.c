@@ -58,7 +58,7 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
     bool ok = part->write(part->context, lines, &progress, error);
     if (ferror(lines) && ok) ok = error_memory(error, "study");
     if (fclose(lines) != 0 && ok) ok = error_memory(error, "study");
-    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; finished parts are kept");
+    if (ok && own.stopped) ok = error_interrupted(error, part->name, "stopped; finished parts are kept");
     ok = ok && file_write(path, text, size, error) && append_text(parts, text, size, error);
     free(text);
     return ok;
