@@ -111,7 +111,7 @@ static void an_interrupted_part_is_not_saved(void **state) {
     open_parts(&parts, folder);
     parts.progress = &(Progress){stop, &share};
     assert_false(study_parts_do(&parts, &part, &error));
-    assert_error(error, ERROR_INPUT, "stopped");
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_near(share, 0.125, 0);
     assert_true(counted.stopped);
     study_parts_close(&parts);
