@@ -19,10 +19,11 @@ PREPARATION = [
 
 class Case:
     """inputs: what is copied from the prepared folder, also as NEW=OLD; journals: what a failed run may leave behind,
-    because the next run continues with it; killed: the call at which a first run is killed, which this one continues."""
+    because the next run continues with it; killed: the call at which a first run is killed, which this one continues;
+    sample: only one in so many faults, for commands that take many seconds."""
 
-    def __init__(self, name, arguments, inputs="", journals="", killed=None):
-        self.name, self.arguments, self.killed = name, arguments, killed
+    def __init__(self, name, arguments, inputs="", journals="", killed=None, sample=1):
+        self.name, self.arguments, self.killed, self.sample = name, arguments, killed, sample
         self.inputs, self.journals = inputs.split(), journals.split()
 
 
@@ -80,6 +81,5 @@ LONG = [
     Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/*.part.csv"),
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "",
          "out/*.part.csv out/parts-*"),
-    # Only its end, from tables to the report: all of it takes a minute.
-    Case("paper", "paper -o out --quick --scenes SCENES", "", "out/parts-*", "rename:150"),
+    Case("paper", "paper -o out --quick --scenes SCENES", "", "out/parts-*", "rename:60", 100),
 ]

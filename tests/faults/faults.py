@@ -241,8 +241,8 @@ class Driver:
             numbers = range(1, judge.reference.counts[call] + 1)
         else:
             numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
-        first = zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % self.options.sample
-        return numbers[first :: self.options.sample]
+        step = self.options.sample * judge.bench.case.sample
+        return numbers[zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % step :: step]
 
     def try_fault(self, judge, call, n, mode):
         """What a fault showed, or None."""
