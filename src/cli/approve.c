@@ -3,14 +3,20 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "common/visible_text.h"
 
+#include <limits.h>
 #include <stdio.h>
 
 typedef struct Options {
-    const char *report, *only;
+    const char *report, *expected, *only;
 } Options;
 
-static const Option option_table[] = {{"--only", 0, "GLOB",
+static const Option option_table[] = {{"--expected", 0, "DIR",
+                                       "The folder to change (default: the one that the report names, which must be "
+                                       "below the current directory)",
+                                       OPTION_TEXT(Options, expected)},
+                                      {"--only", 0, "GLOB",
                                        "Only files whose names match, such as 'stack_*' (default: all that failed)",
                                        OPTION_TEXT(Options, only)},
                                       {0}};
@@ -24,16 +30,22 @@ static const CommandSpec spec = {
         "expected files that failed, new files are added, missing files are removed. If a selected file has changed "
         "since the report was written, nothing is changed. Of several accepted pictures, that in the report is "
         "replaced. "
-        "Run it in the folder in which compare ran. Exit status 1: failures that the report does not show remain.\v"
+        "Run it in the folder in which compare ran; a folder outside of it changes only with --expected. Exit status "
+        "1: failures that the report does not show remain.\v"
         "Example: twinbox approve out/report --only 'stack_*'"};
 
-static void print_change(const char *what, const char *path) { printf("%s %s\n", what, path); }
+static void print_change(const char *what, const char *path) {
+    char shown[PATH_MAX];
+    visible_text(shown, sizeof shown, path, VISIBLE_ONE_LINE);
+    printf("%s %s\n", what, shown);
+}
 
 bool command_approve(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     Approval approval;
-    if (!approve(options.report, options.only, print_change, &approval, error)) return false;
+    const ApprovalRequest request = {options.report, options.expected, options.only, print_change};
+    if (!approve(&request, &approval, error)) return false;
     printf("%d replaced, %d added, %d removed", approval.replaced, approval.added, approval.removed);
     if (approval.already > 0) printf(", %d already accepted", approval.already);
     if (approval.not_selected > 0) printf(", %d not selected", approval.not_selected);

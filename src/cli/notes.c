@@ -5,6 +5,7 @@
 #include "common/clock.h"
 #include "common/hash.h"
 #include "common/trace.h"
+#include "common/visible_text.h"
 #include "network/kernels.h"
 
 #include <omp.h>
@@ -18,9 +19,19 @@ static NoteLevel chosen = NOTES_NORMAL;
 static double begun; /* s */
 
 /* One call, so that lines of several processes do not mix. */
-static void print_line(const char *line) {
+static void print_line(const char *kind, const char *line, VisibleLines lines) {
+    char shown[2048];
+    visible_text(shown, sizeof shown, line, lines);
     progress_bar_clear();
-    fprintf(stderr, "twinbox: %s\n", line);
+    fprintf(stderr, "twinbox: %s%s\n", kind, shown);
+}
+
+static void print(const char *kind, const char *format, va_list arguments) PRINTF_LIKE(2, 0);
+
+static void print(const char *kind, const char *format, va_list arguments) {
+    char text[2048];
+    vsnprintf(text, sizeof text, format, arguments);
+    print_line(kind, text, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
 }
 
 /* What is done again and again, such as reading one network for each of many runs, is printed once. */
@@ -37,7 +48,7 @@ static bool is_new(const char *line) {
 
 static void print_trace(const char *line) {
 #pragma omp critical(print_trace)
-    if (is_new(line)) print_line(line);
+    if (is_new(line)) print_line("", line, VISIBLE_ONE_LINE);
 }
 
 void note_set_level(NoteLevel level) {
@@ -48,24 +59,19 @@ void note_set_level(NoteLevel level) {
 NoteLevel note_level(void) { return chosen; }
 
 void note_print(const char *format, ...) {
-    char text[2048];
     va_list arguments;
     if (chosen == NOTES_QUIET) return;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    print("note: ", format, arguments);
     va_end(arguments);
-    progress_bar_clear();
-    fprintf(stderr, "twinbox: note: %s\n", text);
 }
 
 void note_verbose(const char *format, ...) {
-    char text[2048];
     va_list arguments;
     if (chosen != NOTES_VERBOSE) return;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    print("", format, arguments);
     va_end(arguments);
-    print_line(text);
 }
 
 void note_begin(const char *command) {

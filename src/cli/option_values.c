@@ -44,7 +44,7 @@ bool option_flag(const Option *option, const char *text, void *value, Error *err
 static bool read_int(const Option *option, const char *text, int64_t least, int64_t most, int64_t *value,
                      Error *error) {
     return parse_int(text, least, most, value) ||
-           error_input(error, option->name, "'%s' is not a whole number from %lld to %lld", text, (long long)least,
+           error_input(error, option->name, "'%.64s' is not a whole number from %lld to %lld", text, (long long)least,
                        (long long)most);
 }
 
@@ -65,7 +65,7 @@ bool option_seed(const Option *option, const char *text, void *value, Error *err
 bool option_float(const Option *option, const char *text, void *value, Error *error) {
     float parsed;
     if (!parse_float(text, &parsed) || (double)parsed < option->least || (double)parsed > option->most)
-        return error_input(error, option->name, "'%s' is not a number from %g to %g", text, option->least,
+        return error_input(error, option->name, "'%.64s' is not a number from %g to %g", text, option->least,
                            option->most);
     *(float *)value = parsed;
     return true;
@@ -123,7 +123,7 @@ bool option_paths(const Option *option, const char *text, void *value, Error *er
 bool option_range(const Option *option, const char *text, void *value, Error *error) {
     enum { MAX_VALUES = 100000 };
     return parse_range(text, MAX_VALUES, value) ||
-           error_input(error, option->name, "'%s' is not A:B:STEP with A <= B, STEP > 0 and at most %d values", text,
+           error_input(error, option->name, "'%.64s' is not A:B:STEP with A <= B, STEP > 0 and at most %d values", text,
                        MAX_VALUES);
 }
 
@@ -134,7 +134,7 @@ bool option_set(const Option *option, const char *text, void *value, Error *erro
     const char *number = strchr(text, '=');
     const size_t length = number == NULL ? 0 : (size_t)(number - text);
     if (length == 0 || length >= sizeof setting->name || !parse_double(number + 1, &setting->value))
-        return error_input(error, option->name, "'%s' is not NAME=VALUE with a number after '='", text);
+        return error_input(error, option->name, "'%.64s' is not NAME=VALUE with a number after '='", text);
     memcpy(setting->name, text, length);
     setting->name[length] = '\0';
     return true;

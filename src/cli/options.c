@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include "cli/notes.h"
+#include "common/visible_text.h"
 
 #include <argp.h>
 #include <assert.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_KEY = 256 };
+enum { FIRST_KEY = 256, SHOWN_SIZE = 72 };
 
 const Option options_of_all[] = {
     {.name = "--quiet", .letter = 'q', .help = "Print errors and results only: no progress, no notes"},
@@ -45,15 +46,22 @@ static int find_row(const Option *rows, int key) {
 
 /* The first error stays, so reading continues after it: bad usage is reported before bad values. */
 static void read_value(const Parsing *parsing, const Option *row, const char *text) {
-    row->read(row, text, parsing->options + row->at, parsing->error);
+    const unsigned control = text != NULL ? control_in_text(text) : 0;
+    if (control != 0) /* Results repeat names, and go to terminals. */
+        error_input(parsing->error, row->name != NULL ? row->name : text, "the text has the control character U+%04X",
+                    control);
+    else
+        row->read(row, text, parsing->options + row->at, parsing->error);
 }
 
 static void take_input(Parsing *parsing, const char *text, struct argp_state *state) {
     const CommandSpec *spec = parsing->spec;
-    if (spec->inputs.most == 0) argp_error(state, "'%s' is not expected", text);
+    char shown[SHOWN_SIZE];
+    visible_text(shown, sizeof shown, text, VISIBLE_ONE_LINE);
+    if (spec->inputs.most == 0) argp_error(state, "'%s' is not expected", shown);
     if (parsing->input_count == spec->inputs.most)
         argp_error(state, "only %d %s%s can be given ('%s' is one more)", spec->inputs.most, spec->inputs.noun,
-                   spec->inputs.most > 1 ? "s" : "", text);
+                   spec->inputs.most > 1 ? "s" : "", shown);
     parsing->input_count++;
     read_value(parsing, &spec->input, text);
 }
@@ -117,6 +125,54 @@ static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_M
     }
 }
 
+/* The row that argp takes for a long option, which may be abbreviated; NULL if it is unknown or ambiguous. */
+static const struct argp_option *find_long(const struct argp_option *rows, const char *name, size_t length) {
+    const struct argp_option *found = NULL;
+    for (; rows->name != NULL || rows->doc != NULL; rows++) {
+        if (rows->name == NULL || strncmp(rows->name, name, length) != 0) continue;
+        if (rows->name[length] == '\0') return rows;
+        if (found != NULL) return NULL;
+        found = rows;
+    }
+    return found;
+}
+
+static const struct argp_option *find_letter(const struct argp_option *rows, char letter) {
+    for (; rows->name != NULL || rows->doc != NULL; rows++)
+        if (rows->name != NULL && rows->key == (unsigned char)letter) return rows;
+    return NULL;
+}
+
+/* The row of the word's last option; NULL if the word has an unknown one. *value: behind it, if there is a value. */
+static const struct argp_option *find_option(const struct argp_option *rows, const char *word, const char **value) {
+    const struct argp_option *row = NULL;
+    const size_t length = strcspn(word, "=");
+    *value = word[length] == '=' ? word + length + 1 : NULL;
+    if (word[1] == '-') return find_long(rows, word + 2, length - 2);
+    *value = NULL;
+    while (*++word != '\0' && *value == NULL) {
+        if ((row = find_letter(rows, *word)) == NULL) return NULL;
+        if (row->arg != NULL && word[1] != '\0') *value = word + 1;
+    }
+    return row;
+}
+
+/* argp prints an option that it does not know as it is. It may do so with a short one of visible characters. */
+static bool check_words(const struct argp_option *rows, char **argv, Error *error) {
+    for (int i = 1; argv[i] != NULL; i++) {
+        char shown[SHOWN_SIZE];
+        const char *word = argv[i], *value;
+        if (strcmp(word, "--") == 0) return true;
+        if (word[0] != '-' || word[1] == '\0') continue;
+        const struct argp_option *row = find_option(rows, word, &value);
+        visible_text(shown, sizeof shown, word, VISIBLE_ONE_LINE);
+        if (row == NULL && strcmp(shown, word) != 0)
+            return error_input(error, argv[0], "unrecognized option '%s'", shown);
+        if (row != NULL && row->arg != NULL && value == NULL && argv[i + 1] != NULL) i++;
+    }
+    return true;
+}
+
 void options_visit_next(OptionsVisit *visit, void *context) {
     visitor.visit = visit;
     visitor.context = context;
@@ -131,6 +187,7 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
     }
     struct argp_option rows[OPTIONS_MAX + OPTIONS_OF_ALL + 1] = {{0}};
     make_rows(spec, rows);
+    if (!check_words(rows, argv, error)) return false;
     const struct argp argp = {.options = rows,
                               .parser = parse,
                               .args_doc = spec->input.value != NULL ? spec->input.value : "",

@@ -1,12 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Messages contain text of others: names of files, keys, values. Here, in one place, it is made visible. */
 #include "common/error.h"
+
+#include "common/visible_text.h"
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #undef error_input
 #undef error_system
 #undef error_memory
+
+/* A path can be longer than a message: what is wrong must still be in it. */
+enum { WHERE_SIZE = 1024, RAW_SIZE = 8192 };
+
+static void append(Error *error, const char *format, va_list arguments) PRINTF_LIKE(2, 0);
+
+/* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must not
+   look like a message of its own. */
+static void append(Error *error, const char *format, va_list arguments) {
+    char raw[RAW_SIZE];
+    const size_t used = strlen(error->message), room = sizeof error->message - used;
+    if (room <= 16) return; /* what visible_text() needs */
+    vsnprintf(raw, sizeof raw, format, arguments);
+    for (size_t end = strlen(raw); end > 0 && (raw[end - 1] == '\n' || raw[end - 1] == '\r'); end--)
+        raw[end - 1] = '\0';
+    visible_text(error->message + used, room, raw, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
+}
 
 static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments)
     PRINTF_LIKE(4, 0);
@@ -14,9 +35,9 @@ static bool set(Error *error, ErrorKind kind, const char *where, const char *for
 static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
     if (error->kind != ERROR_NONE) return false;
     error->kind = kind;
-    int prefix = snprintf(error->message, sizeof error->message, "%s: error: ", where);
-    if (prefix < 0 || (size_t)prefix >= sizeof error->message) return false;
-    vsnprintf(error->message + prefix, sizeof error->message - (size_t)prefix, format, arguments);
+    const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
+    strcpy(error->message + length, ": error: ");
+    append(error, format, arguments);
     return false;
 }
 
@@ -37,3 +58,10 @@ bool error_system(Error *error, const char *where, const char *format, ...) {
 }
 
 bool error_memory(Error *error, const char *where) { return error_system(error, where, "out of memory"); }
+
+void error_add(Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    append(error, format, arguments);
+    va_end(arguments);
+}

@@ -3,7 +3,8 @@
 
    A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
    so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
-   unchanged. */
+   unchanged. Arguments may be any text: control characters in them become visible (visible_text.h). Ends of lines do, too,
+   unless the format has one. */
 #pragma once
 #include <stdbool.h>
 
@@ -26,6 +27,9 @@ bool error_system(Error *error, const char *where, const char *format, ...) PRIN
 
 /* Out of memory: a system error whose text needs no arguments. */
 bool error_memory(Error *error, const char *where);
+
+/* Appends to the message of an error that is set. */
+void error_add(Error *error, const char *format, ...) PRINTF_LIKE(2, 3);
 
 #ifdef __clang_analyzer__ /* It reads one source at a time. This tells it what they return. */
 static inline bool error_false(bool set) {

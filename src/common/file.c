@@ -3,6 +3,7 @@
 #include "common/file.h"
 
 #include "common/array.h"
+#include "common/cause.h"
 #include "common/standard_io.h"
 #include "common/trace.h"
 
@@ -20,9 +21,8 @@
 
 bool file_open_error(const char *path, Error *error) {
     int cause = errno;
-    bool machine = cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO;
-    return machine ? error_system(error, path, "cannot open: %s", strerror(cause))
-                   : error_input(error, path, "cannot open: %s", strerror(cause));
+    return cause_is_system(cause) ? error_system(error, path, "cannot open: %s", strerror(cause))
+                                  : error_input(error, path, "cannot open: %s", strerror(cause));
 }
 
 /* Reads to the end, not to the size that stat returns: the file may be growing. */

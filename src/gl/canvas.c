@@ -4,6 +4,7 @@
    rows. Row 0 of a framebuffer is the top row of the picture, so no image is flipped. */
 #include "gl/canvas.h"
 
+#include "common/memory_limit.h"
 #include "gl/font_atlas.h"
 #include "gl/program.h"
 #include "gl/shaders.h"
@@ -29,6 +30,13 @@ struct Canvas {
     Drawing moving; /* moving instances, clipped to the changed rows */
 };
 
+static bool check_gl(const GlFunctions *gl, const char *when, Error *error) {
+    const GLenum problem = gl->GetError();
+    return problem == GL_NO_ERROR ||
+           error_system(error, "render", "OpenGL error 0x%04x%s %s%s", problem,
+                        problem == GL_OUT_OF_MEMORY ? " (out of memory)" : "", when, memory_limit().text);
+}
+
 static bool create_target(Canvas *canvas, Target *target, Error *error) {
     const GlFunctions *gl = canvas->gl;
     gl->GenRenderbuffers(1, &target->color);
@@ -38,8 +46,8 @@ static bool create_target(Canvas *canvas, Target *target, Error *error) {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
-    return error_system(error, "render", "OpenGL cannot create a framebuffer of %d x %d pixels", canvas->width,
-                        canvas->height);
+    return error_system(error, "render", "OpenGL cannot create a framebuffer of %d x %d pixels%s", canvas->width,
+                        canvas->height, memory_limit().text);
 }
 
 static void create_font(Canvas *canvas) {
@@ -89,8 +97,7 @@ static bool setup_gl(Canvas *canvas, Error *error) {
     gl->Disable(GL_DITHER);
     gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); /* alpha stays 1 */
     gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
-    GLenum problem = gl->GetError();
-    return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x in set-up", problem);
+    return check_gl(gl, "in set-up", error);
 }
 
 Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error) {
@@ -214,6 +221,5 @@ bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, c
     paint_changed_rows(canvas, drawing, changed);
     if (canvas->moving.failed) return error_memory(error, "render");
     read_back(canvas, changed, image);
-    GLenum problem = canvas->gl->GetError();
-    return problem == GL_NO_ERROR || error_system(error, "render", "OpenGL error 0x%04x", problem);
+    return check_gl(canvas->gl, "in a frame", error);
 }

@@ -2,7 +2,10 @@
 /* The choice of a context, and library loading. */
 #include "gl/context.h"
 
+#include "common/memory_limit.h"
+
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,11 +25,17 @@ const ContextKind *context_kind(ContextChoice wanted) {
     return NULL;
 }
 
+/* A library that is there may fail to load as well: for want of memory or descriptors. */
+static bool refuse_library(const char *library, const char *package, const char *why, Error *error) {
+    if (why == NULL || strstr(why, strerror(ENOENT)) != NULL)
+        return error_system(error, "render", "cannot load %s; install the Debian package %s", library, package);
+    return error_system(error, "render", "cannot load %s: %s%s", library, why, memory_limit().text);
+}
+
 bool context_load(const char *library, const char *package, const ContextFunction *functions, int count, void *table,
                   Error *error) {
     void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
-    if (handle == NULL)
-        return error_system(error, "render", "cannot load %s; install the Debian package %s", library, package);
+    if (handle == NULL) return refuse_library(library, package, dlerror(), error);
     for (int i = 0; i < count; i++) {
         void *symbol = dlsym(handle, functions[i].name);
         if (symbol == NULL) return error_system(error, "render", "%s has no function %s", library, functions[i].name);
@@ -43,6 +52,7 @@ static void prepare_mesa(void) {
     setenv("LIBGL_ALWAYS_SOFTWARE", "true", 1);
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    setenv("EGL_LOG_LEVEL", "fatal", 0); /* its warnings guess at reasons */
 }
 
 static bool create(Context *context, const ContextKind *kind, Error *error) {
@@ -59,11 +69,13 @@ bool context_create(Context *context, ContextChoice wanted, Error *error) {
     const ContextKind *kind = context_kind(wanted);
     prepare_mesa();
     if (wanted != CONTEXT_AUTO) return kind != NULL ? create(context, kind, error) : refuse(wanted, error);
-    for (int i = 0; context_kinds[i] != NULL; i++)
-        if (create(context, context_kinds[i], &(Error){0})) return true;
-    return error_system(error, "render",
-                        "no OpenGL without a display; install the Debian package libosmesa6, or libegl1 "
-                        "with libgl1-mesa-dri");
+    Error reasons[sizeof context_kinds / sizeof *context_kinds] = {0};
+    int count = 0;
+    for (; context_kinds[count] != NULL; count++)
+        if (create(context, context_kinds[count], &reasons[count])) return true;
+    error_system(error, "render", "no OpenGL without a display works");
+    for (int i = 0; i < count; i++) error_add(error, "\n%s: %s", context_kinds[i]->name, reasons[i].message);
+    return false;
 }
 
 bool context_make_current(const Context *context, Error *error) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* EGL on Mesa's surfaceless platform: no display server, no window. */
+#include "common/memory_limit.h"
 #include "gl/context.h"
 
 #include <EGL/egl.h>
@@ -72,8 +73,10 @@ static void *egl_create(Error *error) {
     if (egl == NULL) return error_memory(error, "render"), NULL;
     if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl, error)) {
         if (open_display(egl) && open_context(egl)) return egl;
-        error_system(error, "render",
-                     "EGL cannot create a surfaceless OpenGL 3.3 context; install the Debian package libgl1-mesa-dri");
+        /* EGL gives no reason. With a limit, that is the likely one. */
+        const MemoryLimit limit = memory_limit();
+        error_system(error, "render", "EGL cannot create a surfaceless OpenGL 3.3 context%s",
+                     limit.text[0] != '\0' ? limit.text : "; install the Debian package libgl1-mesa-dri");
     }
     egl_destroy(egl);
     return NULL;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* OSMesa: a context that needs only memory. */
+#include "common/memory_limit.h"
 #include "gl/context.h"
 
 #include <GL/osmesa.h>
@@ -50,7 +51,7 @@ static bool open_context(Osmesa *osmesa, Error *error) {
     if (!context_load("libOSMesa.so.8", "libosmesa6", functions, count, osmesa, error)) return false;
     osmesa->context = osmesa->create(attributes, NULL);
     if (osmesa->context != NULL && osmesa_make_current(osmesa)) return true;
-    return error_system(error, "render", "OSMesa cannot create an OpenGL 3.3 context");
+    return error_system(error, "render", "OSMesa cannot create an OpenGL 3.3 context%s", memory_limit().text);
 }
 
 static void *osmesa_create(Error *error) {

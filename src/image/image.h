@@ -51,8 +51,9 @@ void image_destroy_pair(Image *images[2]);
    more than `size` bytes. */
 bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error);
 
-/* The same for a file in memory; `value` is empty if the text is missing or cannot be read. */
-void image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size);
+/* The same for a file in memory; `value` is empty if the text is missing or cannot be read. False with error set only
+   when memory is short. */
+bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error);
 
 /* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, regardless of
    compression. */

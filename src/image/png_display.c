@@ -53,14 +53,16 @@ static bool same_bytes(const uint8_t *a, size_t a_size, const uint8_t *b, size_t
 
 enum { PROFILE_MAX = 1 << 22 }; /* bytes; those in use have less than 1 MiB */
 
-/* The uncompressed profile (malloc'ed); NULL if it is damaged, too large, or memory is short. */
-static uint8_t *inflate_profile(const PngChunk *iccp, size_t *size) {
+/* The uncompressed profile (malloc'ed); NULL if it is damaged or too large, or with error set when memory is short. */
+static uint8_t *inflate_profile(const PngChunk *iccp, size_t *size, Error *error) {
     const uint8_t *end = memchr(iccp->data, '\0', iccp->length); /* of the name; then follows the method */
     if (end == NULL || iccp->length - (size_t)(end - iccp->data) < 2) return NULL;
     uint8_t *profile = malloc(PROFILE_MAX);
     uLongf length = PROFILE_MAX;
     uLong compressed = (uLong)(iccp->length - (size_t)(end - iccp->data) - 2);
-    if (profile != NULL && uncompress(profile, &length, end + 2, compressed) == Z_OK) {
+    const int status = profile != NULL ? uncompress(profile, &length, end + 2, compressed) : Z_MEM_ERROR;
+    if (status == Z_MEM_ERROR) error_memory(error, "image");
+    if (status == Z_OK) {
         *size = length;
         return profile;
     }
@@ -68,19 +70,19 @@ static uint8_t *inflate_profile(const PngChunk *iccp, size_t *size) {
     return NULL;
 }
 
-static bool same_profile(const PngChunk *a, const PngChunk *b) {
+static bool same_profile(const PngChunk *a, const PngChunk *b, Error *error) {
     if (same_bytes(a->data, a->length, b->data, b->length)) return true;
     if (a->length == 0 || b->length == 0) return false;
     size_t a_size = 0, b_size = 0;
-    uint8_t *first = inflate_profile(a, &a_size), *second = inflate_profile(b, &b_size);
+    uint8_t *first = inflate_profile(a, &a_size, error), *second = inflate_profile(b, &b_size, error);
     bool same = first != NULL && second != NULL && same_bytes(first, a_size, second, b_size);
     free(first);
     free(second);
     return same;
 }
 
-static bool displays_alike(int kind, const PngChunk *a, const PngChunk *b) {
-    if (kind == ICCP) return same_profile(a, b);
+static bool displays_alike(int kind, const PngChunk *a, const PngChunk *b, Error *error) {
+    if (kind == ICCP) return same_profile(a, b, error);
     if (kind == EXIF) return orientation(a) == orientation(b);
     return same_bytes(a->data, a->length, b->data, b->length);
 }
@@ -112,15 +114,17 @@ static void describe(int kind, const PngChunk *a, const PngChunk *b, char *text,
         snprintf(text, size, "%s %s and %s", name, first.text, second.text);
 }
 
-PngDisplay png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size) {
+bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, PngDisplay *display,
+                         Error *error) {
     Chunks first = find_chunks(a, a_size), second = find_chunks(b, b_size);
-    PngDisplay display = {""};
+    char *text = display->text;
+    text[0] = '\0';
     for (int i = 0; i < KINDS; i++) {
         const PngChunk *x = &first.kinds[i], *y = &second.kinds[i];
-        size_t used = strlen(display.text);
-        if (displays_alike(i, x, y)) continue;
-        if (used > 0) used += (size_t)snprintf(display.text + used, sizeof display.text - used, ", ");
-        describe(i, x, y, display.text + used, sizeof display.text - used);
+        size_t used = strlen(text);
+        if (displays_alike(i, x, y, error)) continue;
+        if (used > 0) used += (size_t)snprintf(text + used, sizeof display->text - used, ", ");
+        describe(i, x, y, text + used, sizeof display->text - used);
     }
-    return display;
+    return error->kind == ERROR_NONE;
 }

@@ -2,6 +2,8 @@
 /* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM) and the
    orientation in eXIf (PNG specification, third edition, sections 11.3.2 and 11.3.4). */
 #pragma once
+#include "common/error.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,7 +12,8 @@ typedef struct PngDisplay {
     char text[160];
 } PngDisplay;
 
-/* What differs between two files; an empty text if nothing does. Each chunk is compared by itself, although some viewers
-   ignore gAMA beside iCCP. Colour profiles are compared uncompressed. Both files must be valid up to their ends, as
-   png_check() or image_decode_png() finds. */
-PngDisplay png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size);
+/* Finds what differs between two files; an empty text if nothing does. Each chunk is compared by itself, although some
+   viewers ignore gAMA beside iCCP. Colour profiles are compared uncompressed. Both files must be valid up to their ends, as
+   png_check() or image_decode_png() finds. False with error set when memory is short. */
+bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, PngDisplay *display,
+                         Error *error);

@@ -5,6 +5,7 @@
 #include "common/array.h"
 #include "common/file.h"
 #include "image/idat.h"
+#include "image/png_memory.h"
 
 #include <png.h>
 #include <stdlib.h>
@@ -20,6 +21,7 @@ struct PngEncoder {
     png_infop info;
     uint8_t *data;
     size_t size, capacity;
+    bool memory_short; /* also of libpng (png_memory.h) */
     char problem[256];
 };
 
@@ -44,8 +46,8 @@ void png_encoder_destroy(PngEncoder *encoder) {
 
 static void append(png_structp png, png_bytep data, size_t size) {
     PngEncoder *encoder = png_get_io_ptr(png);
-    if (!array_reserve((void **)&encoder->data, &encoder->capacity, encoder->size + size, 1))
-        png_error(png, "out of memory");
+    encoder->memory_short = !array_reserve((void **)&encoder->data, &encoder->capacity, encoder->size + size, 1);
+    if (encoder->memory_short) png_error(png, "out of memory");
     memcpy(encoder->data + encoder->size, data, size);
     encoder->size += size;
 }
@@ -109,11 +111,14 @@ bool png_encode(PngEncoder *encoder, const Image *image, const bool *changed, co
     if (encoder->idat != NULL && !idat_encode(encoder->idat, image, changed, &pixels, &pixels_size, error))
         return false;
     encoder->size = 0;
-    encoder->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, encoder, fail, ignore_warning);
+    encoder->memory_short = false;
+    encoder->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, encoder, fail, ignore_warning,
+                                             &encoder->memory_short, png_memory_take, png_memory_release);
     encoder->info = encoder->png == NULL ? NULL : png_create_info_struct(encoder->png);
     bool ok = encoder->info != NULL || error_memory(error, "image");
     if (ok && !write_file(encoder, image, texts, count, pixels, pixels_size))
-        ok = error_system(error, "image", "%s", encoder->problem);
+        ok =
+            encoder->memory_short ? error_memory(error, "image") : error_system(error, "image", "%s", encoder->problem);
     png_destroy_write_struct(&encoder->png, &encoder->info);
     *data = encoder->data;
     *size = encoder->size;

@@ -4,6 +4,7 @@
 #include "image/image.h"
 #include "image/png_check.h"
 #include "image/png_fast.h"
+#include "image/png_memory.h"
 
 #include <png.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ typedef struct Decoder {
     size_t size, position;
     int64_t max_pixels;
     Image *image;
-    uint8_t *row; /* 16-bit samples */
+    uint8_t *row;      /* 16-bit samples */
+    bool memory_short; /* png_memory.h */
     Error *error;
 } Decoder;
 
@@ -35,7 +37,10 @@ static void read_bytes(png_structp png, png_bytep data, size_t size) {
 
 static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
     Decoder *decoder = png_get_error_ptr(png);
-    error_input(decoder->error, decoder->path, "not a PNG file, or damaged: %s", message);
+    if (decoder->memory_short)
+        error_memory(decoder->error, decoder->path);
+    else
+        error_input(decoder->error, decoder->path, "not a PNG file, or damaged: %s", message);
     png_longjmp(png, 1);
 }
 
@@ -43,7 +48,8 @@ static void ignore_warning(png_structp png, png_const_charp message) { (void)png
 
 static bool open_decoder(Decoder *decoder, const uint8_t *data, size_t size, const char *path, Error *error) {
     *decoder = (Decoder){.path = path, .error = error, .data = data, .size = size};
-    decoder->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning);
+    decoder->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning,
+                                            &decoder->memory_short, png_memory_take, png_memory_release);
     if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
     return decoder->info != NULL || error_memory(error, path);
 }
@@ -196,7 +202,7 @@ static bool decode_texts(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     set_strict_limits(decoder);
     png_read_info(decoder->png, decoder->info);
-    return true;
+    return !decoder->memory_short || error_memory(decoder->error, decoder->path);
 }
 
 static bool find_text(const Decoder *decoder, const char *key, char *value, size_t size) {
@@ -229,7 +235,9 @@ bool image_read_text(const char *path, const char *key, char *value, size_t size
     return ok;
 }
 
-void image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size) {
-    Error ignored = {0};
-    if (!read_text(data, size, "", key, value, value_size, &ignored)) value[0] = '\0';
+bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error) {
+    Error failure = {0};
+    if (!read_text(data, size, "image", key, value, value_size, &failure)) value[0] = '\0';
+    if (failure.kind == ERROR_SYSTEM) *error = failure;
+    return failure.kind != ERROR_SYSTEM;
 }

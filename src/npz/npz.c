@@ -4,6 +4,7 @@
 
 #include "common/utf8.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,6 +85,7 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
         error_memory(error, file->path);
         return NULL;
     }
+    errno = 0;
     zip_file_t *member = zip_fopen_index(file->archive, (zip_uint64_t)(array - file->arrays), 0);
     bool done = member != NULL && inflate_data(file, array, member, data, error);
     if (member != NULL)

@@ -2,6 +2,7 @@
 /* Opening .npz: the file and its directory are checked before any data is inflated. */
 #include "npz/npz_file.h"
 
+#include "common/cause.h"
 #include "common/file.h"
 #include "common/lfs_pointer.h"
 #include "common/standard_io.h"
@@ -16,15 +17,24 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 /* Deflate cannot exceed this ratio, so a member that claims more is invalid. */
 enum { DEFLATE_BEST_RATIO = 1032 };
 
-/* Errors of libzip are input errors, except these two. */
+/* libzip reports a lack of memory in three ways: by a code of its own, as zlib's, and, where it counts as damage of the
+   directory or as no error at all, only by errno. */
+static int system_cause(const zip_error_t *cause) {
+    const int code = zip_error_code_zip(cause), below = zip_error_code_system(cause), left = errno;
+    const int type = zip_error_system_type(cause);
+    if (code == ZIP_ER_MEMORY || (type == ZIP_ET_ZLIB && below == Z_MEM_ERROR)) return ENOMEM;
+    if (type == ZIP_ET_SYS && below != 0) return below;
+    return cause_is_system(left) ? left : 0;
+}
+
 bool npz_failed(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
-    int code = zip_error_code_zip(cause);
-    if (code == ZIP_ER_MEMORY) return error_memory(error, file->path);
-    if (code == ZIP_ER_READ) return error_system(error, file->path, "cannot read: %s", zip_error_strerror(cause));
+    const int system = system_cause(cause);
+    if (system != 0) return cause_error(system, file->path, error);
     return error_input(error, file->path, "array '%s' is damaged: %s", name, zip_error_strerror(cause));
 }
 
@@ -59,6 +69,7 @@ static bool check_member(const NpzFile *file, const StoredArray *array, const zi
 }
 
 static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uint64_t declared, Error *error) {
+    errno = 0;
     zip_file_t *member = zip_fopen_index(file->archive, index, 0);
     if (member == NULL) return npz_failed(file, array->name, zip_get_error(file->archive), error);
     char text[NPY_HEAD_MAX], reason[NPY_REASON_SIZE];
@@ -85,6 +96,7 @@ static bool read_directory(NpzFile *file, Error *error) {
     for (; file->count < (zip_uint64_t)count; file->count++) {
         StoredArray *array = &file->arrays[file->count];
         zip_stat_t status;
+        errno = 0;
         if (zip_stat_index(file->archive, file->count, 0, &status) != 0)
             return npz_failed(file, "?", zip_get_error(file->archive), error);
         if (!take_name(file, status.name, array->name, error) || !check_member(file, array, &status, error) ||
@@ -128,14 +140,16 @@ static int open_checked(const char *path, Error *error) {
 }
 
 static bool open_archive(NpzFile *file, Error *error) {
-    int descriptor = open_checked(file->path, error), cause;
+    int descriptor = open_checked(file->path, error), code;
     if (descriptor < 0) return false;
-    file->archive = zip_fdopen(descriptor, 0, &cause);
+    errno = 0;
+    file->archive = zip_fdopen(descriptor, 0, &code);
     if (file->archive != NULL) return true;
+    const int system = code == ZIP_ER_MEMORY ? ENOMEM : errno;
     zip_error_t reason;
-    zip_error_init_with_code(&reason, cause);
-    if (cause == ZIP_ER_MEMORY)
-        error_memory(error, file->path);
+    zip_error_init_with_code(&reason, code);
+    if (cause_is_system(system))
+        cause_error(system, file->path, error);
     else
         error_input(error, file->path, "not an intact .npz: %s", zip_error_strerror(&reason));
     zip_error_fini(&reason);

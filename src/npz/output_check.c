@@ -48,17 +48,17 @@ bool output_check_file(const char *path, const char *ending, Error *error) {
            try_folder(folder, path, error);
 }
 
-/* What an existing file holds: "" if it is not an .npz file. */
-static void find_kind(const char *path, char kind[KIND_SIZE]) {
-    Error ignored = {0};
-    NpzFile *file = npz_open(path, &ignored);
-    kind[0] = '\0';
-    if (file == NULL) return;
-    if (!npz_has(file, "kind"))
-        snprintf(kind, KIND_SIZE, "%s", npz_has(file, "position") ? "run" : "unknown");
-    else if (!npz_read_name(file, "kind", kind, KIND_SIZE, &ignored))
+/* What an existing file holds: "unknown" if it is not an .npz file. */
+static bool find_kind(const char *path, char kind[KIND_SIZE], Error *error) {
+    Error failure = {0};
+    NpzFile *file = npz_open(path, &failure);
+    snprintf(kind, KIND_SIZE, "unknown");
+    if (file != NULL && !npz_has(file, "kind") && npz_has(file, "position")) snprintf(kind, KIND_SIZE, "run");
+    if (file != NULL && npz_has(file, "kind") && !npz_read_name(file, "kind", kind, KIND_SIZE, &failure))
         snprintf(kind, KIND_SIZE, "unknown");
     npz_close(file);
+    if (failure.kind == ERROR_SYSTEM) *error = failure;
+    return failure.kind != ERROR_SYSTEM;
 }
 
 bool output_check_npz(const char *path, const char *kind, Error *error) {
@@ -68,12 +68,12 @@ bool output_check_npz(const char *path, const char *kind, Error *error) {
     if (path_is_standard(path) || stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 ||
         is_standard_output(&status))
         return true;
-    find_kind(path, found);
+    if (!find_kind(path, found, error)) return false;
     if (strcmp(found, kind != NULL ? kind : "run") == 0) return true;
     return error_input(error, path,
                        "holds a file of kind '%s', which a file of kind '%s' does not replace; choose another "
                        "name, or remove it",
-                       found[0] != '\0' ? found : "unknown", kind != NULL ? kind : "run");
+                       found, kind != NULL ? kind : "run");
 }
 
 bool output_check_folder(const char *path, Error *error) {

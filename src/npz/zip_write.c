@@ -105,6 +105,18 @@ bool zip_begin(ZipWriter *zip, const char *name, Error *error) {
     return put(zip, header.bytes, header.used, error) && put(zip, member->name, strlen(member->name), error);
 }
 
+static bool overwrite(int file, const unsigned char *data, size_t size, off_t at) {
+    while (size > 0) {
+        ssize_t written = pwrite(file, data, size, at);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return false;
+        data += written;
+        at += written;
+        size -= (size_t)written;
+    }
+    return true;
+}
+
 bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed, Error *error) {
     ZipMember *member = &zip->members[zip->count - 1];
     if (!add_size(zip, packed, error)) return false;
@@ -112,7 +124,7 @@ bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed, Error
     member->crc = crc;
     member->size = size;
     Record header = local_header(member);
-    return pwrite(zip->draft, header.bytes, header.used, member->offset) == (ssize_t)header.used ||
+    return overwrite(zip->draft, header.bytes, header.used, member->offset) ||
            error_system(error, zip->path, "cannot write: %s", strerror(errno));
 }
 

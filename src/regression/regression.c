@@ -32,10 +32,7 @@ static bool report_read_errors(const Regression *regression, Error *error) {
     if (first < 0) return true;
     error->kind = ERROR_INPUT;
     snprintf(error->message, sizeof error->message, "%s", regression->frames[first].read_error);
-    size_t used = strlen(error->message);
-    if (count > 1)
-        snprintf(error->message + used, sizeof error->message - used, "\n(further frames that cannot be compared: %d)",
-                 count - 1);
+    if (count > 1) error_add(error, "\n(further frames that cannot be compared: %d)", count - 1);
     return false;
 }
 

@@ -7,18 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool has_text(const uint8_t *data, size_t size, const char *key) {
-    char text[32];
-    image_find_text(data, size, key, text, sizeof text);
-    return text[0] != '\0';
+/* The texts of a picture. */
+typedef struct Texts {
+    char part[32], frame[32], card[32], states[512];
+} Texts;
+
+static bool read_texts(Texts *texts, const uint8_t *data, size_t size, Error *error) {
+    return image_find_text(data, size, "Part", texts->part, sizeof texts->part, error) &&
+           image_find_text(data, size, "Frame", texts->frame, sizeof texts->frame, error) &&
+           image_find_text(data, size, "Card", texts->card, sizeof texts->card, error) &&
+           image_find_text(data, size, "State", texts->states, sizeof texts->states, error);
 }
 
 /* The frame number of a picture of a stored frame; -1 for others: interpolated poses, other programs. */
-static int64_t stored_frame(const uint8_t *data, size_t size) {
-    char text[32];
-    if (has_text(data, size, "Part")) return -1;
-    image_find_text(data, size, "Frame", text, sizeof text);
-    return text[0] >= '0' && text[0] <= '9' ? strtoll(text, NULL, 10) : -1;
+static int64_t stored_frame(const Texts *texts) {
+    const char *frame = texts->frame;
+    return texts->part[0] == '\0' && frame[0] >= '0' && frame[0] <= '9' ? strtoll(frame, NULL, 10) : -1;
 }
 
 /* The run of this name if the picture shows it: if its state in this frame is one of those that the picture's text
@@ -32,16 +36,13 @@ static const Trajectory *known_run(const ShownFolder *folder, const char *name, 
     return strstr(states, hash) != NULL ? run : NULL;
 }
 
-static bool name_changes(const ShownFolder *const folders[SIDES], const RegressionFrame *frame,
-                         uint8_t *const data[SIDES], const Image *const images[SIDES], const uint8_t *masked,
-                         FrameChanges *changes, Error *error) {
+static bool name_changes(const ShownFolder *const folders[SIDES], const Texts texts[SIDES],
+                         const Image *const images[SIDES], const uint8_t *masked, FrameChanges *changes, Error *error) {
     const View *view = &folders[EXPECTED]->view;
     NamingScene scene = {.view = view};
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        char states[512];
-        size_t size = frame->files[side].size;
-        int64_t number = stored_frame(data[side], size);
-        image_find_text(data[side], size, "State", states, sizeof states);
+        const char *states = texts[side].states;
+        const int64_t number = stored_frame(&texts[side]);
         if (side == EXPECTED) scene.frame = (int)number;
         for (int i = 0; number == scene.frame && i < view->panel_count; i++) {
             const ViewPanel *panel = &view->panels[i];
@@ -67,9 +68,11 @@ bool regression_find_changes(Regression *regression, RegressionFrame *frame, uin
     const View *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
     if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
     if (b->width != a->width || b->height != a->height) return true;
+    Texts texts[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (has_text(data[side], frame->files[side].size, "Card")) return true; /* it has a layout of its own */
+        if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
+    if (texts[EXPECTED].card[0] != '\0' || texts[ACTUAL].card[0] != '\0') return true; /* it has a layout of its own */
     frame->other_view = view_difference(a, b).text[0] != '\0';
     if (frame->other_view) return true;
-    return name_changes(folders, frame, data, images, masked, changes, error);
+    return name_changes(folders, texts, images, masked, changes, error);
 }

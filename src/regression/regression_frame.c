@@ -71,11 +71,11 @@ static bool judge(Regression *regression, RegressionFrame *frame, uint8_t *const
     const RegressionOptions *options = &regression->options;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
-    regression_judge_states(regression, frame, data);
+    if (!regression_judge_states(regression, frame, data, error)) return false;
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     if (a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0)
         return judge_same_bytes(regression, frame, data, error);
-    frame->metadata = png_display_compare(data[EXPECTED], a->size, data[ACTUAL], b->size);
+    if (!png_display_compare(data[EXPECTED], a->size, data[ACTUAL], b->size, &frame->metadata, error)) return false;
     frame->metadata_failed = options->strict_metadata && frame->metadata.text[0] != '\0';
     return decode_and_judge(regression, frame, data, error);
 }

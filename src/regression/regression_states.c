@@ -145,10 +145,10 @@ typedef struct Texts {
     char scene[TRAJECTORY_NAME_SIZE], frame[32], state[512];
 } Texts;
 
-static void read_texts(Texts *texts, const uint8_t *data, size_t size) {
-    image_find_text(data, size, "Scene", texts->scene, sizeof texts->scene);
-    image_find_text(data, size, "Frame", texts->frame, sizeof texts->frame);
-    image_find_text(data, size, "State", texts->state, sizeof texts->state);
+static bool read_texts(Texts *texts, const uint8_t *data, size_t size, Error *error) {
+    return image_find_text(data, size, "Scene", texts->scene, sizeof texts->scene, error) &&
+           image_find_text(data, size, "Frame", texts->frame, sizeof texts->frame, error) &&
+           image_find_text(data, size, "State", texts->state, sizeof texts->state, error);
 }
 
 /* The first differing panel: "a1 | b2" and "a1 | c3" give 2. */
@@ -186,10 +186,11 @@ static bool has_runs(const Regression *regression, const SequenceFrame *picture)
     return false;
 }
 
-void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]) {
+bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error) {
     Texts texts[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        read_texts(&texts[side], data[side], frame->files[side].size);
+        if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
     const char *a = texts[EXPECTED].state, *b = texts[ACTUAL].state;
     bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
     if (texts_differ) frame->panel = first_panel(a, b);
@@ -198,4 +199,5 @@ void regression_judge_states(const Regression *regression, RegressionFrame *fram
     bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &frame->run_differs);
     bool known = have_texts || has_runs(regression, frame->base);
     frame->states = texts_differ || differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
+    return true;
 }

@@ -7,5 +7,7 @@
    folder; ERROR_INPUT if only one of the two is a trajectory. */
 bool regression_find_runs(Regression *regression, Error *error);
 
-/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. */
-void regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES]);
+/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
+   short. */
+bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error);

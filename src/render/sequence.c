@@ -2,6 +2,7 @@
 /* Distributes the frames of a sequence over worker processes and reads their reports. Workers are forked before any
    OpenGL context is created: a context does not survive a fork. */
 #include "common/file.h"
+#include "common/memory_limit.h"
 #include "render/worker.h"
 
 #include <errno.h>
@@ -81,7 +82,8 @@ static void await_end(Worker *worker, Error *error) {
     while (waitpid(worker->process, &status, 0) < 0 && errno == EINTR) continue;
     worker->process = 0;
     if (WIFSIGNALED(status))
-        error_system(error, "render", "a drawing process was killed by signal %d", WTERMSIG(status));
+        error_system(error, "render", "a drawing process was killed by signal %d%s", WTERMSIG(status),
+                     memory_limit().text);
     else if (WEXITSTATUS(status) != 0)
         error_system(error, "render", "a drawing process failed without an error message");
 }

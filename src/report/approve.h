@@ -10,11 +10,17 @@ typedef struct Approval {
     int not_selected;             /* failures whose names do not match */
 } Approval;
 
-/* Replaces the expected files of failures by the actual ones, in the folders that results.json in `report` names, and
-   removes expected files whose actual file is missing. only: a glob (fnmatch) of file names, or NULL for all.
+typedef struct ApprovalRequest {
+    const char *report;   /* folder of results.json */
+    const char *expected; /* the folder to change; NULL: the one that results.json names, below the current directory */
+    const char *only;     /* a glob (fnmatch) of file names; NULL: all */
+    void (*on_change)(const char *what, const char *path); /* after each file: "replaced", "added" or "removed" */
+} ApprovalRequest;
+
+/* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes
+   expected files whose actual file is missing.
 
    Everything is checked before anything is written: names must be plain names of .png and .npz files, and both files
-   must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically; on_change
-   is called after each with "replaced", "added" or "removed". */
-bool approve(const char *report, const char *only, void (*on_change)(const char *what, const char *path),
-             Approval *approval, Error *error);
+   must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in folders
+   that stay open; no link below the expected folder is followed. */
+bool approve(const ApprovalRequest *request, Approval *approval, Error *error);

@@ -83,9 +83,7 @@ static void name_free(const Check *check, const Box *bomb, int bodies, Error *er
     if (blocked != NULL) {
         qsort(blocked, (size_t)count, sizeof *blocked, by_start);
         describe_free(blocked, count, reach.from, reach.to, text, sizeof text);
-        const size_t length = strlen(error->message);
-        snprintf(error->message + length, sizeof error->message - length, "; free x%s: %s",
-                 turned ? ", at any rotation" : "", text[0] != '\0' ? text : "none");
+        error_add(error, "; free x%s: %s", turned ? ", at any rotation" : "", text[0] != '\0' ? text : "none");
     }
     free(blocked);
 }

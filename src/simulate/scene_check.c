@@ -55,8 +55,7 @@ static bool check_end(const char *path, const SceneSetting *setting, Error *erro
     const bool ok = scene != NULL && scene_check_launches(scene, error);
     scene_destroy(scene);
     if (!ok)
-        text_add(error->message, sizeof error->message, "\n(with %s = %.9g, an end of its range)", setting->name,
-                 setting->value);
+        error_add(error, "\n(with %s = %.9g, an end of its range)", setting->name, setting->value);
     return ok;
 }
 

@@ -45,9 +45,7 @@ static bool update_bodies(const Scene *scene, World *world, int frame, Error *er
 
 bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper_step(stepper, world, step, error)) return update_bodies(step->scene, world, step->frame, error);
-    size_t length = strlen(error->message);
-    snprintf(error->message + length, sizeof error->message - length, ", in step %d of scene %s", step->frame,
-             step->scene->name);
+    error_add(error, ", in step %d of scene %s", step->frame, step->scene->name);
     return false;
 }
 

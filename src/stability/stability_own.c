@@ -104,11 +104,9 @@ static bool sets_iterations(Scene *low, Scene *high) {
 static Scene *read_at(const char *path, const SceneSetting *settings, int count, Error *error) {
     Scene *scene = scene_read_with(path, settings, count, error);
     if (scene != NULL) return scene;
-    size_t used = strlen(error->message);
-    for (int i = 0; i < count && used < sizeof error->message; i++)
-        used += (size_t)snprintf(error->message + used, sizeof error->message - used, "%s%s = %.9g",
-                                 i == 0 ? "\nthis is the scene for --vary with " : ", ", settings[i].name,
-                                 settings[i].value);
+    if (count > 0) error_add(error, "\nthis is the scene for --vary with ");
+    for (int i = 0; i < count; i++)
+        error_add(error, "%s%s = %.9g", i == 0 ? "" : ", ", settings[i].name, settings[i].value);
     return NULL;
 }
 

@@ -19,10 +19,11 @@ static void failure_comes_with_its_words(void **state) {
     Error error = {0};
     Process process;
     char text[64];
-    assert_ok(process_start(&process, (const char *const[]){"sh", "-c", "echo no room >&2; exit 4", NULL}, &error),
-              error);
+    assert_ok(
+        process_start(&process, (const char *const[]){"sh", "-c", "echo no room >&2; echo; exit 4", NULL}, &error),
+        error);
     assert_false(process_finish(&process, text, sizeof text, &error));
-    assert_error(error, ERROR_SYSTEM, "failed (status 4)\nno room");
+    assert_string_equal(error.message, "sh: error: failed (status 4)\nno room");
     error = (Error){0};
     assert_false(process_start(&process, (const char *const[]){"no-such-program", NULL}, &error));
     assert_error(error, ERROR_SYSTEM, "no-such-program: error: cannot be run");

@@ -41,9 +41,21 @@ static void a_kind_that_is_not_built_in_is_refused(void **state) {
     }
 }
 
+static void only_a_missing_library_is_to_be_installed(void **state) {
+    (void)state;
+    Error missing = {0}, broken = {0};
+    assert_false(context_load("libnone.so.1", "libnone1", NULL, 0, NULL, &missing));
+    assert_string_equal(missing.message,
+                        "render: error: cannot load libnone.so.1; install the Debian package libnone1");
+    assert_false(context_load(SOURCE_DIR "/README.md", "libnone1", NULL, 0, NULL, &broken));
+    assert_error(broken, ERROR_SYSTEM, "README.md: invalid ELF header");
+    assert_null(strstr(broken.message, "install"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_kind_is_the_default),
                                        cmocka_unit_test(every_kind_draws_by_llvmpipe),
-                                       cmocka_unit_test(a_kind_that_is_not_built_in_is_refused)};
+                                       cmocka_unit_test(a_kind_that_is_not_built_in_is_refused),
+                                       cmocka_unit_test(only_a_missing_library_is_to_be_installed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,7 +22,10 @@ static void end(PngParts *png) {
 static void assert_differ(const char *text) {
     end(&a);
     end(&b);
-    assert_string_equal(png_display_compare(a.data, a.size, b.data, b.size).text, text);
+    PngDisplay display;
+    Error error = {0};
+    assert_ok(png_display_compare(a.data, a.size, b.data, b.size, &display, &error), error);
+    assert_string_equal(display.text, text);
 }
 
 static void files_without_such_chunks_display_alike(void **state) {

@@ -3,8 +3,8 @@
 
 #include "common/file.h"
 #include "paper/study/paper_tables.h"
+#include "paper/study/whole_training.h"
 #include "study/study_parts.h"
-#include "training/training.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,11 +66,11 @@ static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_C
     }
 }
 
-double paper_accuracy(const Network *network, const Dataset *dataset) {
+bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
     const int outputs = network->widths[network->layers], inputs = network->widths[0];
     double range[PAIR_CHANGES];
     float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
-    if (scratch == NULL) return NAN;
+    if (scratch == NULL) return error_memory(error, "paper");
     find_ranges(dataset, outputs, range);
     int64_t rows = 0, right = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
@@ -83,7 +83,8 @@ double paper_accuracy(const Network *network, const Dataset *dataset) {
         rows++;
     }
     free(scratch);
-    return rows > 0 ? (double)right / (double)rows : NAN;
+    *accuracy = rows > 0 ? (double)right / (double)rows : NAN;
+    return true;
 }
 
 static bool write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
@@ -134,15 +135,16 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
                                .on_score = write_score,
                                .context = &writer};
     read_layers(of->layers, &options);
-    Network *network = training_run(dataset, &options, progress, error);
+    Network *network = whole_training(dataset, &options, progress, error);
     if (network == NULL) return false;
     /* The score of the weights that are kept, which are not the last ones. */
     TrainingScore score = {.iteration = writer.last.iteration};
     const int iterations = score.iteration;
     bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
     score.iteration = iterations;
-    ok = ok && write_network(lines, of, network, &score, paper_accuracy(network, dataset), error) &&
-         store(training, network, error);
+    double accuracy = NAN;
+    ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
+         write_network(lines, of, network, &score, accuracy, error) && store(training, network, error);
     network_destroy(network);
     return ok;
 }

@@ -20,7 +20,7 @@ const char *__msan_default_options(void) { return "poison_in_malloc=0:poison_in_
 
 /* Uninitialised from `kept` on, allocated here. */
 static void *uninitialised(void *block, size_t kept, size_t size) {
-    if (block != NULL && size > kept) __msan_allocated_memory((char *)block + kept, size - kept);
+    if (block != NULL && size > kept) __msan_poison((char *)block + kept, size - kept);
     return block;
 }
 

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A network has its name only when it is whole, and its figures are numbers. */
+#include "testing.h"
+
+#include "allocations.h"
+#include "paper/study/paper_training.h"
+
+#include <math.h>
+
+static const PaperDataSize size = {.swept = "-2:2:1"};
+static PaperDatasets datasets = {.size = &size, .seed = 1};
+static PaperTraining training = {.datasets = &datasets, .seed = 1};
+
+static int begin(void **state) {
+    (void)state;
+    Error error = {0};
+    static char folder[256];
+    assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
+    training.network = paper_network(0);
+    training.network.iterations = 60;
+    training.folder = strcpy(folder, temporary_path("."));
+    return 0;
+}
+
+static int end(void **state) {
+    (void)state;
+    paper_datasets_free(&datasets);
+    return 0;
+}
+
+static const char *network_path(void) { return temporary_path("baseline.npz"); }
+
+typedef struct Limit {
+    int reports, most;
+} Limit;
+
+static bool stop_after(void *context, double done, double total) {
+    (void)done, (void)total;
+    Limit *limit = context;
+    return ++limit->reports <= limit->most;
+}
+
+/* Trains until the report after the first `most` stops it. */
+static bool train(int most, Limit *limit, Error *error) {
+    char *lines = NULL;
+    size_t used;
+    FILE *out = open_memstream(&lines, &used);
+    *limit = (Limit){.most = most};
+    const Progress progress = {stop_after, limit};
+    const bool done = paper_training_write(&training, out, &progress, error);
+    assert_int_equal(fclose(out), 0);
+    if (done) assert_null(strstr(lines, "nan"));
+    free(lines);
+    return done;
+}
+
+static void a_training_that_is_stopped_leaves_no_network(void **state) {
+    (void)state;
+    Error error = {0};
+    Limit limit;
+    assert_ok(train(1 << 20, &limit, &error), error);
+    assert_int_equal(access(network_path(), F_OK), 0);
+    assert_int_equal(remove(network_path()), 0);
+    const int all = limit.reports;
+    assert_true(all >= 3);
+    for (int most = 0; most < all; most += all / 3) {
+        error = (Error){0};
+        assert_false(train(most, &limit, &error));
+        assert_int_not_equal(error.kind, ERROR_NONE);
+        assert_int_not_equal(access(network_path(), F_OK), 0);
+    }
+}
+
+static void without_memory_there_is_no_accuracy(void **state) {
+    (void)state;
+    Error error = {0};
+    const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
+    Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
+    double accuracy = -1;
+    assert_ok(dataset != NULL && network != NULL, error);
+    failing_allocation = 1;
+    assert_false(paper_accuracy(network, dataset, &accuracy, &error));
+    assert_error(error, ERROR_SYSTEM, "out of memory");
+    error = (Error){0};
+    assert_ok(paper_accuracy(network, dataset, &accuracy, &error), error);
+    assert_true(accuracy >= 0 && accuracy <= 1);
+    network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_training_that_is_stopped_leaves_no_network),
+                                       cmocka_unit_test(without_memory_there_is_no_accuracy)};
+    return cmocka_run_group_tests(tests, begin, end);
+}
