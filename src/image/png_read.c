@@ -77,12 +77,17 @@ static void set_strict_limits(Decoder *decoder) {
 }
 
 static void check_size(Decoder *decoder) {
-    uint64_t width = png_get_image_width(decoder->png, decoder->info);
-    uint64_t height = png_get_image_height(decoder->png, decoder->info);
-    if (width * height <= (uint64_t)decoder->max_pixels) return;
-    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %lld pixels can be read",
-                (unsigned long long)width, (unsigned long long)height, (long long)decoder->max_pixels);
-    png_longjmp(decoder->png, 1);
+    const int width = (int)png_get_image_width(decoder->png, decoder->info),
+              height = (int)png_get_image_height(decoder->png, decoder->info);
+    if (!png_check_pixels(width, height, decoder->max_pixels, decoder->path, decoder->error))
+        png_longjmp(decoder->png, 1);
+}
+
+/* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
+static void check_amount(Decoder *decoder) {
+    const double rows = (double)png_get_rowbytes(decoder->png, decoder->info) *
+                        (double)png_get_image_height(decoder->png, decoder->info);
+    if (rows > 1032.0 * (double)decoder->size) png_error(decoder->png, "too few bytes for its pixels");
 }
 
 /* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
@@ -148,6 +153,7 @@ static bool decode(Decoder *decoder) {
     png_read_info(png, decoder->info);
     check_size(decoder);
     refuse_animation(decoder);
+    check_amount(decoder);
     request_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);

@@ -7,6 +7,8 @@
 /* libpng refuses longer chunks where they are not pixels: MAX_TEXT_SIZE in png_read.c. */
 enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2, ADLER_SIZE = 4 };
 
+enum { DEFLATE_BEST_RATIO = 1032 }; /* two bits for 258 bytes (RFC 1951, 3.2.5) */
+
 static bool read_header(const PngChunk *chunk, PngLayout *layout, int64_t max_pixels) {
     static const int channels[] = {
         [PNG_GREY] = 1, [PNG_RGB] = 3, [PNG_PALETTE] = 1, [PNG_GREY_ALPHA] = 2, [PNG_RGB_ALPHA] = 4};
@@ -108,7 +110,8 @@ static bool scan_file(PngRows *rows, int64_t max_pixels) {
     size_rows(rows);
     for (at = next; !scan.ended && png_chunk_next(rows->file, rows->size, &next, &chunk); at = next)
         if (!is_sound(&chunk) || !scan_chunk(rows, &scan, &chunk, at)) return false;
-    return scan.ended && rows->bytes < UINT32_MAX / 2;
+    /* Before memory is allocated for pixels that the file cannot hold. */
+    return scan.ended && rows->bytes < UINT32_MAX / 2 && png_rows_size(rows) / DEFLATE_BEST_RATIO <= rows->compressed;
 }
 
 bool png_rows_open(PngRows *rows, const uint8_t *file, size_t size, int64_t max_pixels) {

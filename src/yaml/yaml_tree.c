@@ -204,6 +204,7 @@ void yaml_free(YamlTree *tree) {
     source_free(&tree->source);
     free(tree->nodes);
     free(tree->texts);
+    *tree = (YamlTree){.node_count = 0}; /* yaml_read() frees a tree that its owner may free again */
 }
 
 const char *yaml_text(const YamlTree *tree, int node) { return tree->texts + tree->nodes[node].text; }
