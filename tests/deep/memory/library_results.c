@@ -9,6 +9,7 @@
 #include <libfyaml.h>
 #include <png.h>
 #include <sanitizer/msan_interface.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <zip.h>
 #include <zlib.h>
@@ -102,6 +103,25 @@ NO_RESULT(png_read_row, (png_structrp png, png_bytep row, png_bytep shown), (png
           __msan_unpoison(row, row_size))
 NO_RESULT(png_read_info, (png_structrp png, png_inforp info), (png, info), )
 NO_RESULT(png_write_info, (png_structrp png, png_const_inforp info), (png, info), )
+
+/* libpng takes its own memory, and not that of functions of twinbox, also in calls that are not among these. */
+#define PNG_CREATE(function)                                                                                      \
+    RESULT(png_structp, function,                                                                                 \
+           (png_const_charp version, png_voidp problem, png_error_ptr fail, png_error_ptr warn, png_voidp memory, \
+            png_malloc_ptr allocate, png_free_ptr release),                                                       \
+           (version, problem, fail, warn, NULL, NULL, NULL), ((void)memory, (void)allocate, (void)release))
+PNG_CREATE(png_create_read_struct_2)
+PNG_CREATE(png_create_write_struct_2)
+
+/* jansson fills what a function of twinbox gives it. */
+static json_malloc_t take;
+static void *take_initialised(size_t size) {
+    void *block = take(size);
+    if (block != NULL) __msan_unpoison(block, size);
+    return block;
+}
+NO_RESULT(json_set_alloc_funcs, (json_malloc_t allocate, json_free_t release), (take_initialised, release),
+          take = allocate == take_initialised ? malloc : allocate)
 
 RESULT(struct fy_event *, fy_parser_parse, (struct fy_parser * parser), (parser), )
 RESULT(const char *, fy_token_get_text, (struct fy_token * token, size_t *length), (token, length), {
