@@ -6,6 +6,7 @@
 #include "cli/notes.h"
 #include "common/names.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,6 +46,7 @@ static int refuse_command(const char *name) {
 }
 
 int main(int argc, char **argv) {
+    signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;

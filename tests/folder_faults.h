@@ -36,3 +36,9 @@ int fstatat(int at, const char *restrict path, struct stat *restrict status, int
     *(void **)&real = dlsym(RTLD_NEXT, "fstatat");
     return fails(&failing_stat) ? -1 : real(at, path, status, flags);
 }
+
+int stat(const char *restrict path, struct stat *restrict status) {
+    int (*real)(const char *restrict, struct stat *restrict);
+    *(void **)&real = dlsym(RTLD_NEXT, "stat");
+    return fails(&failing_stat) ? -1 : real(path, status);
+}

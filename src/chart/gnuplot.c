@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gnuplot works in a temporary folder, so that the script contains no path of the user. */
+/* gnuplot works in a temporary folder, so that neither its script nor the fonts' configuration contains a path. */
 #include "chart/gnuplot.h"
 
 #include "common/file.h"
+#include "chart/gnuplot_folder.h"
 #include "chart/pdf_title.h"
 #include "common/process.h"
 #include "sketch/sketch_formats.h"
 
-#include <errno.h>
-#include <ftw.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { FORMATS = 3, FOLDER_SIZE = 32, PATH_SIZE = 64, DRAWING_MAX_SIZE = 64 << 20 };
+enum { FORMATS = 3, DRAWING_MAX_SIZE = 64 << 20 };
 
 static const char *const endings[FORMATS] = {"png", "svg", "pdf"};
 
@@ -48,14 +47,14 @@ static void write_terminal(FILE *script, int format, const GnuplotDrawing *drawi
 }
 
 /* Each format starts with `reset`: settings of the script would persist. */
-static char *whole_script(const GnuplotDrawing *drawing, const char *folder, size_t *size) {
+static char *whole_script(const GnuplotDrawing *drawing, size_t *size) {
     char *text = NULL;
     FILE *script = open_memstream(&text, size);
     if (script == NULL) return NULL;
     for (int format = 0; format < format_count(drawing); format++) {
         fprintf(script, "reset\nset encoding utf8\n");
         write_terminal(script, format, drawing);
-        fprintf(script, "set output '%s/plot.%s'\n", folder, endings[format]);
+        fprintf(script, "set output 'plot.%s'\n", endings[format]);
         fwrite(drawing->script, 1, drawing->script_size, script);
         fprintf(script, "unset output\n");
     }
@@ -66,30 +65,33 @@ static char *whole_script(const GnuplotDrawing *drawing, const char *folder, siz
 }
 
 static bool is_installed(Error *error) {
-    Process process;
+    Process process = {0};
     char text[256];
-    if (process_start(&process, (const char *const[]){"gnuplot", "--version", NULL}, &(Error){0}))
+    Error cause = {0};
+    if (process_start(&process, (const char *const[]){"gnuplot", "--version", NULL}, &cause))
         return process_finish(&process, text, sizeof text, error);
-    return error_system(error, "gnuplot", "cannot be run; install the Debian package gnuplot-nox to draw charts");
+    if (process.missing)
+        return error_system(error, "gnuplot", "cannot be run; install the Debian package gnuplot-nox to draw charts");
+    *error = cause;
+    return false;
 }
 
 /* A private fontconfig configuration, so that only the embedded font is found. */
 static bool install_font(const char *folder, FontFile font, Error *error) {
-    char path[PATH_SIZE], configuration[256];
-    snprintf(path, sizeof path, "%s/Inter.otf", folder);
-    if (!file_write_soon(path, font.bytes, font.size, error)) return false;
-    int length = snprintf(configuration, sizeof configuration,
-                          "<fontconfig><dir>%s</dir><cachedir>%s</cachedir></fontconfig>\n", folder, folder);
-    snprintf(path, sizeof path, "%s/fonts.conf", folder);
-    return file_write_soon(path, configuration, (size_t)length, error);
+    static const char configuration[] = "<fontconfig><dir prefix=\"cwd\">.</dir><cachedir>.</cachedir></fontconfig>\n";
+    char path[PATH_MAX];
+    return file_path(path, sizeof path, error, "%s/Inter.otf", folder) &&
+           file_write_soon(path, font.bytes, font.size, error) &&
+           file_path(path, sizeof path, error, "%s/fonts.conf", folder) &&
+           file_write_soon(path, configuration, sizeof configuration - 1, error);
 }
 
 static bool run(const char *folder, const char *script, size_t size, Error *error) {
-    char fonts[PATH_SIZE + 16], text[1024];
-    snprintf(fonts, sizeof fonts, "FONTCONFIG_FILE=%s/fonts.conf", folder);
+    char fonts[PATH_MAX], text[1024];
+    if (!file_path(fonts, sizeof fonts, error, "FONTCONFIG_FILE=%s/fonts.conf", folder)) return false;
     Process process;
     /* -d: ignore the user's .gnuplot */
-    const char *const argv[] = {"env", fonts, "gnuplot", "-d", "-", NULL};
+    const char *const argv[] = {"env", "-C", folder, fonts, "gnuplot", "-d", "-", NULL};
     if (!process_start(&process, argv, error)) return false;
     process.name = "gnuplot";
     process_write(&process, script, size);
@@ -152,9 +154,10 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, FontFile 
     size_t size[FORMATS];
     bool done = true;
     for (int i = 0; done && i < formats; i++) {
-        snprintf(path, sizeof path, "%s/plot.%s", folder, endings[i]);
-        data[i] = file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0});
-        done = (data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]);
+        done = file_path(path, sizeof path, error, "%s/plot.%s", folder, endings[i]);
+        data[i] = done ? file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0}) : NULL;
+        done = done &&
+               ((data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]));
     }
     done = done && dress(drawing, font, data, size, error);
     if (done && drawing->overlay != NULL && !insert_overlay(&data[1], &size[1], drawing->overlay))
@@ -169,7 +172,7 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, FontFile 
 
 static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const char *stem, Error *error) {
     size_t size;
-    char *script = whole_script(drawing, folder, &size);
+    char *script = whole_script(drawing, &size);
     if (script == NULL) return error_memory(error, stem);
     const FontFile font = font_file(font_file_suffices(script));
     bool done = install_font(folder, font, error) && run(folder, script, size, error) &&
@@ -178,16 +181,9 @@ static bool draw_in(const char *folder, const GnuplotDrawing *drawing, const cha
     return done;
 }
 
-static int remove_entry(const char *path, const struct stat *status, int flag, struct FTW *walk) {
-    (void)status, (void)flag, (void)walk;
-    return remove(path);
-}
-
 bool gnuplot_draw(const GnuplotDrawing *drawing, const char *stem, Error *error) {
-    if (!is_installed(error)) return false;
-    char folder[FOLDER_SIZE] = "/tmp/twinbox-plot-XXXXXX";
-    if (mkdtemp(folder) == NULL) return error_system(error, folder, "cannot create the directory: %s", strerror(errno));
-    bool done = draw_in(folder, drawing, stem, error);
-    nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
-    return done;
+    GnuplotFolder folder;
+    if (!is_installed(error) || !gnuplot_folder_make(&folder, error)) return false;
+    const bool done = draw_in(folder.path, drawing, stem, error);
+    return gnuplot_folder_remove(&folder, error) && done;
 }

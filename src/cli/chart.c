@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "common/file.h"
+#include "common/folder_reserve.h"
 #include "npz/output_check.h"
 #include "study/speed_accuracy.h"
 #include "type/type_check.h"
@@ -96,8 +97,8 @@ static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Err
         options->launches.table != NULL || options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!chart_csv_read(&table, csv, error)) return false;
-    const bool drawn = file_make_directory(options->folder, error) &&
-                       draw_scenes(&table, csv, options->folder, error) && draw_equal_time(csv, options->folder, error);
+    const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
+                       draw_equal_time(csv, options->folder, error);
     chart_csv_free(&table);
     return drawn;
 }

@@ -4,11 +4,13 @@
 #include "cli/picture_notes.h"
 #include "common/array.h"
 #include "common/file.h"
+#include "common/folder.h"
 #include "common/text_add.h"
 #include "render/sink.h"
 #include "trajectory/trajectory_name.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,38 +44,59 @@ static bool is_of_sequence(const char *name, const RenderResult *result, const P
     return false;
 }
 
-static bool is_input(const char *directory, const char *name, const Panels *panels) {
+/* False with an error if the system fails. */
+static bool look_up(const char *path, struct stat *status, Error *error) {
+    *status = (struct stat){.st_ino = 0};
+    return stat(path, status) == 0 || errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == EACCES ||
+           error_system(error, path, "cannot be inspected: %s", strerror(errno));
+}
+
+static bool is_input(const char *directory, const char *name, const Panels *panels, Error *error) {
     char path[PATH_MAX];
     struct stat file, input;
-    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || stat(path, &file) != 0)
+    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || !look_up(path, &file, error))
         return false;
-    for (int i = 0; i < panels->count; i++)
-        if (stat(panels->inputs[i], &input) == 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino)
-            return true;
+    for (int i = 0; i < panels->count; i++) {
+        if (!look_up(panels->inputs[i], &input, error)) return false;
+        if (input.st_ino != 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino) return true;
+    }
     return false;
 }
 
-static bool add(Names *names, const char *name) {
+static bool add(Names *names, const char *name, Error *error) {
     char *copy = strdup(name);
     if (copy != NULL && array_reserve((void **)&names->list, &names->capacity, names->count + 1, sizeof *names->list)) {
         names->list[names->count++] = copy;
         return true;
     }
     free(copy);
-    return false;
+    return error_memory(error, "render");
 }
 
-static void collect(Names *names, const char *directory, const RenderResult *result, const Panels *panels) {
+static bool collect_entry(Names *names, const char *directory, const char *name, const RenderResult *result,
+                          const Panels *panels, Error *error) {
+    if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
+        is_of_sequence(name, result, panels) || is_input(directory, name, panels, error))
+        return true;
+    return error->kind == ERROR_NONE && add(names, name, error);
+}
+
+static bool collect(Names *names, const char *directory, const RenderResult *result, const Panels *panels,
+                    Error *error) {
     DIR *folder = opendir(directory);
-    if (folder == NULL) return;
-    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-        const char *name = entry->d_name;
-        if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
-            is_of_sequence(name, result, panels) || is_input(directory, name, panels))
-            continue;
-        if (!add(names, name)) break;
-    }
+    if (folder == NULL) return folder_error(directory, error);
+    const struct dirent *entry;
+    bool ok = true;
+    do {
+        errno = 0; /* readdir() returns NULL at the end and on failure */
+        entry = readdir(folder);
+        if (entry != NULL)
+            ok = collect_entry(names, directory, entry->d_name, result, panels, error);
+        else if (errno != 0)
+            ok = error_system(error, directory, "cannot be read: %s", strerror(errno));
+    } while (ok && entry != NULL);
     closedir(folder);
+    return ok;
 }
 
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
@@ -98,11 +121,11 @@ static void describe(const Names *names, char text[TEXT_SIZE]) {
     if (i < names->count) text_add(text, TEXT_SIZE, " and %zu more", names->count - i);
 }
 
-void note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels) {
+bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error) {
     Names names = {0};
     char text[TEXT_SIZE] = "";
-    collect(&names, directory, result, panels);
-    if (names.count > 0) {
+    const bool ok = collect(&names, directory, result, panels, error);
+    if (ok && names.count > 0) {
         qsort(names.list, names.count, sizeof *names.list, by_name);
         describe(&names, text);
         note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
@@ -110,4 +133,5 @@ void note_foreign_files(const char *directory, const RenderResult *result, const
     }
     for (size_t i = 0; i < names.count; i++) free(names.list[i]);
     free(names.list);
+    return ok;
 }

@@ -10,5 +10,5 @@ void note_different_scenes(const Trajectory *const *runs, int count);
 /* If the frames do not contain the impact, -1 for none, around which they are to be slow. */
 void note_missing_impact(const MomentPlan *plan, int impact);
 
-/* If the folder has pictures or runs that are not of the sequence, and not inputs of it. */
-void note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels);
+/* If the folder has pictures or runs that are not of the sequence, and not inputs of it. False if it cannot be read. */
+bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error);

@@ -5,7 +5,7 @@
 #include "cli/options.h"
 #include "cli/panel_costs.h"
 #include "cli/picture_notes.h"
-#include "common/file.h"
+#include "common/folder_reserve.h"
 #include "picture/caption_check.h"
 #include "picture/picture.h"
 #include "render/moments.h"
@@ -182,13 +182,12 @@ static bool render_panels(Options *options, const Panels *panels, Error *error) 
                            panels->count == 1 ? "" : "s");
     if (!check_moments(render, panels, error) ||
         (options->costs != NULL && !panel_costs_read(&costs, options->costs, panels, &render->look, error)) ||
-        !picture_check(runs, panels->count, render, error) || !file_make_directory(render->directory, error) ||
+        !picture_check(runs, panels->count, render, error) || !folder_reserve(render->directory, error) ||
         !panels_store(panels, render->directory, error) ||
         !draw_panels(panels, render, &options->videos, &result, error))
         return false;
     print_result(options, &result);
-    note_foreign_files(render->directory, &result, panels);
-    return true;
+    return note_foreign_files(render->directory, &result, panels, error);
 }
 
 static bool check_texts(const Options *options, Error *error) {

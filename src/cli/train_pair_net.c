@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 #include "cli/train.h"
+#include "common/file.h"
 #include "training/training.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct Options {
     TrainingOptions training;
@@ -102,7 +102,10 @@ static void print_verdict(const TrainingScore *score) {
 static bool may_replace(const Dataset *dataset, const TrainRequest *request, const TrainingOptions *training,
                         const TrainingScore *score, Error *error) {
     TrainingScore before;
-    if (training->start == NULL || access(request->output, F_OK) != 0) return true;
+    bool there;
+    if (training->start == NULL) return true;
+    if (!file_find(request->output, &there, error)) return false;
+    if (!there) return true;
     Network *old = network_read(request->output, error);
     if (old == NULL) return false;
     const bool scored = training_score(dataset, old, training->loss, &before, error);

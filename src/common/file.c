@@ -120,6 +120,25 @@ char *file_read_input(size_t limit, size_t *size, Error *error) {
     return NULL;
 }
 
+ssize_t file_read_all(int file, void *data, size_t size) {
+    size_t used = 0;
+    while (used < size) {
+        const ssize_t got = read(file, (char *)data + used, size - used);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return -1;
+        if (got == 0) break;
+        used += (size_t)got;
+    }
+    return (ssize_t)used;
+}
+
+bool file_find(const char *path, bool *there, Error *error) {
+    struct stat status;
+    *there = stat(path, &status) == 0;
+    return *there || errno == ENOENT || errno == ENOTDIR ||
+           error_system(error, path, "cannot be inspected: %s", strerror(errno));
+}
+
 static bool is_directory(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);

@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 /* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
    descriptors, or the disk fails. Returns false. */
@@ -49,6 +50,17 @@ bool file_draft_write(int draft, const char *path, const void *data, size_t size
 
 /* Makes the draft that file `path`, atomically, or copies it there if `path` is a pipe or a device. Still to be closed. */
 bool file_draft_publish(int draft, const char *path, Error *error);
+
+/* Writes all, or reads all that there is of `size` bytes, also after a signal. file_write_all() is false and file_read_all()
+   is -1 with errno set. */
+bool file_write_all(int file, const void *data, size_t size);
+ssize_t file_read_all(int file, void *data, size_t size);
+
+/* Removes a file, if there is one. */
+bool file_remove(const char *path, Error *error);
+
+/* Whether there is a file or folder of that name; false with error set if the system cannot tell. */
+bool file_find(const char *path, bool *there, Error *error);
 
 /* Copies an open file from its beginning to where the file `to` stands. False with errno set. */
 bool file_copy(int to, int from);

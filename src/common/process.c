@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/process.h"
 
+#include "common/temporary.h"
 #include "common/text_add.h"
 #include "common/trace.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <spawn.h>
 #include <string.h>
@@ -30,11 +32,25 @@ static bool spawn(Process *process, const char *const *argv, int child_input, Er
     /* posix_spawn's signature needs the cast; it does not write to the strings. */
     int code = posix_spawnp(&process->pid, argv[0], &actions, NULL, (char *const *)argv, environ);
     posix_spawn_file_actions_destroy(&actions);
+    process->missing = code == ENOENT;
     if (code != 0)
         return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
                             code == ENOENT ? "; is its package installed?" : "");
     trace(argv);
     return true;
+}
+
+/* In the folder for temporary files, for which tmpfile() has no choice. */
+static FILE *open_output(void) {
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/output", temporary_files_folder()) >= PATH_MAX) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    const int file = temporary_nameless(path);
+    FILE *output = file >= 0 ? fdopen(file, "r+") : NULL;
+    if (output == NULL && file >= 0) close(file);
+    return output;
 }
 
 bool process_start(Process *process, const char *const *argv, Error *error) {
@@ -43,9 +59,10 @@ bool process_start(Process *process, const char *const *argv, Error *error) {
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return error_system(error, argv[0], "%s", strerror(errno));
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    *process = (Process){.name = argv[0], .input = ends[0], .output = tmpfile()};
+    *process = (Process){.name = argv[0], .input = ends[0], .output = open_output()};
     bool ok = process->output != NULL ? spawn(process, argv, ends[1], error)
-                                      : error_system(error, argv[0], "no temporary file: %s", strerror(errno));
+                                      : error_system(error, argv[0], "no temporary file in %s: %s",
+                                                     temporary_files_folder(), strerror(errno));
     close(ends[1]);
     if (ok) return true;
     close(process->input);

@@ -13,6 +13,7 @@ typedef struct Process {
     pid_t pid;
     int input;    /* connected to its standard input */
     FILE *output; /* its standard output and error */
+    bool missing; /* there is no such program */
 } Process;
 
 /* Starts argv[0], found in PATH; argv ends with NULL and must outlive the process. ERROR_SYSTEM if it is missing. */

@@ -41,18 +41,12 @@ static void join_scenes(const Dataset *dataset, char text[SCENES_SIZE]) {
     }
 }
 
-bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
-    const int32_t version = DATASET_VERSION;
+enum { WORDS = 6, ARRAYS = 11 };
+
+/* One list for writing and reading; the last may be missing. */
+static void list_arrays(const Dataset *dataset, NpzArray list[ARRAYS]) {
     const int64_t rows = dataset->rows, launches = dataset->launches;
-    char scenes[SCENES_SIZE];
-    join_scenes(dataset, scenes);
-    const NpzArray arrays[] = {
-        {"version", NPZ_INT32, 0, {0}, &version},
-        {"kind", NPZ_TEXT, 0, {0}, KIND},
-        {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
-        {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
-        {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
-        {"scenes", NPZ_TEXT, 0, {0}, scenes},
+    const NpzArray all[ARRAYS] = {
         {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
         {"launch_x", NPZ_FLOAT32, 1, {launches}, dataset->launch_x},
         {"launch_rotation", NPZ_FLOAT32, 1, {launches}, dataset->launch_rotation},
@@ -65,6 +59,22 @@ bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
         {"bodies", NPZ_INT32, 2, {rows, 2}, dataset->bodies},
         {"context", NPZ_FLOAT32, 2, {rows, PAIR_CONTEXT}, dataset->context},
     };
+    memcpy(list, all, sizeof all);
+}
+
+bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
+    const int32_t version = DATASET_VERSION;
+    char scenes[SCENES_SIZE];
+    join_scenes(dataset, scenes);
+    NpzArray arrays[WORDS + ARRAYS] = {
+        {"version", NPZ_INT32, 0, {0}, &version},
+        {"kind", NPZ_TEXT, 0, {0}, KIND},
+        {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
+        {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
+        {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
+        {"scenes", NPZ_TEXT, 0, {0}, scenes},
+    };
+    list_arrays(dataset, arrays + WORDS);
     const size_t count = sizeof arrays / sizeof arrays[0];
     return npz_write(path, arrays, dataset->context != NULL ? count : count - 1, error);
 }
@@ -111,6 +121,10 @@ static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error 
     return true;
 }
 
+static void *take(NpzFile *file, const NpzArray *array, Error *error) {
+    return npz_read(file, array->name, array->type, array->rank, array->shape, error);
+}
+
 static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
     int64_t launches, shape[2];
     if (!npz_shape(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) return false;
@@ -121,20 +135,21 @@ static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error
                            (long long)launches, (long long)rows);
     dataset->launches = (int)launches;
     dataset->rows = rows;
-    const int64_t inputs[] = {rows, dataset_inputs(dataset)}, changes[] = {rows, pair_change_count(dataset->target)},
-                  bodies[] = {rows, 2}, context[] = {rows, PAIR_CONTEXT};
-    return (dataset->launch_scene = npz_read(file, "launch_scene", NPZ_INT32, 1, &launches, error)) != NULL &&
-           (dataset->launch_x = npz_read(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
-           (dataset->launch_rotation = npz_read(file, "launch_rotation", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
-           (dataset->launch_spin = npz_read(file, "launch_spin", NPZ_FLOAT32, 1, &launches, error)) != NULL &&
-           (dataset->launch_test = npz_read(file, "launch_test", NPZ_UINT8, 1, &launches, error)) != NULL &&
-           (dataset->inputs = npz_read(file, "inputs", NPZ_FLOAT32, 2, inputs, error)) != NULL &&
-           (dataset->changes = npz_read(file, "changes", NPZ_FLOAT32, 2, changes, error)) != NULL &&
-           (dataset->launch = npz_read(file, "launch", NPZ_INT32, 1, &rows, error)) != NULL &&
-           (dataset->frame = npz_read(file, "frame", NPZ_INT32, 1, &rows, error)) != NULL &&
-           (dataset->bodies = npz_read(file, "bodies", NPZ_INT32, 2, bodies, error)) != NULL &&
-           (!npz_has(file, "context") ||
-            (dataset->context = npz_read(file, "context", NPZ_FLOAT32, 2, context, error)) != NULL);
+    NpzArray list[ARRAYS], *next = list;
+    const bool has_context = npz_has(file, "context");
+    list_arrays(dataset, list);
+    return npz_expect(file, list, has_context ? ARRAYS : ARRAYS - 1, error) &&
+           (dataset->launch_scene = take(file, next++, error)) != NULL &&
+           (dataset->launch_x = take(file, next++, error)) != NULL &&
+           (dataset->launch_rotation = take(file, next++, error)) != NULL &&
+           (dataset->launch_spin = take(file, next++, error)) != NULL &&
+           (dataset->launch_test = take(file, next++, error)) != NULL &&
+           (dataset->inputs = take(file, next++, error)) != NULL &&
+           (dataset->changes = take(file, next++, error)) != NULL &&
+           (dataset->launch = take(file, next++, error)) != NULL &&
+           (dataset->frame = take(file, next++, error)) != NULL &&
+           (dataset->bodies = take(file, next++, error)) != NULL &&
+           (!has_context || (dataset->context = take(file, next, error)) != NULL);
 }
 
 static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path, Error *error) {

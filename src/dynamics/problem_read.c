@@ -25,6 +25,23 @@ static bool read_head(StoredProblem *stored, NpzFile *file, const char *path, Er
     return true;
 }
 
+static bool expect_fields(const NpzFile *file, const ProblemField *fields, int field_count, int64_t count,
+                          Error *error) {
+    for (int f = 0; f < field_count; f++) {
+        const NpzArray array = {
+            fields[f].name, NPZ_FLOAT32, fields[f].count > 1 ? 2 : 1, {count, fields[f].count}, NULL};
+        if (!npz_expect(file, &array, 1, error)) return false;
+    }
+    return true;
+}
+
+static bool check_shapes(const NpzFile *file, int64_t bodies, int64_t contacts, Error *error) {
+    const NpzArray heads[] = {{"contact_bodies", NPZ_INT32, 2, {contacts, 2}, NULL},
+                              {"contact_feature", NPZ_UINT32, 1, {contacts}, NULL}};
+    return expect_fields(file, body_fields, BODY_FIELDS, bodies, error) &&
+           expect_fields(file, contact_fields, CONTACT_FIELDS, contacts, error) && npz_expect(file, heads, 2, error);
+}
+
 static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     int64_t bodies, contacts[2];
     if (!npz_shape(file, "angle", NPZ_FLOAT32, 1, &bodies, error) ||
@@ -40,6 +57,7 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
     problem->contact_count = (int)contacts[0];
     if (problem->bomb < -1 || problem->bomb >= problem->body_count)
         return error_input(error, path, "the bomb is body %d of %d", problem->bomb, problem->body_count);
+    if (!check_shapes(file, bodies, contacts[0], error)) return false;
     problem->bodies = stored->bodies = calloc((size_t)bodies, sizeof *stored->bodies);
     problem->contacts = stored->contacts = calloc((size_t)contacts[0] + 1, sizeof *stored->contacts);
     return (stored->bodies != NULL && stored->contacts != NULL) || error_memory(error, path);

@@ -41,6 +41,22 @@ static bool read_header(const PngChunk *chunk, Header *header) {
            depth_fits(header->color, header->depth) && data[10] == 0 && data[11] == 0 && header->interlace <= 1;
 }
 
+bool png_size(const uint8_t *data, size_t size, int *width, int *height) {
+    Header header;
+    PngChunk chunk;
+    size_t at = PNG_SIGNATURE;
+    if (size < PNG_SIGNATURE || !png_chunk_next(data, size, &at, &chunk) || !read_header(&chunk, &header)) return false;
+    *width = (int)header.width;
+    *height = (int)header.height;
+    return true;
+}
+
+bool png_check_pixels(int width, int height, int64_t max_pixels, const char *path, Error *error) {
+    return (int64_t)width * height <= max_pixels ||
+           error_input(error, path, "the picture has %d x %d pixels; at most %lld pixels can be read", width, height,
+                       (long long)max_pixels);
+}
+
 /* Bytes of the filtered rows of one pass with every dx-th pixel from x on, and every dy-th row from y on. */
 static double pass_size(const Header *header, int x, int y, int dx, int dy) {
     static const int channels[] = {[GREY] = 1, [RGB] = 3, [PALETTE] = 1, [GREY_ALPHA] = 2, [RGB_ALPHA] = 4};

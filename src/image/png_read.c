@@ -77,12 +77,10 @@ static void set_strict_limits(Decoder *decoder) {
 }
 
 static void check_size(Decoder *decoder) {
-    uint64_t width = png_get_image_width(decoder->png, decoder->info);
-    uint64_t height = png_get_image_height(decoder->png, decoder->info);
-    if (width * height <= (uint64_t)decoder->max_pixels) return;
-    error_input(decoder->error, decoder->path, "the picture has %llu x %llu pixels; at most %lld pixels can be read",
-                (unsigned long long)width, (unsigned long long)height, (long long)decoder->max_pixels);
-    png_longjmp(decoder->png, 1);
+    const int width = (int)png_get_image_width(decoder->png, decoder->info),
+              height = (int)png_get_image_height(decoder->png, decoder->info);
+    if (!png_check_pixels(width, height, decoder->max_pixels, decoder->path, decoder->error))
+        png_longjmp(decoder->png, 1);
 }
 
 /* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/net_state.h"
 
+#include "common/file.h"
 #include "npz/npz.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define KIND "interior-net-training"
 
@@ -63,14 +63,15 @@ static bool read_all(NpzFile *file, NetState *state, Error *error) {
     NpzArray arrays[ARRAYS];
     double *const numbers[ARRAYS] = {state->weights, state->mean, state->square, state->drivers[0]};
     list(state, arrays);
-    if (!read_place(file, state, error)) return false;
+    if (!npz_expect(file, arrays, ARRAYS, error) || !read_place(file, state, error)) return false;
     for (int i = 0; i < ARRAYS; i++)
         if (!read_numbers(file, &arrays[i], numbers[i], error)) return false;
     return true;
 }
 
 bool net_state_read(NetState *state, const char *path, const char *command, Error *error) {
-    if (access(path, F_OK) != 0) return false;
+    bool there;
+    if (!file_find(path, &there, error) || !there) return false;
     NpzFile *file = npz_open(path, error);
     if (file == NULL) return false;
     bool ok = npz_check_kind(file, KIND, VERSION, error) &&

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/net_training.h"
 
+#include "common/file.h"
 #include "interior_training/recording.h"
 #include "interior_training/split_mix.h"
 #include "solvers/interior_net.h"
@@ -8,7 +9,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { HELD_OUT_SEED = 7919, HELD_OUT_PART = 5 }; /* a fifth as many scenes */
 
@@ -178,7 +178,7 @@ bool net_training_run(const NetTraining *training, InteriorNet *net, const Progr
     bool ok = run(trainer, error);
     *net = (InteriorNet){0};
     round_weights(trainer->state.weights, net);
-    if (ok && !trainer->stage.stopped) unlink(training->state_path);
+    if (ok && !trainer->stage.stopped) ok = file_remove(training->state_path, error);
     net_fit_free(&trainer->fit);
     impact_problems_free(&trainer->problems);
     impact_problems_free(&trainer->held_out);

@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_SIZE = 1 << 26, MAX_SIDE = 1 << 16 };
+/* Members before the view: render writes 13. */
+enum { MAX_SIZE = 1 << 26, MAX_SIDE = 1 << 16, MAX_MEMBERS = 32 };
 static const double MAX_PLACE = 1e9; /* pixels */
 
 static bool bad(const JsonReader *json, Error *error, const char *what) {
@@ -107,7 +108,8 @@ static void read_look(const json_t *value, View *view) {
 /* The members before the view, and the view. */
 static bool read_members(JsonReader *json, View *view, Error *error) {
     if (!json_read_char(json, '{')) return bad(json, error, "'{'");
-    for (bool more = true; more;) {
+    int members = 0;
+    for (bool more = true; more && members++ < MAX_MEMBERS;) {
         char key[32];
         const json_t *value = json_read_value(json, error);
         if (value == NULL) return false;

@@ -31,7 +31,16 @@ static bool read(NpzFile *file, const FileFloats *floats, Error *error) {
     return i == size;
 }
 
+bool file_floats_expect(const NpzFile *file, const FileFloats *list, int count, Error *error) {
+    for (int i = 0; i < count; i++) {
+        const NpzArray array = file_floats_array(&list[i]);
+        if (!npz_expect(file, &array, 1, error)) return false;
+    }
+    return true;
+}
+
 bool file_floats_read(NpzFile *file, const FileFloats *list, int count, Error *error) {
+    if (!file_floats_expect(file, list, count, error)) return false;
     for (int i = 0; i < count; i++)
         if (!read(file, &list[i], error)) return false;
     return true;

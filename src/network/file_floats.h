@@ -21,5 +21,8 @@ typedef struct FileFloats {
 
 NpzArray file_floats_array(const FileFloats *floats);
 
-/* Reads the arrays; an error names the file, the array and the number. */
+/* Whether the file has the arrays in these shapes; for a network too large for its file, before memory is taken for it. */
+bool file_floats_expect(const NpzFile *file, const FileFloats *list, int count, Error *error);
+
+/* Reads the arrays, after a look at all their shapes; an error names the file, the array and the number. */
 bool file_floats_read(NpzFile *file, const FileFloats *list, int count, Error *error);

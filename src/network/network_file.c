@@ -112,6 +112,14 @@ static bool read_activations(NpzFile *file, const char *path, Network *network, 
     return error_input(error, path, "%d activations for %d layers", count, network->layers);
 }
 
+/* Before memory is taken for what only the widths tell. */
+static bool expect_contents(const NpzFile *file, int layers, const int *widths, Error *error) {
+    Network sizes = {.layers = layers};
+    FileFloats floats[MAX_FLOATS];
+    memcpy(sizes.widths, widths, (size_t)(layers + 1) * sizeof *widths);
+    return file_floats_expect(file, floats, list_floats(&sizes, floats), error);
+}
+
 static bool read_contents(NpzFile *file, const char *path, Network *network, Error *error) {
     if (!read_activations(file, path, network, error)) return false;
     FileFloats floats[MAX_FLOATS];
@@ -129,7 +137,7 @@ Network *network_read(const char *path, Error *error) {
     int widths[NETWORK_MAX_LAYERS + 1];
     Network *network = NULL;
     int layers = npz_check_kind(file, KIND, NETWORK_VERSION, error) ? read_widths(file, path, widths, error) : 0;
-    if (layers > 0) network = network_create(layers, widths, error);
+    if (layers > 0 && expect_contents(file, layers, widths, error)) network = network_create(layers, widths, error);
     if (network != NULL && !read_contents(file, path, network, error)) {
         network_destroy(network);
         network = NULL;

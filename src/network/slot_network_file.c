@@ -143,12 +143,27 @@ static bool read_contents(NpzFile *file, SlotNetwork *network, Error *error) {
     return true;
 }
 
+/* All but the factors, before memory is taken for what only the widths tell. */
+static bool expect_contents(const NpzFile *file, const SlotShape *shape, Error *error) {
+    const int slots = shape->slot_count, inputs = ROW_LANES + shape->state + shape->present + shape->warm;
+    SlotNetwork sizes = {.slot_count = slots,
+                         .bomb_state = {.from = SLOT_BODY_NUMBERS, .to = ROW_LANES},
+                         .state = {.from = SLOT_BODY_NUMBERS * (shape->body_count - 1), .to = shape->state},
+                         .present = {.from = slots, .to = shape->present},
+                         .warm = {.from = 2 * slots, .to = shape->warm},
+                         .first = {.from = inputs, .to = shape->hidden},
+                         .second = {.from = shape->hidden, .to = shape->hidden}};
+    FileFloats floats[FLOAT_ARRAYS];
+    list_floats(&sizes, floats);
+    return file_floats_expect(file, floats, FLOAT_ARRAYS - 1, error);
+}
+
 static SlotNetwork *read_network(NpzFile *file, Error *error) {
     SlotShape shape;
     if (!npz_check_kind(file, KIND, SLOT_NETWORK_VERSION, error) || !read_shape(file, &shape, error)) return NULL;
     Slot *slots = read_slots(file, shape.slot_count, error);
     SlotNetwork *network = NULL;
-    if (slots != NULL && slot_shape_check(&shape, slots, npz_path(file), error))
+    if (slots != NULL && slot_shape_check(&shape, slots, npz_path(file), error) && expect_contents(file, &shape, error))
         network = slot_network_create(&shape, slots, error);
     free(slots);
     if (network == NULL || read_contents(file, network, error)) return network;

@@ -73,13 +73,17 @@ static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *me
     return false;
 }
 
+/* Counts memory against the file's budget. */
+static bool spend(NpzFile *file, uint64_t size, Error *error) {
+    if (size > file->budget - file->bytes_read)
+        return error_input(error, file->path, "its arrays take more than %" PRIu64 " bytes together", file->budget);
+    file->bytes_read += size;
+    return true;
+}
+
 static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     uint64_t size = array->head.data_size;
-    if (size > NPZ_MAX_BYTES - file->bytes_read) {
-        error_input(error, file->path, "its arrays are larger than 2 GiB together");
-        return NULL;
-    }
-    file->bytes_read += size;
+    if (!spend(file, size, error)) return NULL;
     char *data = malloc(size > 0 ? size : 1);
     if (data == NULL) {
         error_memory(error, file->path);
@@ -102,12 +106,9 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
 static void *convert(NpzFile *file, const StoredArray *array, void *data, NpzType type, Error *error) {
     size_t size = npy_count(&array->head) * npy_type_size(type);
     char reason[NPY_REASON_SIZE];
-    bool small = size <= NPZ_MAX_BYTES;
-    void *converted = small ? malloc(size > 0 ? size : 1) : NULL;
+    void *converted = malloc(size > 0 ? size : 1);
     bool done = false;
-    if (!small)
-        error_input(error, file->path, "array '%s' is larger than 2 GiB as %s", array->name, npy_type_name(type));
-    else if (converted == NULL)
+    if (converted == NULL)
         error_memory(error, file->path);
     else if (!npy_convert(&array->head, data, type, converted, reason))
         error_input(error, file->path, "array '%s': %s", array->name, reason);
@@ -119,16 +120,32 @@ static void *convert(NpzFile *file, const StoredArray *array, void *data, NpzTyp
     return NULL;
 }
 
-void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const int64_t *shape, Error *error) {
+/* The array, if it has this type, rank and shape. */
+static const StoredArray *find_shaped(const NpzFile *file, const char *name, NpzType type, int rank,
+                                      const int64_t *shape, Error *error) {
     const StoredArray *array = find_of(file, name, type, rank, error);
-    if (array == NULL) return NULL;
-    for (int i = 0; i < rank; i++) {
+    for (int i = 0; array != NULL && i < rank; i++) {
         if (array->head.shape[i] == shape[i]) continue;
         char found[96], wanted[96];
         error_input(error, file->path, "array '%s' has shape %s; expected %s", name,
                     shape_text(found, rank, array->head.shape), shape_text(wanted, rank, shape));
         return NULL;
     }
+    return array;
+}
+
+bool npz_expect(const NpzFile *file, const NpzArray *arrays, size_t count, Error *error) {
+    for (size_t i = 0; i < count; i++)
+        if (find_shaped(file, arrays[i].name, arrays[i].type, arrays[i].rank, arrays[i].shape, error) == NULL)
+            return false;
+    return true;
+}
+
+void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const int64_t *shape, Error *error) {
+    const StoredArray *array = find_shaped(file, name, type, rank, shape, error);
+    if (array == NULL) return NULL;
+    const uint64_t converted = npy_count(&array->head) * npy_type_size(type), stored = array->head.data_size;
+    if (converted > stored && !spend(file, converted - stored, error)) return NULL;
     void *data = read_data(file, array, error);
     return data == NULL || is_stored_as(&array->head, type, array->head.rank) ? data
                                                                               : convert(file, array, data, type, error);

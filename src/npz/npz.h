@@ -41,7 +41,8 @@ bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *er
 typedef struct NpzFile NpzFile;
 
 /* Opens an archive and reads the headers of its arrays (no data yet). NULL with error set ("path: error: ...") if it is
-   not an archive, is truncated, holds a member that is not a .npy of the types above, or a name twice. */
+   not an archive, is truncated, holds a member that is not a .npy of the types above, a name twice, or more than its
+   budget. */
 NpzFile *npz_open(const char *path, Error *error);
 void npz_close(NpzFile *file);
 
@@ -59,12 +60,23 @@ const char *npz_path(const NpzFile *file);
 
 bool npz_has(const NpzFile *file, const char *name);
 
+/* What the arrays of a file may take in memory together, as they are stored and as they are converted: NPZ_ALWAYS bytes and
+   NPZ_RATIO times its size, at most 2 GiB. Files of npz_write() do: its fastest deflate, which large arrays get, shrinks
+   zeros to 1/230. A program that deflates better reaches 1/1032, but only with arrays that hold almost nothing. */
+#define NPZ_ALWAYS (UINT64_C(16) << 20)
+#define NPZ_RATIO UINT64_C(256)
+uint64_t npz_budget(uint64_t size);
+
 /* Fills shape[rank] of an array. False with error set if it is missing or has another type or rank. */
 bool npz_shape(const NpzFile *file, const char *name, NpzType type, int rank, int64_t *shape, Error *error);
 
+/* False with error set unless the file has all these arrays, each of this type, rank and shape; their data is not used. A
+   reader calls this for all its arrays before it inflates the first: a contradiction costs neither time nor memory. */
+bool npz_expect(const NpzFile *file, const NpzArray *arrays, size_t count, Error *error);
+
 /* Inflates one array into a malloc'ed block that the caller frees. Its type, rank and shape must be those given; the
    error names path, array, what was found and what was expected. Also an error if all data read from this file exceeds
-   2 GiB or the data is damaged (checksum). A rank-0 array is read with shape NULL. */
+   its budget or the data is damaged (checksum). A rank-0 array is read with shape NULL. */
 void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const int64_t *shape, Error *error);
 
 /* Reads an NPZ_TEXT of at most size - 1 bytes into text. */

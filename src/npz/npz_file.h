@@ -16,7 +16,9 @@ typedef struct StoredArray {
 struct NpzFile {
     zip_t *archive;
     char *path;
-    uint64_t bytes_read; /* inflated so far, against NPZ_MAX_BYTES */
+    uint64_t size;       /* of the file, bytes */
+    uint64_t budget;     /* bytes that its arrays may take in memory, see npz.h */
+    uint64_t bytes_read; /* of that so far */
     bool converts;
     zip_uint64_t count;
     StoredArray arrays[NPZ_MAX_ARRAYS]; /* in the order of the archive */

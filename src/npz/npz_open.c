@@ -106,6 +106,24 @@ static bool read_directory(NpzFile *file, Error *error) {
     return true;
 }
 
+uint64_t npz_budget(uint64_t size) {
+    const uint64_t budget = NPZ_ALWAYS + NPZ_RATIO * size;
+    return budget < NPZ_MAX_BYTES ? budget : NPZ_MAX_BYTES;
+}
+
+/* A bomb is refused here, whatever reads it. */
+static bool check_budget(NpzFile *file, Error *error) {
+    uint64_t total = 0;
+    for (zip_uint64_t i = 0; i < file->count; i++) total += file->arrays[i].head.data_size;
+    file->budget = npz_budget(file->size);
+    if (total <= file->budget) return true;
+    if (total > NPZ_MAX_BYTES) return error_input(error, file->path, "its arrays are larger than 2 GiB together");
+    return error_input(error, file->path,
+                       "its arrays take %" PRIu64 " bytes; expected at most %" PRIu64
+                       " (%d MiB and %d times the size of the file); store them with less compression",
+                       total, file->budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
+}
+
 static bool refuse_pointer(int descriptor, const char *path, Error *error) {
     char start[64];
     ssize_t size = pread(descriptor, start, sizeof start, 0);
@@ -114,7 +132,7 @@ static bool refuse_pointer(int descriptor, const char *path, Error *error) {
 }
 
 /* Opens the file and checks that it is safe to pass to libzip. */
-static int open_checked(const char *path, Error *error) {
+static int open_checked(const char *path, uint64_t *size, Error *error) {
     /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
     int descriptor =
         path_is_standard(path) ? standard_input_open(error) : open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -134,13 +152,14 @@ static int open_checked(const char *path, Error *error) {
         done = refuse_pointer(descriptor, path, error) &&
                zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
     if (done) trace_line("read %s, %jd bytes", path, (intmax_t)status.st_size);
+    *size = done ? (uint64_t)status.st_size : 0;
     if (done) return descriptor;
     close(descriptor);
     return -1;
 }
 
 static bool open_archive(NpzFile *file, Error *error) {
-    int descriptor = open_checked(file->path, error), code;
+    int descriptor = open_checked(file->path, &file->size, error), code;
     if (descriptor < 0) return false;
     errno = 0;
     file->archive = zip_fdopen(descriptor, 0, &code);
@@ -162,7 +181,7 @@ NpzFile *npz_open(const char *path, Error *error) {
     if (file != NULL) file->path = strdup(path);
     if (file == NULL || file->path == NULL)
         error_memory(error, path);
-    else if (open_archive(file, error) && read_directory(file, error))
+    else if (open_archive(file, error) && read_directory(file, error) && check_budget(file, error))
         return file;
     npz_close(file);
     return NULL;

@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "common/standard_io.h"
+#include "common/temporary.h"
 #include "npz/npz.h"
 
 #include <errno.h>
@@ -15,17 +16,16 @@
 
 enum { KIND_SIZE = 64 };
 
-/* Makes a file and removes it: permissions alone do not tell, as for root, full tables or /proc. `folder` ends in a
+/* Makes a file that goes at once: permissions alone do not tell, as for root, full tables or /proc. `folder` ends in a
    slash or is empty. */
 static bool try_folder(const char *folder, const char *path, Error *error) {
-    char name[PATH_MAX];
-    if (!file_path(name, sizeof name, error, "%s.twinbox-XXXXXX", folder)) return false;
-    const int file = mkstemp(name);
+    char inside[PATH_MAX];
+    if (!file_path(inside, sizeof inside, error, "%sfile", folder)) return false;
+    const int file = temporary_nameless(inside);
     if (file < 0 && (errno == ENOENT || errno == ENOTDIR))
         return error_system(error, path, "cannot write: '%s' is not a folder that takes files", folder);
     if (file < 0) return error_system(error, path, "cannot write: %s", strerror(errno));
     close(file);
-    unlink(name);
     return true;
 }
 

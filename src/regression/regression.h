@@ -64,6 +64,7 @@ typedef struct RegressionFrame {
                                        accepted (base->next), the one that passes or is closest */
     RegressionFile files[SIDES];
     PixelVerdict pixels;
+    bool sizes_alone; /* PIXELS_RESIZED, and the overlap is less than 1/16 of the larger picture: it is not compared */
     StateVerdict states;
     int panel; /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;

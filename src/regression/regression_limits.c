@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool check_rules(const Regression *regression, Error *error) {
     const char **names = malloc(((size_t)regression->count + 1) * sizeof *names);
@@ -26,7 +25,9 @@ bool regression_read_rules(Regression *regression, Error *error) {
     const char *path = regression->options.rules;
     if (path == NULL) {
         if (!file_path(found, sizeof found, error, "%s/%s", expected->folder, RULES_NAME)) return false;
-        if (access(found, F_OK) != 0) return true;
+        bool there;
+        if (!file_find(found, &there, error)) return false;
+        if (!there) return true;
         path = found;
     }
     regression->rules = rules_read(path, error);
@@ -149,7 +150,7 @@ bool regression_measure_first(Regression *regression, Error *error) {
     for (int i = 0; i < regression->count; i++) {
         RegressionFrame *frame = &regression->frames[i];
         if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
-        bool wanted = (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
+        bool wanted = !frame->sizes_alone && (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
         return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
     }
     return true;

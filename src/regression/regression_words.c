@@ -74,8 +74,9 @@ RegressionText frame_words(const RegressionFrame *frame) {
     case PIXELS_MISSING: add(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: add(&words, "", "no expected picture"); break;
     case PIXELS_RESIZED:
-        add(&words, "", "sizes differ: %d x %d and %d x %d pixels; overlap: ", a->width, a->height, b->width,
-            b->height);
+        add(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        if (frame->sizes_alone) break;
+        add(&words, "; ", "overlap: ");
         add_difference(&words, difference);
         break;
     case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;

@@ -9,8 +9,6 @@
 #include "picture/picture.h"
 #include "render/moments.h"
 
-#include <stdio.h>
-
 typedef struct Manifest {
     const Picture *picture;
     const RenderOptions *options;
@@ -21,7 +19,7 @@ typedef struct Manifest {
     PictureHashes *hashes; /* [last - first + 1] */
     bool *known;           /* [last - first + 1], whether the hashes are set */
     bool valid;            /* manifest.json is of these pictures */
-    FILE *out;             /* the journal */
+    int out;               /* the journal; -1: none */
 } Manifest;
 
 /* Opens the manifest of these pictures in options->directory, which must exist. All pointers must outlive the

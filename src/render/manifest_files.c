@@ -29,7 +29,8 @@ static char *join(const char *directory, const char *name) {
 bool manifest_open(Manifest *manifest, const Picture *picture, const RenderOptions *options, const MomentPlan *plan,
                    int first, int last, Error *error) {
     size_t size, count = (size_t)(last - first) + 1;
-    *manifest = (Manifest){.picture = picture, .options = options, .plan = plan, .first = first, .last = last};
+    *manifest =
+        (Manifest){.picture = picture, .options = options, .plan = plan, .first = first, .last = last, .out = -1};
     manifest->path = join(options->directory, "manifest.json");
     manifest->journal = join(options->directory, "manifest.json.part");
     manifest->head = file_print(manifest_print_head, manifest, &size);
@@ -41,7 +42,7 @@ bool manifest_open(Manifest *manifest, const Picture *picture, const RenderOptio
 }
 
 void manifest_close(Manifest *manifest) {
-    if (manifest->out != NULL) fclose(manifest->out);
+    if (manifest->out >= 0) close(manifest->out);
     free(manifest->path);
     free(manifest->journal);
     free(manifest->head);
@@ -135,16 +136,16 @@ static bool check_overwritable(const char *path, Error *error) {
 
 bool manifest_begin(Manifest *manifest, bool whole, Error *error) {
     if (!check_overwritable(manifest->path, error) || !check_overwritable(manifest->journal, error)) return false;
-    if (whole) stale_remove(manifest);
+    if (whole && !stale_remove(manifest, error)) return false;
     size_t size;
     char *text = file_print(manifest_print_journal, manifest, &size);
     bool ok =
         text != NULL ? file_write_soon(manifest->journal, text, size, error) : error_memory(error, manifest->journal);
     free(text);
     if (!ok) return false;
-    if (!manifest->valid) unlink(manifest->path);
-    manifest->out = fopen(manifest->journal, "a");
-    return manifest->out != NULL || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
+    if (!manifest->valid && !file_remove(manifest->path, error)) return false;
+    manifest->out = open(manifest->journal, O_WRONLY | O_APPEND | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
+    return manifest->out >= 0 || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
 }
 
 bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *error) {
@@ -153,12 +154,16 @@ bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *er
     if (manifest->known[i] && old->pixels == hashes.pixels && old->file == hashes.file) return true;
     manifest->hashes[i] = hashes;
     manifest->known[i] = true;
-    manifest_print_line(manifest->out, &(ManifestLine){manifest, index, hashes});
-    return fflush(manifest->out) == 0 || error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
+    size_t size;
+    char *line = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
+    if (line == NULL) return error_memory(error, manifest->journal);
+    const bool written = file_write_all(manifest->out, line, size) ||
+                         error_system(error, manifest->journal, "cannot write: %s", strerror(errno));
+    free(line);
+    return written;
 }
 
 bool manifest_end(Manifest *manifest, Error *error) {
-    if (!file_write_text(manifest->path, manifest_print_whole, manifest, error)) return false;
-    unlink(manifest->journal);
-    return true;
+    return file_write_text(manifest->path, manifest_print_whole, manifest, error) &&
+           file_remove(manifest->journal, error);
 }

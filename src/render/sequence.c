@@ -2,6 +2,7 @@
 /* Distributes the frames of a sequence over worker processes and reads their reports. Workers are forked before any
    OpenGL context is created: a context does not survive a fork. */
 #include "common/file.h"
+#include "common/folder_reserve.h"
 #include "common/memory_limit.h"
 #include "render/worker.h"
 
@@ -90,8 +91,7 @@ static void await_end(Worker *worker, Error *error) {
 
 static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
     WorkerReport report;
-    ssize_t size = read(worker->pipe, &report, sizeof report);
-    if (size < 0 && errno == EINTR) return true;
+    const ssize_t size = file_read_all(worker->pipe, &report, sizeof report);
     if (size == sizeof report && report.error.kind == ERROR_NONE) {
         sequence->done++;
         sequence->kept += report.kept;
@@ -158,7 +158,7 @@ static bool make_sequence(Picture *picture, const RenderOptions *options, Render
     int first, last;
     if (!choose_range(options, picture, &first, &last, error) ||
         !moments_plan(&plan, picture->runs, picture->count, first, last, options, error) ||
-        !picture_apply_options(picture, options, error) || !file_make_directory(options->directory, error))
+        !picture_apply_options(picture, options, error) || !folder_reserve(options->directory, error))
         return false;
     result->first = first;
     result->last = moments_last(&plan);

@@ -5,5 +5,5 @@
 
 /* Removes the frames that the folder's manifest or journal lists, that the new sequence does not overwrite, and whose
    bytes are unchanged; files of any other origin stay. To be called while both are still those of the earlier sequence: what
-   an interrupted call leaves is then listed for the next one. */
-void stale_remove(const Manifest *manifest);
+   an interrupted call leaves is then listed for the next one. ERROR_SYSTEM if one of them is left. */
+bool stale_remove(const Manifest *manifest, Error *error);

@@ -13,16 +13,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 64, SUFFIX_SIZE = 32 /* bytes that temporary names add */ };
+enum { ARGUMENTS_MAX = 64, DRAFT_NAME_SIZE = 64 };
 
 typedef struct VideoFormat {
-    const char *ending;
-    bool subsampled;         /* 4:2:0 subsampling: both sides must be even */
-    double max_rate;         /* highest frame rate, Hz; 0: any */
-    double usual_rate;       /* the same unless a rate was chosen */
-    const char *encoder[24]; /* arguments for ffmpeg */
-    const char *ahead;       /* its argument for the number of frames that it looks ahead, */
-    int ahead_frames;        /* and its default; NULL: none */
+    const char *ending, *muxer; /* ffmpeg's name of the format */
+    bool subsampled;            /* 4:2:0 subsampling: both sides must be even */
+    double max_rate;            /* highest frame rate, Hz; 0: any */
+    double usual_rate;          /* the same unless a rate was chosen */
+    const char *encoder[24];    /* arguments for ffmpeg */
+    const char *ahead;          /* its argument for the number of frames that it looks ahead, */
+    int ahead_frames;           /* and its default; NULL: none */
 } VideoFormat;
 
 /* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
@@ -34,6 +34,7 @@ typedef struct VideoFormat {
 
 static const VideoFormat formats[] = {
     {".mp4",
+     "mp4",
      true,
      0,
      0,
@@ -41,6 +42,7 @@ static const VideoFormat formats[] = {
      "-rc-lookahead",
      40},
     {".webm",
+     "webm",
      true,
      0,
      0,
@@ -49,6 +51,7 @@ static const VideoFormat formats[] = {
      25},
     /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform and small. */
     {".gif",
+     "gif",
      false,
      50,
      25,
@@ -68,7 +71,7 @@ static bool check_destination(const char *path, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
     size_t length = strlen(path), folder_length = file_folder_length(path);
-    if (length >= PATH_MAX - SUFFIX_SIZE) return error_input(error, path, "the name is too long");
+    if (length >= PATH_MAX) return error_input(error, path, "the name is too long");
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is not a regular file");
     snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
     if (access(folder, W_OK) == 0) return true;
@@ -114,8 +117,9 @@ typedef struct Encoding {
     const VideoOptions *options;
     const VideoFormat *format;
     int width, height, stride;
-    /* Temporary files beside the video. The prefix "file:" prevents ffmpeg from reading a name as option or URL. */
-    char part[PATH_MAX], palette[PATH_MAX];
+    /* Drafts (common/file.h), and the names under which ffmpeg opens them. A program that is killed leaves neither. */
+    int draft, palette_draft;
+    char part[DRAFT_NAME_SIZE], palette[DRAFT_NAME_SIZE];
     const Progress *progress;
 } Encoding;
 
@@ -171,12 +175,20 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
 /* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
 static bool run_for_gif(const Encoding *encoding, Error *error) {
     static const char filter[] = GIF_SCALE ",palettegen=stats_mode=full";
-    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-update", "1", NULL};
+    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-c:v", "png", "-f", "image2pipe", NULL};
     Arguments use = {0};
     ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
     add(&use, encoding->format->encoder);
+    ADD(&use, "-f", encoding->format->muxer);
     return run_ffmpeg(encoding, find, encoding->palette, error) &&
            run_ffmpeg(encoding, use.list, encoding->part, error);
+}
+
+static bool run_for_film(const Encoding *encoding, Error *error) {
+    Arguments use = {0};
+    add(&use, encoding->format->encoder);
+    ADD(&use, "-f", encoding->format->muxer);
+    return run_ffmpeg(encoding, use.list, encoding->part, error);
 }
 
 /* Counts the frames by decoding the video. */
@@ -196,14 +208,20 @@ static bool encode(const Encoding *encoding, Error *error) {
     const VideoOptions *options = encoding->options;
     int wanted = (options->last - options->first) / encoding->stride + 1, count;
     bool gif = strcmp(encoding->format->ending, ".gif") == 0;
-    if (!(gif ? run_for_gif(encoding, error)
-              : run_ffmpeg(encoding, encoding->format->encoder, encoding->part, error)) ||
+    if (!(gif ? run_for_gif(encoding, error) : run_for_film(encoding, error)) ||
         !count_frames(encoding->part, &count, error))
         return false;
     if (count != wanted)
         return error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
-    return rename(strchr(encoding->part, ':') + 1, options->path) == 0 ||
-           error_system(error, options->path, "%s", strerror(errno));
+    return file_draft_publish(encoding->draft, options->path, error);
+}
+
+/* Opened by ffmpeg through this process, so that no name is left when that is killed. The prefix "file:" prevents ffmpeg
+   from reading the name as that of a protocol. */
+static bool open_draft(int *draft, char name[DRAFT_NAME_SIZE], const char *path, Error *error) {
+    *draft = file_draft(path, error);
+    snprintf(name, DRAFT_NAME_SIZE, "file:/proc/%ld/fd/%d", (long)getpid(), *draft);
+    return *draft >= 0;
 }
 
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error) {
@@ -215,10 +233,11 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
     const double most = options->rate_is_chosen ? encoding.format->max_rate : encoding.format->usual_rate;
     /* 1e-3: tolerance for rounding of the frame rate. */
     if (most > 0) encoding.stride = (int)fmax(1, ceil(options->frame_rate / most - 1e-3));
-    snprintf(encoding.part, PATH_MAX, "file:%s.%ld.part%s", options->path, (long)getpid(), encoding.format->ending);
-    snprintf(encoding.palette, PATH_MAX, "file:%s.%ld.part.png", options->path, (long)getpid());
-    bool ok = encode(&encoding, error);
-    if (!ok) unlink(strchr(encoding.part, ':') + 1);
-    unlink(strchr(encoding.palette, ':') + 1);
+    encoding.draft = encoding.palette_draft = -1;
+    const bool ok = open_draft(&encoding.draft, encoding.part, options->path, error) &&
+                    open_draft(&encoding.palette_draft, encoding.palette, options->path, error) &&
+                    encode(&encoding, error);
+    if (encoding.draft >= 0) close(encoding.draft);
+    if (encoding.palette_draft >= 0) close(encoding.palette_draft);
     return ok;
 }

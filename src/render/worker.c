@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "render/worker.h"
 
+#include "common/file.h"
 #include "render/frame_texts.h"
 #include "render/renderer.h"
 #include "render/sink.h"
@@ -19,7 +20,7 @@ typedef struct Worker {
     FrameTexts texts;
 } Worker;
 
-static bool send(int pipe, const WorkerReport *report) { return write(pipe, report, sizeof *report) == sizeof *report; }
+static bool send(int pipe, const WorkerReport *report) { return file_write_all(pipe, report, sizeof *report); }
 
 /* Whether the file of an earlier call exists with unchanged bytes. */
 static bool is_unchanged(const Worker *worker, int index, PictureHashes *hashes) {

@@ -4,8 +4,6 @@
 #pragma once
 #include "render/manifest.h"
 
-#include <limits.h>
-
 typedef struct WorkerJob {
     const Picture *picture;
     const RenderOptions *options;
@@ -21,8 +19,6 @@ typedef struct WorkerReport {
     bool kept; /* the file is of an earlier call */
     PictureHashes hashes;
 } WorkerReport;
-
-_Static_assert(sizeof(WorkerReport) <= PIPE_BUF, "write() of at most PIPE_BUF bytes is atomic");
 
 /* Draws the pictures of the job; ends early if the pipe is closed. Runs in its own process and changes its
    environment. Returns true if all pictures are finished. */

@@ -63,11 +63,6 @@ static bool as_reported(const Found *found, const ApprovalFile *file) {
     return found->there == wanted && (!wanted || found->hash == file->hash);
 }
 
-/* The name of the expected file; if that is new, of the actual one. */
-static const char *target_name(const ApprovalItem *item) {
-    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
-}
-
 static bool refuse_changed(const Root *root, const char *name, Error *error) {
     char path[PATH_MAX];
     return file_path(path, sizeof path, error, "%s/%s", root->path, name) &&
@@ -76,11 +71,12 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
 
 static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
-    if (!inspect_below(&folders->expected, target_name(item), &expected, error)) return false;
+    if (!inspect_below(&folders->expected, approval_target(item), &expected, error)) return false;
     *action = ACTION_NONE;
     bool removed = item->actual.name[0] == '\0';
     if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
-    if (!as_reported(&expected, &item->expected)) return refuse_changed(&folders->expected, target_name(item), error);
+    if (!as_reported(&expected, &item->expected))
+        return refuse_changed(&folders->expected, approval_target(item), error);
     *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
     const char *name = removed ? item->expected.name : item->actual.name;
     return inspect_below(&folders->actual, name, &actual, error) &&
@@ -114,7 +110,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
     Place target;
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
-    if (!place_open(&target, &folders->expected, target_name(item), action == ACTION_ADD, error)) return false;
+    if (!place_open(&target, &folders->expected, approval_target(item), action == ACTION_ADD, error)) return false;
     bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
     if (ok && action == ACTION_REMOVE)
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
@@ -127,7 +123,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
 }
 
 static bool is_selected(const ApprovalItem *item, const char *only, Approval *approval) {
-    bool matches = only == NULL || fnmatch(only, target_name(item), 0) == 0 ||
+    bool matches = only == NULL || fnmatch(only, approval_target(item), 0) == 0 ||
                    fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
     approval->not_selected += !matches;
     approval->not_shown += matches && !item->shown;

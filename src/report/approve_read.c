@@ -2,6 +2,7 @@
 #include "report/approve_read.h"
 
 #include "common/array.h"
+#include "common/hash.h"
 #include "image/sequence.h"
 #include "json/json_read.h"
 
@@ -68,16 +69,25 @@ static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem 
            json_read_error(json, error, "an expected or an actual file is required");
 }
 
-static void free_names(const ApprovalItem *item) {
-    free((void *)item->expected.name);
-    free((void *)item->actual.name);
+static void free_name(const ApprovalFile *file) {
+    if (file->name[0] != '\0') free((void *)file->name);
 }
 
-/* Appends a copy whose names outlive the value that they were read from. */
+static void free_names(const ApprovalItem *item) {
+    free_name(&item->expected);
+    free_name(&item->actual);
+}
+
+/* Gives the file a copy of its name, which outlives the value that it was read from. */
+static bool keep_name(ApprovalFile *file) {
+    const char *name = file->name[0] != '\0' ? strdup(file->name) : "";
+    file->name = name != NULL ? name : "";
+    return name != NULL;
+}
+
 static bool add_item(ApprovalList *list, ApprovalItem item) {
-    item.expected.name = strdup(item.expected.name);
-    item.actual.name = strdup(item.actual.name);
-    bool ok = item.expected.name != NULL && item.actual.name != NULL &&
+    const bool kept = keep_name(&item.expected);
+    bool ok = keep_name(&item.actual) && kept &&
               array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item);
     if (ok)
         list->items[list->count++] = item;
@@ -86,20 +96,57 @@ static bool add_item(ApprovalList *list, ApprovalItem item) {
     return ok;
 }
 
-static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
+/* The hashes of the files that were named so far: a table with open addressing, at most half full. 0 is an empty place. */
+typedef struct Named {
+    uint64_t *hashes; /* [size], a power of two */
+    size_t size, count;
+} Named;
+
+static uint64_t *find_place(const Named *named, uint64_t hash) {
+    size_t at = hash & (named->size - 1);
+    while (named->hashes[at] != 0 && named->hashes[at] != hash) at = (at + 1) & (named->size - 1);
+    return &named->hashes[at];
+}
+
+static bool grow(Named *named) {
+    enum { FIRST_SIZE = 64 };
+    if (2 * named->count < named->size) return true;
+    Named larger = {.size = named->size > 0 ? 2 * named->size : FIRST_SIZE, .count = named->count};
+    if ((larger.hashes = calloc(larger.size, sizeof *larger.hashes)) == NULL) return false;
+    for (size_t i = 0; i < named->size; i++)
+        if (named->hashes[i] != 0) *find_place(&larger, named->hashes[i]) = named->hashes[i];
+    free(named->hashes);
+    *named = larger;
+    return true;
+}
+
+/* compare names a file once; many copies of an item would write one file as many times. */
+static bool add_name(const JsonReader *json, Named *named, const ApprovalItem *item, Error *error) {
+    const char *target = approval_target(item);
+    uint64_t hash = hash_xxh3(target, strlen(target)), *place;
+    if (hash == 0) hash = 1;
+    if (!grow(named)) return error_memory(error, json->path);
+    if (*(place = find_place(named, hash)) == hash) return json_read_error(json, error, "'%s' is there twice", target);
+    *place = hash;
+    named->count++;
+    return true;
+}
+
+static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Named *named, Error *error) {
     if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
     for (bool more = !json_read_char(json, ']'); more;) {
         ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
         if (value == NULL || !read_item(json, value, &item, error)) return false;
+        if (item.failed && !add_name(json, named, &item, error)) return false;
         if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
         if (!json_read_more(json, ']', &more, error)) return false;
     }
     return true;
 }
 
-static bool read_member(JsonReader *json, int member, ApprovalList *list, Error *error) {
-    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, error);
+static bool read_member(JsonReader *json, int member, ApprovalList *list, Named *named, Error *error) {
+    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, named, error);
     const json_t *value = json_read_value(json, error);
     if (value == NULL || member == MEMBERS) return value != NULL;
     const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
@@ -123,12 +170,12 @@ static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *e
     return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
 }
 
-static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
+static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error *error) {
     bool seen[MEMBERS] = {false};
     if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
     for (bool more = true; more;) {
         int member = MEMBERS;
-        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
+        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, named, error) ||
             !json_read_more(json, '}', &more, error))
             return false;
     }
@@ -139,11 +186,17 @@ static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     return true;
 }
 
+const char *approval_target(const ApprovalItem *item) {
+    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
+}
+
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
     JsonReader json;
     if (!json_read_open(&json, path, MAX_SIZE, error)) return false;
     *list = (ApprovalList){.count = 0};
-    bool ok = read_list(&json, list, error);
+    Named named = {0};
+    bool ok = read_list(&json, list, &named, error);
+    free(named.hashes);
     json_read_close(&json);
     if (!ok) approval_free(list);
     return ok;

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 typedef struct ApprovalFile {
-    const char *name; /* relative to the folder, malloc'ed; empty: there was no file */
+    const char *name; /* relative to the folder; empty: there was no file */
     uint64_t hash;
 } ApprovalFile;
 
@@ -24,6 +24,10 @@ typedef struct ApprovalList {
 } ApprovalList;
 
 /* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
-   hidden names and names that do not end with .png or .npz. On failure nothing needs to be freed. */
+   hidden names, names that do not end with .png or .npz, and a file that is named twice. On failure nothing needs to be
+   freed. Memory: at most four times the size of the file and 2 MiB. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);
+
+/* The name of the expected file; if that is new, of the actual one. */
+const char *approval_target(const ApprovalItem *item);

@@ -58,7 +58,7 @@ static bool draw(const Regression *regression, RegressionFrame *frame, Image *ex
 static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
                              bool room, Error *error) {
     Image *images[SIDES] = {NULL, NULL};
-    if (frame->pixels == PIXELS_EQUAL || frame->pixels > PIXELS_RESIZED) return true;
+    if (frame->pixels == PIXELS_EQUAL || frame->pixels > PIXELS_RESIZED || frame->sizes_alone) return true;
     assert(frame->at[EXPECTED] != NULL && frame->at[ACTUAL] != NULL);
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,

@@ -10,7 +10,7 @@ enum { HEIGHT = 100 };
 
 typedef double (*Measure)(const RegressionFrame *frame);
 
-static bool is_measured(const RegressionFrame *frame) { return frame->pixels <= PIXELS_RESIZED; }
+static bool is_measured(const RegressionFrame *frame) { return frame->pixels <= PIXELS_RESIZED && !frame->sizes_alone; }
 static double flip_of(const RegressionFrame *frame) { return is_measured(frame) ? frame->flip : (double)NAN; }
 static double largest_of(const RegressionFrame *frame) {
     return is_measured(frame) ? (double)frame->difference.largest : (double)NAN;

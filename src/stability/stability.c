@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/stability.h"
 
-#include "common/file.h"
+#include "common/folder_reserve.h"
 #include "common/names.h"
 #include "stability/stability_grid.h"
 #include "stability/stability_scan.h"
@@ -140,7 +140,7 @@ bool stability_run(const StabilityOptions *options, const Progress *progress, Er
         if (does_study(&run, i)) run.parts.total += run.studies[i].weight;
     for (int i = 0; i < run.map_count; i++)
         if (does_map(&run, i)) run.parts.total += map_weight(&run, &run.maps[i]);
-    bool ok = find_key(&run, &key, error) && file_make_directory(options->folder, error) &&
+    bool ok = find_key(&run, &key, error) && folder_reserve(options->folder, error) &&
               study_parts_open(&run.parts, options->folder, key, error) && do_parts(&run, error) &&
               write_tables(&run, error);
     ok = ok && study_parts_remove(&run.parts, error);

@@ -7,12 +7,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 bool part_file_open(PartFile *part, const char *folder, uint64_t key, Error *error) {
     *part = (PartFile){0};
     if (!file_path(part->path, sizeof part->path, error, "%s/chart-%016" PRIx64 ".part.csv", folder, key)) return false;
-    return access(part->path, F_OK) != 0 || chart_csv_read(&part->done, part->path, error);
+    bool there;
+    return file_find(part->path, &there, error) && (!there || chart_csv_read(&part->done, part->path, error));
 }
 
 void part_file_close(PartFile *part) { chart_csv_free(&part->done); }
@@ -33,4 +33,4 @@ bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Erro
     return count == 0 || csv_table_write(part->path, &chart_layout, rows, count, error);
 }
 
-void part_file_remove(const PartFile *part) { unlink(part->path); }
+bool part_file_remove(const PartFile *part, Error *error) { return file_remove(part->path, error); }

@@ -24,4 +24,4 @@ bool part_file_find(const PartFile *part, ChartRow *rows, int count);
 bool part_file_write(const PartFile *part, const ChartRow *rows, int count, Error *error);
 
 /* Removes the file: the study is done. */
-void part_file_remove(const PartFile *part);
+bool part_file_remove(const PartFile *part, Error *error);

@@ -66,13 +66,13 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error) {
     char path[STUDY_PARTS_PATH_SIZE + 128];
     if (!file_path(path, sizeof path, error, "%s/%s", parts->folder, part->name)) return false;
-    bool ok;
-    if (access(path, F_OK) == 0) {
+    bool there, ok = file_find(path, &there, error);
+    if (ok && there) {
         size_t size;
         char *text = file_read(path, PART_MAX_SIZE, &size, error);
         ok = text != NULL && append_text(parts, text, size, error);
         free(text);
-    } else {
+    } else if (ok) {
         ok = write_part(parts, part, path, error);
     }
     parts->done += part->weight;
@@ -108,11 +108,24 @@ bool study_parts_table(const StudyParts *parts, const char *folder, const CsvLay
     return csv_table_path(path, folder, layout, error) && file_write_text(path, print_table, &table, error);
 }
 
+static bool remove_files(DIR *folder, const char *path, Error *error) {
+    const struct dirent *entry;
+    do {
+        errno = 0; /* readdir() returns NULL at the end and on failure */
+        entry = readdir(folder);
+        if (entry == NULL && errno != 0) return error_system(error, path, "cannot be read: %s", strerror(errno));
+        if (entry != NULL && strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
+            unlinkat(dirfd(folder), entry->d_name, 0) != 0)
+            return error_system(error, path, "%s cannot be removed: %s", entry->d_name, strerror(errno));
+    } while (entry != NULL);
+    return true;
+}
+
 bool study_parts_remove(const StudyParts *parts, Error *error) {
     DIR *folder = opendir(parts->folder);
     if (folder == NULL) return error_system(error, parts->folder, "cannot be read: %s", strerror(errno));
-    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) unlinkat(dirfd(folder), entry->d_name, 0);
+    const bool empty = remove_files(folder, parts->folder, error);
     closedir(folder);
-    /* Fails, too, if an entry could not be read or removed. */
-    return rmdir(parts->folder) == 0 || error_system(error, parts->folder, "cannot be removed: %s", strerror(errno));
+    return empty &&
+           (rmdir(parts->folder) == 0 || error_system(error, parts->folder, "cannot be removed: %s", strerror(errno)));
 }

@@ -7,6 +7,7 @@
 
 typedef struct CsvImport {
     const char *path;
+    size_t size; /* of the text */
     const CsvRunOptions *options;
     CsvRunNotes *notes;
     CsvHead head;

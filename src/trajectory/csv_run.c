@@ -3,6 +3,7 @@
 #include "trajectory/csv_run.h"
 
 #include "common/file.h"
+#include "npz/npz.h"
 #include "trajectory/csv_import.h"
 
 #include <inttypes.h>
@@ -55,6 +56,17 @@ static bool check_last(CsvImport *import, Error *error) {
                           "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
                           " rows are too few for the frames between",
                           import->last, import->first, import->count);
+}
+
+/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz files. */
+static bool check_size(const CsvImport *import, Error *error) {
+    const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
+    const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);
+    return frames * bodies <= budget / pose ||
+           error_input(error, import->path,
+                       "%" PRIu64 " frames of %" PRIu64 " bodies take %" PRIu64 " bytes; expected at most %" PRIu64
+                       " (%d MiB and %d times the size of the file); leave out the bodies that are seldom there",
+                       frames, bodies, frames * bodies * pose, budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
 }
 
 static bool has_times(const CsvImport *import) { return import->rows.field[COL_TIME] >= 0; }
@@ -183,7 +195,7 @@ static void note_numbers(const CsvImport *import) {
 
 static bool make_run(CsvImport *import, Error *error) {
     float dt = 0;
-    if (!survey(import, error) || !check_last(import, error) || !choose_step(import, &dt, error)) return false;
+    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) || !choose_step(import, &dt, error)) return false;
     import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
     if (import->run == NULL) return false;
     import->run->dt = dt;
@@ -206,14 +218,13 @@ static bool read_text(CsvImport *import, const char *text, Error *error) {
 }
 
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
-    size_t size;
     CsvImport import = {.path = path, .options = options, .notes = notes};
     notes->count = 0;
     const bool input = strcmp(path, "-") == 0;
     if (input) import.path = path = "standard input";
-    char *text = input ? file_read_input(MAX_SIZE, &size, error) : file_read(path, MAX_SIZE, &size, error);
-    bool done = text != NULL && (size > 0 || error_input(error, path, "the file is empty")) &&
-                (strlen(text) == size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
+    char *text = input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
+    bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
+                (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 read_text(&import, text, error);
     free(text);
     free(import.row_counts);

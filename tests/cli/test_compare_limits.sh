@@ -153,6 +153,27 @@ frame = json.load(open("report/results.json"))["frames"][0]
 assert (frame["differing"], frame["counted"], frame["box"]) == (10, 800, [3, 3, 13, 4]) and frame["flip"] > 0
 PYTHON
 
+# The overlap is less than 1/16 of the larger picture: it is not compared.
+png b/x.png 8 7 100
+run 1 compare a b
+says "x.png: sizes differ: 50 x 20 and 8 x 7 pixels"
+! grep -q overlap out || fail "an overlap of 8 x 7 pixels is compared"
+run 1 compare a b --report report --flip 1 --mask 0,0,50,20
+/usr/bin/python3 - <<'PYTHON' || fail "the report of pictures without overlap"
+import json, re
+page = open("report/report.html").read()
+assert [kind for kind in "eadf" if 'id="p0%s">' % kind in page] == ["e", "a"]
+assert re.search('<path class="largest" d=""', page), "the plot has a difference"
+frame = json.load(open("report/results.json"))["frames"][0]
+assert (frame["differing"], frame["counted"], frame["box"], frame["flip"]) == (0, 0, None, None)
+PYTHON
+run 2 compare a b --max-pixels 999
+complains "a/x.png: error: the picture has 50 x 20 pixels; at most 999 pixels can be read"
+cp a/x.png whole.png
+head -c -1 whole.png >a/x.png
+run 2 compare a b
+complains "a/x.png: error: not a PNG file, or damaged: unexpected end of file"
+
 run 0 simulate "$scenes/stack.yaml" --frames 2 -o run.npz
 for option in "--tolerance 1" "--beyond 0.1" "--flip 0.1" --antialias "--rules rules.yaml"; do
     run 2 compare run.npz run.npz $option

@@ -197,21 +197,89 @@ static void small_files_cannot_hold_much(void **state) {
     expect_refused(path, "it cannot hold 1073741824 bytes");
 }
 
-/* Honest, but of 64 MiB at each reading: after 2 GiB it is enough. */
-static void all_that_is_read_is_limited(void **state) {
+/* A .npz of one array of `size` zeros of one byte, deflated by libzip. */
+static void write_zeros(const char *path, const char *type, size_t size) {
+    char *member = calloc(1, 128 + size);
+    int head = snprintf(member + 10, 118, "{'descr': '%s', 'fortran_order': False, 'shape': (%zu,), }", type, size);
+    memcpy(member, "\x93NUMPY\1\0v", 9);
+    memset(member + 10 + head, ' ', 117 - (size_t)head);
+    member[127] = '\n';
+    write_member(path, "zeros.npy", member, 128 + size, ZIP_CM_DEFLATE);
+    free(member);
+}
+
+/* 16 MiB and 256 times the file. Zeros deflate to 1/1000, by npz_write() to 1/218. */
+static void more_than_the_budget_is_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("bomb.npz");
+    write_zeros(path, "|u1", 16 << 20);
+    npz_close(open_file(path));
+    write_zeros(path, "|u1", 64 << 20);
+    expect_refused(path, "its arrays take 67108864 bytes; expected at most 3");
+    expect_refused(path, "(16 MiB and 256 times the size of the file)");
+}
+
+static void what_is_written_is_within_the_budget(void **state) {
     (void)state;
     enum { SIZE = 64 << 20 };
-    const char *path = temporary_path("bomb.npz");
+    const char *path = temporary_path("zeros.npz");
     NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
     Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     free((void *)array.data);
+    npz_close(open_file(path));
+}
+
+/* An array that is read again and again: 15 MiB, three times of which would exceed 16 MiB and 256 times 15 KB. */
+static void all_that_is_read_is_limited(void **state) {
+    (void)state;
+    enum { SIZE = 15 << 20 };
+    const char *path = temporary_path("again.npz");
+    const int64_t shape = SIZE;
+    Error error = {0};
+    write_zeros(path, "|u1", SIZE);
     NpzFile *file = open_file(path);
     int read = 0;
-    for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, array.shape, &error)) != NULL; read++) free(data);
+    for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, &shape, &error)) != NULL; read++) free(data);
     npz_close(file);
-    assert_int_equal(read, 32);
-    assert_error(error, ERROR_INPUT, "larger than 2 GiB together");
+    assert_int_equal(read, 1);
+    assert_error(error, ERROR_INPUT, "bytes together");
+}
+
+/* 15 MiB of bytes are 120 MiB as integers of 8 bytes. */
+static void converted_arrays_count_as_what_they_become(void **state) {
+    (void)state;
+    enum { SIZE = 15 << 20 };
+    const char *path = temporary_path("converted.npz");
+    const int64_t shape = SIZE;
+    Error error = {0};
+    write_zeros(path, "|i1", SIZE);
+    NpzFile *file = open_file(path);
+    npz_convert(file);
+    assert_null(npz_read(file, "zeros", NPZ_INT64, 1, &shape, &error));
+    npz_close(file);
+    assert_error(error, ERROR_INPUT, "bytes together");
+}
+
+static void shapes_are_expected_without_data(void **state) {
+    (void)state;
+    const char *path = temporary_path("shapes.npz");
+    const float numbers[6] = {0};
+    const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
+    NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
+    Error error = {0};
+    assert_ok(npz_write(path, written, 2, &error), error);
+    NpzFile *file = open_file(path);
+    assert_ok(npz_expect(file, expected, 2, &error), error);
+    expected[1].shape[0] = 2;
+    assert_false(npz_expect(file, expected, 2, &error));
+    assert_error(error, ERROR_INPUT, "array 'a' has shape (3, 2); expected (2, 2)");
+    assert_ok(npz_expect(file, expected, 1, &error), error);
+    expected[0].name = "c";
+    error = (Error){0};
+    assert_false(npz_expect(file, expected, 1, &error));
+    assert_error(error, ERROR_INPUT, "has no array 'c'");
+    npz_close(file);
 }
 
 /* Directories of millions of entries, or thousands of directories, never reach libzip. */
@@ -250,11 +318,20 @@ static void large_files_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heads_are_read_strictly),      cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
-        cmocka_unit_test(other_files_are_refused),      cmocka_unit_test(other_compressions_are_refused),
-        cmocka_unit_test(encrypted_arrays_are_refused), cmocka_unit_test(a_name_twice_is_refused),
-        cmocka_unit_test(too_many_arrays_are_refused),  cmocka_unit_test(small_files_cannot_hold_much),
-        cmocka_unit_test(all_that_is_read_is_limited),  cmocka_unit_test(large_directories_are_refused),
+        cmocka_unit_test(heads_are_read_strictly),
+        cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
+        cmocka_unit_test(other_files_are_refused),
+        cmocka_unit_test(other_compressions_are_refused),
+        cmocka_unit_test(encrypted_arrays_are_refused),
+        cmocka_unit_test(a_name_twice_is_refused),
+        cmocka_unit_test(too_many_arrays_are_refused),
+        cmocka_unit_test(small_files_cannot_hold_much),
+        cmocka_unit_test(more_than_the_budget_is_refused),
+        cmocka_unit_test(what_is_written_is_within_the_budget),
+        cmocka_unit_test(all_that_is_read_is_limited),
+        cmocka_unit_test(converted_arrays_count_as_what_they_become),
+        cmocka_unit_test(shapes_are_expected_without_data),
+        cmocka_unit_test(large_directories_are_refused),
         cmocka_unit_test(large_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,13 +13,16 @@ static inline const char *frame_path(const char *directory, int frame) {
     return path[next];
 }
 
+/* Hidden files, too. */
+static inline bool is_file_name(const char *name) { return strcmp(name, ".") != 0 && strcmp(name, "..") != 0; }
+
 static inline int count_files(const char *directory, const char *ending) {
     DIR *stream = opendir(directory);
     int count = 0;
     assert_non_null(stream);
     for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
         size_t length = strlen(entry->d_name), end = strlen(ending);
-        count += entry->d_name[0] != '.' && length >= end && strcmp(entry->d_name + length - end, ending) == 0;
+        count += is_file_name(entry->d_name) && length >= end && strcmp(entry->d_name + length - end, ending) == 0;
     }
     closedir(stream);
     return count;
@@ -46,7 +49,7 @@ static inline void assert_same_folder(const char *a, const char *b) {
     DIR *stream = opendir(a);
     assert_non_null(stream);
     for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
-        if (entry->d_name[0] == '.') continue;
+        if (!is_file_name(entry->d_name)) continue;
         snprintf(path_a, sizeof path_a, "%s/%.200s", a, entry->d_name);
         snprintf(path_b, sizeof path_b, "%s/%.200s", b, entry->d_name);
         assert_same_file(path_a, path_b);

@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 enum { FRAMES = 9, WIDTH = 96, HEIGHT = 64 };
 
@@ -65,10 +66,8 @@ static void probe(const char *path, int *frames, double *rate, int *width, int *
 }
 
 static void assert_nothing_left(const char *directory) {
-    assert_int_equal(count_files(directory, ".part.mp4"), 0);
-    assert_int_equal(count_files(directory, ".part.webm"), 0);
-    assert_int_equal(count_files(directory, ".part.gif"), 0);
-    assert_int_equal(count_files(directory, ".part.png"), 0);
+    assert_int_equal(count_files(directory, ".tmp"), 0);
+    assert_int_equal(count_files(directory, ".part"), 0);
 }
 
 static void each_form_has_all_its_frames(void **state) {
@@ -212,7 +211,7 @@ static void a_video_that_lacks_a_frame_is_removed(void **state) {
         const char *ffmpeg, *text;
     } cases[] = {
         {"#!/bin/sh\nfor last; do :; done\n"
-         "exec /usr/bin/ffmpeg -v error -y -f lavfi -i testsrc=s=96x64:r=60 -frames:v 8 \"$last\" </dev/null\n",
+         "exec /usr/bin/ffmpeg -v error -y -f lavfi -i testsrc=s=96x64:r=60 -frames:v 8 -f mp4 \"$last\" </dev/null\n",
          ""},
         {"#!/bin/sh\ncat >/dev/null\necho broken >&2\nexit 5\n", "failed (status 5)\nbroken"},
         {"#!/bin/sh\nkill -9 $$\n", "failed (signal 9)"},
@@ -259,6 +258,32 @@ static void a_video_can_be_stopped(void **state) {
     assert_error(error, ERROR_INPUT, "stopped");
     assert_int_equal(access(options.path, F_OK), -1);
     assert_nothing_left(temporary_folder);
+}
+
+static bool kill_oneself(void *context, double done, double total) {
+    (void)context, (void)total;
+    if (done >= FRAMES / 2) raise(SIGKILL);
+    return true;
+}
+
+/* The encoder has no name of a file. */
+static void a_killed_program_leaves_nothing(void **state) {
+    (void)state;
+    static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
+    Error error = {0};
+    int status;
+    assert_ok(file_make_directory(temporary_path("killed"), &error), error);
+    for (int i = 0; i < 2; i++) {
+        VideoOptions options = options_for(temporary_path(names[i]));
+        const pid_t child = fork();
+        if (child == 0) {
+            video_encode(&options, &(Progress){kill_oneself, NULL}, &error);
+            _exit(0);
+        }
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(count_files(temporary_path("killed"), ""), 0);
+    }
 }
 
 static void wrong_names_are_refused(void **state) {
@@ -318,12 +343,12 @@ static void a_reader_that_has_gone_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gifs_keep_a_chosen_rate),        cmocka_unit_test(gifs_are_small),
-        cmocka_unit_test(each_form_has_all_its_frames),   cmocka_unit_test(any_file_name_works),
-        cmocka_unit_test(a_damaged_frame_makes_no_video), cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
-        cmocka_unit_test(missing_programs_are_told),      cmocka_unit_test(a_video_can_be_stopped),
-        cmocka_unit_test(wrong_names_are_refused),        cmocka_unit_test(y4m_holds_every_frame),
-        cmocka_unit_test(a_reader_that_has_gone_is_told),
+        cmocka_unit_test(gifs_keep_a_chosen_rate),         cmocka_unit_test(gifs_are_small),
+        cmocka_unit_test(each_form_has_all_its_frames),    cmocka_unit_test(any_file_name_works),
+        cmocka_unit_test(a_damaged_frame_makes_no_video),  cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
+        cmocka_unit_test(missing_programs_are_told),       cmocka_unit_test(a_video_can_be_stopped),
+        cmocka_unit_test(a_killed_program_leaves_nothing), cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(y4m_holds_every_frame),           cmocka_unit_test(a_reader_that_has_gone_is_told),
     };
     return cmocka_run_group_tests(tests, make, destroy);
 }

@@ -5,6 +5,7 @@
 #include "report/approve_read.h"
 
 #define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
+#define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 #define FILE_0 "{\"name\": \"0.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 
 static const char *store(const char *text) {
@@ -21,7 +22,7 @@ static void failures_are_read_in_any_order_of_members(void **state) {
     const char *text = "{\"trajectories\": [], \"frames\": [\n"
                        "{\"failed\": true, \"shown\": false, \"expected\": " FILE_0 ", \"actual\": null},\n"
                        "{\"failed\": false, \"shown\": true, \"expected\": " FILE_0 ", \"actual\": " FILE_0 "},\n"
-                       "{\"other\": [1], \"actual\": " FILE_0 ", \"shown\": true, \"failed\": true}],\n"
+                       "{\"other\": [1], \"actual\": " FILE_1 ", \"shown\": true, \"failed\": true}],\n"
                        "\"fuzzy\": [0, 1e-3], \"actual\": \"n\\u0065w\", \"expected\": \"old\",\n"
                        "\"format\": \"twinbox compare 1\"}\n";
     assert_ok(approval_read(&list, store(text), &error), error);
@@ -31,7 +32,7 @@ static void failures_are_read_in_any_order_of_members(void **state) {
     assert_string_equal(list.items[0].expected.name, "0.png");
     assert_string_equal(list.items[0].actual.name, "");
     assert_true(list.items[0].expected.hash == 0xff && !list.items[0].shown);
-    assert_string_equal(list.items[1].actual.name, "0.png");
+    assert_string_equal(list.items[1].actual.name, "1.png");
     assert_string_equal(list.items[1].expected.name, "");
     assert_true(list.items[1].shown);
     approval_free(&list);
@@ -71,10 +72,34 @@ static void invalid_results_are_refused_with_their_place(void **state) {
     }
 }
 
+/* One of thousands, each with its own name, so that the table of names has grown many times. */
+static void a_file_that_is_named_twice_is_refused(void **state) {
+    (void)state;
+    enum { COUNT = 3000, SIZE = 120 };
+    for (int twice = 0; twice <= 1; twice++) {
+        Error error = {0};
+        ApprovalList list;
+        char *text = malloc(COUNT * SIZE + 200), *end = text;
+        end += sprintf(end, "%s", HEAD ", \"trajectories\": [], \"frames\": [\n");
+        for (int i = 0; i < COUNT; i++)
+            end += sprintf(end,
+                           "{\"failed\": true, \"shown\": true, \"actual\": {\"name\": \"%d.png\", \"xxh3\": "
+                           "\"00000000000000ff\"}}%s",
+                           twice && i == COUNT - 1 ? 7 : i, i < COUNT - 1 ? ",\n" : "]}");
+        const char *path = store(text);
+        free(text);
+        if (approval_read(&list, path, &error) == twice) fail_msg("twice %d: %s", twice, error.message);
+        if (twice) assert_error(error, ERROR_INPUT, "results.json:3001:1: error: '7.png' is there twice");
+        if (!twice) assert_int_equal(list.count, COUNT);
+        if (!twice) approval_free(&list);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(failures_are_read_in_any_order_of_members),
         cmocka_unit_test(invalid_results_are_refused_with_their_place),
+        cmocka_unit_test(a_file_that_is_named_twice_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

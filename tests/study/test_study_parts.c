@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "folder_faults.h"
 #include "testing.h"
 
 #include "common/file.h"
@@ -128,9 +129,36 @@ static void an_interrupted_part_is_not_saved(void **state) {
     study_parts_close(&parts);
 }
 
+/* A part that cannot be read is not done again as if it were missing, and no failure looks like the folder's end. */
+static void failures_of_the_folder_are_errors(void **state) {
+    (void)state;
+    Error error = {0};
+    StudyParts parts;
+    Counted part = {"a:1\n", 0, false, false};
+    open_parts(&parts, temporary_path("faults"));
+    assert_ok(study_parts_do(&parts, &(StudyPart){"part", 1, write_counted, &part}, &error), error);
+    failing_readdir = 1;
+    assert_false(study_parts_remove(&parts, &error));
+    assert_error(error, ERROR_SYSTEM, "cannot be read: Input/output error");
+    failing_opendir = 1;
+    error = (Error){0};
+    assert_false(study_parts_remove(&parts, &error));
+    assert_error(error, ERROR_SYSTEM, "cannot be read: Input/output error");
+    failing_stat = 1;
+    error = (Error){0};
+    assert_false(study_parts_do(&parts, &(StudyPart){"part", 1, write_counted, &part}, &error));
+    assert_error(error, ERROR_SYSTEM, "part: error: cannot be inspected: Input/output error");
+    assert_int_equal(part.done, 1);
+    failing_opendir = failing_readdir = failing_stat = 0;
+    error = (Error){0};
+    assert_ok(study_parts_remove(&parts, &error), error);
+    study_parts_close(&parts);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_have_the_order_of_the_parts), cmocka_unit_test(a_row_is_a_line_with_the_tables_name),
-        cmocka_unit_test(finished_parts_are_not_run_again), cmocka_unit_test(an_interrupted_part_is_not_saved)};
+        cmocka_unit_test(failures_of_the_folder_are_errors), cmocka_unit_test(tables_have_the_order_of_the_parts),
+        cmocka_unit_test(a_row_is_a_line_with_the_tables_name), cmocka_unit_test(finished_parts_are_not_run_again),
+        cmocka_unit_test(an_interrupted_part_is_not_saved)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

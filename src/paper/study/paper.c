@@ -2,6 +2,7 @@
 #include "paper/study/paper.h"
 
 #include "common/file.h"
+#include "common/folder_reserve.h"
 #include "paper/study/paper_outlook.h"
 #include "paper/study/paper_scores.h"
 #include "paper/study/paper_size.h"
@@ -183,7 +184,8 @@ static bool begin(Run *run, Error *error) {
     for (int i = 0; i < 3; i++) run->outlook.bomb_x[i] = run->size->transfer_x[i];
     run->outlook.datasets = &run->datasets;
     return paper_datasets_begin(&run->datasets, run->options->scenes, &run->size->data, run->options->seed, error) &&
-           find_key(run, &key, error) && file_make_directory(run->networks_folder, error) &&
+           find_key(run, &key, error) && folder_reserve(run->options->folder, error) &&
+           file_make_directory(run->networks_folder, error) &&
            study_parts_open(&run->parts, run->options->folder, key, error);
 }
 

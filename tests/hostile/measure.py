@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# measure.py TWINBOX SCENES [any]: runs twinbox on the files of make_files.py, in the working directory, within the budgets
+# that README.md promises; "any": without limits, for builds with a sanitizer, whose memory and time are not the program's.
+import os
+import resource
+import subprocess
+import sys
+import time
+
+twinbox, scenes = os.path.abspath(sys.argv[1]), sys.argv[2]
+limited = len(sys.argv) == 3
+MiB = 1 << 20
+MEMORY, CPU = 64 * MiB, 0.1  # of refused input, beside that of a process that has nothing to do
+PER_BYTE_MEMORY, PER_BYTE_CPU = 2, 50e-9  # of its files
+single, stack = f"{scenes}/single.yaml", f"{scenes}/stack.yaml"
+
+# Exit status, a part of the message, the files, and the arguments, among which @ is the next file.
+CASES = [
+    (2, "its arrays take 960000804 bytes; expected at most ", ["bomb.npz"], "export @ -o x.csv"),
+    (2, "its arrays take ", ["twins.npz"], "export @ -o x.csv"),
+    (2, "body 0: its size must be finite and greater than 0", ["flat.npz"], "export @ -o x.csv"),
+    (2, "array 'angular_velocity' has shape (50000, 99); expected (50000, 100)", ["run.npz"], "export @ -o x.csv"),
+    (2, "array 'angular_velocity' has shape", ["run.npz"], "diverge @ @"),
+    (2, "array 'contact_impulse' has shape (999999, 2); expected (1000000, 2)", ["contacts.npz"], "export @ -o x.csv"),
+    (2, "array 'changes' has shape", ["dataset.npz"], "train @ -o x.npz"),
+    (2, "not a trajectory but a file of kind 'dataset'", ["dataset.npz"], "export @ -o x.csv"),
+    (2, "array 'contact_warm' has shape (999999, 2); expected (1000000, 2)", ["problem.npz"], "solve @ --method engine"),
+    (2, "has no array 'weights_1'", ["network.npz"], "figure network @ -o x.pdf"),
+    (2, "has no array 'bomb_state_rows'", ["slots.npz"], "figure network @ -o x.pdf"),
+    (2, "array 'factors' has shape (41943040); expected (20)", ["momentum.npz"],
+     f"simulate {stack} --method learned-momentum:network=@ -o x.npz"),
+    (2, "array 'hidden_weights' has shape (6000, 6000); expected ", ["interior.npz"],
+     f"simulate {stack} --method interior-net:network=@ -o x.npz"),
+    (1, "", ["deep.png", "small.png"], "compare @ @"),
+    (1, "", ["small.png", "deep.png"], "compare @ @ --flip 1 --report report"),
+    (1, "", ["interlaced.png", "small.png"], "compare @ @"),
+    (1, "", ["wide.png", "small.png"], "compare @ @"),
+    (1, "", ["high.png", "small.png"], "compare @ @"),
+    (2, "the picture has 40000 x 40000 pixels; at most 100000000", ["pixels.png", "small.png"], "compare @ @"),
+    (2, "unexpected end of file", ["cut.png", "small.png"], "compare @ @"),
+    (0, "", ["texts.png", "small.png"], "compare @ @"),
+    (2, "empty.png: error: not a PNG file, or damaged", ["empty.png", "small.png"], "compare @ @"),
+    (2, "not a regular file", ["/dev/zero", "small.png"], "compare @ @"),
+    (2, "not a regular file", ["/dev/zero"], "export @ -o x.csv"),
+    (2, "not a regular file", ["/dev/zero"], "check @"),
+    (2, "results.json:2:1: error: 'a.png' is there twice", ["copies/results.json"], "approve copies"),
+    (2, "maximum parsing depth reached", ["deep/results.json"], "approve deep"),
+    (2, "a value must have at most 65536 bytes", ["long/results.json"], "approve long"),
+    (2, "a value must take at most 1048576 bytes of memory", ["many/results.json"], "approve many"),
+    (2, "'failed' must be true or false", ["members/results.json"], "approve members"),
+    (1, "", ["expected/manifest.json", "actual/manifest.json"], "compare expected actual"),
+    (2, "a line must have at most 4096 bytes", ["line.yaml"], "check @"),
+    (2, "nested at most 8 deep", ["nested.yaml"], "check @"),
+    (2, "a mapping must have at most 64 keys", ["keys.yaml"], "check @"),
+    (2, "more than 65536 bytes from here to the next value", ["comments.yaml"], "check @"),
+    (2, "more than 65536 bytes from here to the next value", ["folded.yaml"], "check @"),
+    (2, "bodies.yaml:20001:", ["bodies.yaml"], "check @"),
+    (2, "anchors (&) are not allowed", ["aliases.yaml"], "check @"),
+    (2, "larger than 1572864 bytes", ["large.yaml"], "check @"),
+    (2, "at most 256 rules (got 40000)", ["rules.yaml"], "compare expected actual --rules @"),
+    (2, "the table has more than 20000 rows", ["rows.csv"], "chart @ -o x"),
+    (2, "longer than 1023 bytes", ["line.csv"], "import @ -o x.npz"),
+    (2, "80000 frames of 1000 bodies take 1920000000 bytes; expected at most ", ["sparse.csv"], "import @ -o x.npz"),
+    (2, "frame 2000000000 cannot follow from frame 0", ["far.csv"], "import @ -o x.npz"),
+    (2, "larger than 12001200 bytes", ["launches.csv"], f"dataset {single} --launches @ -o x.npz"),
+]
+
+# What is accepted: arguments, and bytes of memory that it may take beside MEMORY_BASE.
+MEMORY_BASE = 12 * MiB
+ARRAYS, PIXELS = 6000 * 100 * 6 * 4, 3000 * 3000
+ACCEPTED = [
+    (1, "compare still.npz still2.npz", lambda size: 2 * ARRAYS, []),  # a run: what its arrays take, here of two files
+    (1, "compare honest.png changed.png", lambda size: 2 * 12 * PIXELS + size, ["honest.png", "changed.png"]),
+    (1, "approve names", lambda size: 4 * size, ["names/results.json"]),
+    (0, "import run.csv -o x.npz", lambda size: 8 * size, ["run.csv"]),
+]
+
+
+def start(arguments, address=None, **streams):
+    def limit():
+        if address is not None:
+            resource.setrlimit(resource.RLIMIT_AS, (address, address))
+            resource.setrlimit(resource.RLIMIT_CPU, (10, 10))
+
+    # One thread: each further one has a stack and an arena of its own.
+    environment = dict(os.environ, OMP_NUM_THREADS="1", MALLOC_ARENA_MAX="1")
+    return subprocess.Popen([twinbox, *arguments], preexec_fn=limit, env=environment, **streams)
+
+
+def idle_memory():
+    """Address space and resident memory of a process that waits for its input."""
+    process = start(["import", "-", "-o", "idle.npz"], stdin=subprocess.PIPE)
+    try:
+        for _ in range(1000):
+            with open(f"/proc/{process.pid}/status") as file:
+                found = dict(line.split(":", 1) for line in file)
+            if os.path.basename(twinbox) == found["Name"].strip() and found["State"].split()[0] == "S":
+                break
+            time.sleep(0.01)
+        time.sleep(0.1)
+        return [int(found[key].split()[0]) * 1024 for key in ("VmPeak", "VmHWM")]
+    finally:
+        process.kill()
+        process.wait()
+
+
+def measure(arguments, address):
+    """Exit status, errors, seconds of processor time, resident memory."""
+    with open("errors", "wb") as errors:
+        process = start(arguments, address, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = 0
+    with open("errors", "rb") as errors:
+        words = errors.read().decode("utf-8", "replace")
+    return os.waitstatus_to_exitcode(status), words, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+
+
+def check(case, idle):
+    """What is wrong with a case; "" if nothing."""
+    status, message, files, words = case
+    names = iter(files * 2)
+    arguments = [word.replace("@", next(names)) if "@" in word else word for word in words.split()]
+    size = sum(os.stat(name).st_size for name in files)
+    memory, seconds = MEMORY + PER_BYTE_MEMORY * size, CPU + PER_BYTE_CPU * size
+    for attempt in range(3):  # the first one may have to load the program
+        found, errors, used, resident = measure(arguments, idle[0] + memory if limited else None)
+        if used <= seconds:
+            break
+    if verbose:
+        print(f"{used * 1000:6.0f} ms {(resident - idle[1]) / MiB:6.1f} MiB {size:9} bytes  {words}", flush=True)
+    if found != status or message not in errors:
+        return f"exit status {found}, not {status}, or no '{message}' in: {errors[:300]}"
+    if limited and used > seconds:
+        return f"{used * 1000:.0f} ms of processor time, not {seconds * 1000:.0f}"
+    if limited and resident > idle[1] + memory:
+        return f"{(resident - idle[1]) / MiB:.0f} MiB, not {memory / MiB:.0f}"
+    return ""
+
+
+def check_accepted(case, idle):
+    wanted, words, allowed, files = case
+    most = MEMORY_BASE + allowed(sum(os.stat(name).st_size for name in files))
+    found, errors, used, resident = measure(words.split(), None)
+    if verbose:
+        print(f"{used * 1000:6.0f} ms {(resident - idle[1]) / MiB:6.1f} of {most / MiB:.1f} MiB  {words}", flush=True)
+    if found != wanted:
+        return f"exit status {found}, not {wanted}: {errors[:300]}"
+    return f"{(resident - idle[1]) / MiB:.0f} MiB, not {most / MiB:.0f}" if limited and resident > idle[1] + most else ""
+
+
+verbose = os.environ.get("VERBOSE") is not None
+idle = idle_memory()
+failed = 0
+for case in CASES:
+    wrong = check(case, idle)
+    if wrong:
+        print(f"FAILED: twinbox {case[3]} ({', '.join(case[2])}): {wrong}")
+        failed += 1
+for case in ACCEPTED:
+    wrong = check_accepted(case, idle)
+    if wrong:
+        print(f"FAILED: twinbox {case[1]}: {wrong}")
+        failed += 1
+# Proof that the limit holds: a picture that needs more.
+if limited and measure(["compare", "honest.png", "changed.png"], idle[0] + MEMORY)[0] != 3:
+    print("FAILED: pictures of 100 MB fit into the budget of refused input")
+    failed += 1
+print(f"{len(CASES) + len(ACCEPTED) + limited} cases, {failed} failed")
+sys.exit(failed > 0)
