@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
-   3 the system failed. */
+   3 the system failed, 130 interrupted by SIGINT or SIGTERM. */
+#define _DEFAULT_SOURCE /* on_exit */
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/print_contexts.h"
 #include "cli/notes.h"
 #include "common/names.h"
 
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void print_help(FILE *file) {
     fputs("Usage: twinbox COMMAND [OPTION...]\n"
@@ -16,7 +20,7 @@ static void print_help(FILE *file) {
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure.\n"
+    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure, 130 interrupted.\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }
@@ -45,7 +49,13 @@ static int refuse_command(const char *name) {
     return ERROR_INPUT;
 }
 
+/* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". */
+static void check_exit(int status, void *command_ended) {
+    if (status == 1 && !*(const bool *)command_ended) _exit(ERROR_SYSTEM);
+}
+
 int main(int argc, char **argv) {
+    interrupt_handle();
     signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);
@@ -68,15 +78,20 @@ int main(int argc, char **argv) {
     char name[64];
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[1] = name;
+    static bool command_ended;
+    on_exit(check_exit, &command_ended);
     Error error = {0};
     bool same = command->run(argc - 1, argv + 1, &error);
     note_end();
+    command_ended = true;
     /* Output that could not be written is a failure of the system, not success. */
     if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
         error_system(&error, "standard output", "cannot write");
-    if (error.kind != ERROR_NONE) {
-        fprintf(stderr, "%s\n", error.message);
-        return (int)error.kind;
+    if (error.kind != ERROR_NONE) fprintf(stderr, "%s\n", error.message);
+    if (interrupt_requested() && error.kind != ERROR_INTERRUPTED) {
+        fprintf(stderr, "%s: error: interrupted\n", name);
+        return ERROR_INTERRUPTED;
     }
+    if (error.kind != ERROR_NONE) return (int)error.kind;
     return same ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 #include "chart/chart_script.h"
 #include "chart/gnuplot.h"
 #include "common/file.h"
+#include "common/memory_stream.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static bool draw(const Chart *chart, const char *scene, const char *stem, Error 
     snprintf(file_title, sizeof file_title, "Speed and accuracy: %s", title);
     char *text = NULL;
     size_t size = 0;
-    FILE *script = open_memstream(&text, &size);
+    FILE *script = memory_stream(&text, &size);
     if (script == NULL) return error_memory(error, stem);
     bool whole = chart_script(chart, title, script) && !ferror(script);
     whole = fclose(script) == 0 && whole;

@@ -5,6 +5,7 @@
 #include "chart/gnuplot.h"
 #include "chart/gnuplot_page.h"
 #include "common/file.h"
+#include "common/memory_stream.h"
 
 #include <limits.h>
 #include <math.h>
@@ -164,7 +165,7 @@ static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
     char stem[PATH_MAX], *text = NULL;
     size_t size = 0;
     if (!file_path(stem, sizeof stem, error, "%s/%s", folder, equal_time_layout.name)) return false;
-    GnuplotPage page = {.script = open_memstream(&text, &size)};
+    GnuplotPage page = {.script = memory_stream(&text, &size)};
     if (page.script == NULL) return error_memory(error, stem);
     draw_grid(grid, &page);
     bool whole = !ferror(page.script);

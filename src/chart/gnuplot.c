@@ -5,6 +5,7 @@
 #include "common/file.h"
 #include "chart/gnuplot_folder.h"
 #include "chart/pdf_title.h"
+#include "common/memory_stream.h"
 #include "common/process.h"
 #include "sketch/sketch_formats.h"
 
@@ -49,7 +50,7 @@ static void write_terminal(FILE *script, int format, const GnuplotDrawing *drawi
 /* Each format starts with `reset`: settings of the script would persist. */
 static char *whole_script(const GnuplotDrawing *drawing, size_t *size) {
     char *text = NULL;
-    FILE *script = open_memstream(&text, size);
+    FILE *script = memory_stream(&text, size);
     if (script == NULL) return NULL;
     for (int format = 0; format < format_count(drawing); format++) {
         fprintf(script, "reset\nset encoding utf8\n");
@@ -103,7 +104,7 @@ static bool insert_overlay(char **svg, size_t *size, const char *overlay) {
     static const char end[] = "</svg>";
     char *last = NULL, *text = NULL;
     for (char *at = *svg; (at = strstr(at, end)) != NULL; at++) last = at;
-    FILE *out = last != NULL ? open_memstream(&text, size) : NULL;
+    FILE *out = last != NULL ? memory_stream(&text, size) : NULL;
     if (out == NULL) return false;
     fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, overlay,
             last);
@@ -127,7 +128,7 @@ static void put_replaced(FILE *out, const char *text, const char *from, const ch
 static bool dress_svg(char **svg, size_t *size, const char *title, FontFile font) {
     static const char no_title[] = "<title>Gnuplot</title>";
     char *head = strstr(*svg, no_title), *text = NULL;
-    FILE *out = head != NULL ? open_memstream(&text, size) : NULL;
+    FILE *out = head != NULL ? memory_stream(&text, size) : NULL;
     if (out == NULL) return false;
     fprintf(out, "%.*s<title>%s</title>\n", (int)(head - *svg), *svg, title);
     svg_write_font(out, font);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/gnuplot_page.h"
 
+#include "common/memory_stream.h"
 #include "common/utf8.h"
 
 #include <math.h>
@@ -51,7 +52,7 @@ void gnuplot_panel_begin(GnuplotPage *page, GnuplotBox box, const char *title) {
                           "set tics nomirror font ',7.5'\n");
     write_margins(page, box);
     gnuplot_text(page, box.left, box.bottom + box.height + 2.5, "left", 8, title);
-    page->plot = open_memstream(&page->plot_text, &page->plot_size);
+    page->plot = memory_stream(&page->plot_text, &page->plot_size);
     if (page->plot == NULL) page->no_memory = true;
 }
 

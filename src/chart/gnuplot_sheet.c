@@ -3,14 +3,15 @@
 
 #include "chart/gnuplot.h"
 #include "common/file.h"
+#include "common/memory_stream.h"
 
 #include <limits.h>
 #include <stdlib.h>
 
 bool gnuplot_sheet_open(GnuplotSheet *sheet, const char *what, Error *error) {
-    sheet->page.script = open_memstream(&sheet->script, &sheet->script_size);
-    sheet->page.caption = open_memstream(&sheet->caption, &sheet->caption_size);
-    sheet->page.links = open_memstream(&sheet->links, &sheet->links_size);
+    sheet->page.script = memory_stream(&sheet->script, &sheet->script_size);
+    sheet->page.caption = memory_stream(&sheet->caption, &sheet->caption_size);
+    sheet->page.links = memory_stream(&sheet->links, &sheet->links_size);
     bool open = sheet->page.script != NULL && sheet->page.caption != NULL && sheet->page.links != NULL;
     return open || error_memory(error, what);
 }

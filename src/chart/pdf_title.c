@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/pdf_title.h"
 
+#include "common/memory_stream.h"
 #include "sketch/pdf_objects.h"
 
 #include <stdio.h>
@@ -78,7 +79,7 @@ bool pdf_set_title(char **pdf, size_t *size, const char *title) {
     char *whole = NULL;
     size_t whole_size;
     if (!find_section(*pdf, *size, &section)) return false;
-    FILE *file = open_memstream(&whole, &whole_size);
+    FILE *file = memory_stream(&whole, &whole_size);
     if (file == NULL) return false;
     fwrite(*pdf, 1, *size, file);
     write_update(file, &section, *size, title);

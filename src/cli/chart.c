@@ -66,6 +66,13 @@ static const Progress *begin_stage(void *context, const char *what) {
     return progress_bar_begin(what);
 }
 
+/* The chart of scene i of `count`. A signal is noticed between two charts. */
+static bool draw_scene(const char *csv, const char *scene, const char *folder, int i, int count, Error *error) {
+    if (!progress_report(progress_bar_begin("charts"), i, count))
+        return error_interrupted(error, folder, "stopped; chart.csv is finished");
+    return chart_plot(csv, scene, folder, error);
+}
+
 static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
     bool drawn;
     if (!equal_time_plot(csv, folder, &drawn, error)) return false;
@@ -84,7 +91,7 @@ static bool draw_scenes(const ChartTable *table, const char *csv, const char *fo
         int first = 0;
         while (strcmp(table->rows[first].scene, table->rows[i].scene) != 0) first++;
         if (first < i) continue;
-        if (!chart_plot(csv, table->rows[i].scene, folder, error)) return false;
+        if (!draw_scene(csv, table->rows[i].scene, folder, i, table->count, error)) return false;
         printf("%s -> %s/chart-%s.png, .svg, .pdf\n", table->rows[i].scene, folder, table->rows[i].scene);
     }
     return true;
@@ -99,6 +106,7 @@ static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Err
     if (!chart_csv_read(&table, csv, error)) return false;
     const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
                        draw_equal_time(csv, options->folder, error);
+    progress_bar_end();
     chart_csv_free(&table);
     return drawn;
 }
@@ -107,7 +115,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
     char csv[CSV_PATH_SIZE];
     if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < options->scene_count; i++) {
-        if (!chart_plot(csv, scenes[i].name, options->folder, error)) return false;
+        if (!draw_scene(csv, scenes[i].name, options->folder, i, options->scene_count, error)) return false;
         printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
                scenes[i].contenders, scenes[i].launches, options->folder, scenes[i].name);
         const char *without = scenes[i].without_network.text;
@@ -141,6 +149,7 @@ bool command_chart(int argc, char **argv, Error *error) {
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
     bool ok = output_check_folder(options.study.folder, error) &&
               speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
+    ok = ok && draw(&options.study, scenes, error);
     progress_bar_end();
-    return ok && draw(&options.study, scenes, error);
+    return ok;
 }

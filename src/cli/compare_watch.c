@@ -3,8 +3,8 @@
    no watch per folder. */
 #include "cli/compare_watch.h"
 
+#include "cli/interrupt.h"
 #include "cli/notes.h"
-#include "cli/progress_bar.h"
 #include "common/file.h"
 #include "common/folder.h"
 #include "common/hash.h"
@@ -67,7 +67,7 @@ static uint64_t hash_inputs(const CompareOptions *options) {
 static void wait_for_change(const CompareOptions *options, uint64_t before) {
     const struct timespec pause = {.tv_nsec = LOOK_EVERY * 1000000L};
     uint64_t last = before;
-    for (int still = 0; !progress_interrupted() && (last == before || still < STILL);) {
+    for (int still = 0; !interrupt_requested() && (last == before || still < STILL);) {
         nanosleep(&pause, NULL);
         uint64_t now = hash_inputs(options);
         still = now == last ? still + 1 : 0;
@@ -89,18 +89,19 @@ static void print_state(const CompareOptions *options, const Error *error) {
 
 bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error) {
     bool same = false, any = false;
-    progress_bar_begin("watching"); /* handles Ctrl-C */
-    while (!progress_interrupted()) {
+    interrupt_hold();
+    while (!interrupt_requested()) {
         /* Before the comparison: a change during it leads to another one. */
         uint64_t before = hash_inputs(options);
         Error now = {0};
         bool equal = compare(options, &now);
-        if (any && progress_interrupted() && now.kind != ERROR_NONE) break; /* it did not end */
+        if (any && interrupt_requested() && now.kind != ERROR_NONE) break; /* it did not end */
         same = equal, *error = now, any = true;
-        if (progress_interrupted()) break;
+        if (interrupt_requested()) break;
         print_state(options, &now);
         wait_for_change(options, before);
     }
-    progress_bar_end();
+    interrupt_release();
+    if (error->kind != ERROR_INTERRUPTED) interrupt_forget(); /* a signal is the usual end */
     return same;
 }

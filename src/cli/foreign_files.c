@@ -48,7 +48,7 @@ static bool is_of_sequence(const char *name, const RenderResult *result, const P
 static bool look_up(const char *path, struct stat *status, Error *error) {
     *status = (struct stat){.st_ino = 0};
     return stat(path, status) == 0 || errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == EACCES ||
-           error_system(error, path, "cannot be inspected: %s", strerror(errno));
+           error_system(error, path, "cannot be read: %s", strerror(errno));
 }
 
 static bool is_input(const char *directory, const char *name, const Panels *panels, Error *error) {

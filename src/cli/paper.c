@@ -38,7 +38,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
     char figures[PATH_SIZE];
     if (!file_path(figures, sizeof figures, error, "%s/figures", study->folder)) return false;
     if (!file_make_directory(figures, error) || !illustrations_draw(study->scenes, figures, error) ||
-        !plots_draw(study->folder, error) || !paper_report_write(study->folder, error))
+        !plots_draw(study->folder, progress_bar_begin("figures"), error) || !paper_report_write(study->folder, error))
         return false;
     printf("tables, figures, networks -> %s\nreport -> %s/report.md, %s/report.html\n", study->folder, study->folder,
            study->folder);
@@ -49,7 +49,7 @@ bool command_paper(int argc, char **argv, Error *error) {
     PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_folder(options.folder, error)) return false;
-    bool ok = paper_run(&options, progress_bar_begin("paper"), error);
+    const bool ok = paper_run(&options, progress_bar_begin("paper"), error) && draw_and_report(&options, error);
     progress_bar_end();
-    return ok && draw_and_report(&options, error);
+    return ok;
 }

@@ -1,31 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
 
+#include "cli/interrupt.h"
 #include "cli/notes.h"
 #include "common/clock.h"
 #include "common/time_left.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t interrupted;
-
 /* There is one terminal: one bar at a time. */
 static struct {
     char what[192];
-    double begun, shown; /* s */
-    bool visible, terminal;
+    double begun, shown;          /* s */
+    bool held, visible, terminal; /* held: signals wait for the work */
     TimeLeft left;
 } bar;
-
-static void on_interrupt(int signal_number) {
-    (void)signal_number;
-    interrupted = 1;
-}
-
-bool progress_interrupted(void) { return interrupted != 0; }
 
 static void show(double part, double elapsed) {
     enum { WIDTH = 30 };
@@ -48,6 +39,9 @@ static void show(double part, double elapsed) {
 
 static bool report(void *context, double done, double total) {
     (void)context;
+    /* Not before: work that waits for its input does not look at what this returns. */
+    if (!bar.held) interrupt_hold();
+    bar.held = true;
     const double time = clock_seconds(), elapsed = time - bar.begun, pause = bar.terminal ? 0.1 : 5.0;
     const double part = done < total ? done / total : 1.0;
     time_left_add(&bar.left, elapsed, part);
@@ -56,18 +50,11 @@ static bool report(void *context, double done, double total) {
         bar.visible = true;
         show(part, elapsed);
     }
-    return !progress_interrupted();
+    return !interrupt_requested();
 }
 
 const Progress *progress_bar_begin(const char *what) {
     static const Progress progress = {report, NULL};
-    /* SA_RESETHAND: a second Ctrl-C ends the program at once. */
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    if (!progress_interrupted()) {
-        sigaction(SIGINT, &action, NULL);
-        sigaction(SIGTERM, &action, NULL);
-    }
     progress_bar_end();
     bar.begun = clock_seconds();
     bar.shown = 0;
@@ -84,4 +71,6 @@ void progress_bar_clear(void) {
 void progress_bar_end(void) {
     progress_bar_clear();
     bar.visible = false;
+    if (bar.held) interrupt_release();
+    bar.held = false;
 }

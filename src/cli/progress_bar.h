@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known (common/time_left.h).
-   Ctrl-C requests the work to stop. Work of less than a second shows nothing. There is one bar at a time. */
+   A signal requests the work to stop (interrupt.h). Work of less than a second shows nothing. There is one bar at a time. */
 #pragma once
 #include "common/progress.h"
 
@@ -10,6 +10,3 @@ const Progress *progress_bar_begin(const char *what);
 /* Removes the bar from the terminal so that a line can be printed; the next report shows it again. */
 void progress_bar_clear(void);
 void progress_bar_end(void);
-
-/* True after Ctrl-C or SIGTERM since the first bar began. */
-bool progress_interrupted(void);

@@ -114,8 +114,9 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
     return ok;
 }
 
-/* A run that ends in a NaN or infinite state has a verdict, too. */
+/* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
+    if (error->kind != ERROR_NONE && error->kind != ERROR_INPUT) return false;
     if (!simulate_verdict_end(&result->verdict, error)) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);

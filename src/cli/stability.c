@@ -97,8 +97,9 @@ static bool make_clip(const Options *options, Error *error) {
 
 static bool study(const StabilityOptions *options, Error *error) {
     bool ok = stability_run(options, progress_bar_begin("stability"), error);
+    ok = ok && stability_figures_write(options->folder, progress_bar_begin("maps"), error);
     progress_bar_end();
-    ok = ok && stability_figures_write(options->folder, error) && stability_print(options->folder, error);
+    ok = ok && stability_print(options->folder, error);
     const NameList left_out = contenders_left_out(STUDY_STABILITY);
     if (ok && options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);

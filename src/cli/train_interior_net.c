@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "common/standard_io.h"
@@ -47,7 +48,7 @@ static bool run(const TrainRequest *request, Error *error) {
     snprintf(net.command, sizeof net.command, "%s", command);
     ok = ok && interior_net_write(&net, request->output, error);
     if (!ok) return false;
-    if (progress_interrupted())
+    if (interrupt_requested())
         printf("stopped early -> %s; the same command continues\n", request->output);
     else
         printf("%d weights -> %s\n", INTERIOR_NET_WEIGHTS, request->output);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "impact_training/momentum_fit.h"
@@ -30,7 +31,7 @@ static bool fit_and_store(const Scene *scene, const TrainRequest *request, Error
     if (!ok) return false;
     train_describe(request, schedules.command, sizeof schedules.command);
     ok = momentum_schedules_write(&schedules, request->output, error);
-    if (ok) printf("%s-> %s\n", progress_interrupted() ? "stopped early " : "", request->output);
+    if (ok) printf("%s-> %s\n", interrupt_requested() ? "stopped early " : "", request->output);
     momentum_schedules_free(&schedules);
     return ok;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "common/file.h"
@@ -124,7 +125,7 @@ static bool store(Network *network, const Dataset *dataset, const TrainRequest *
     if (!training_score(dataset, network, training->loss, &score, error) ||
         !may_replace(dataset, request, training, &score, error) || !network_write(network, request->output, error))
         return false;
-    printf("%s%d parameters -> %s\n", progress_interrupted() ? "stopped early; " : "", network_parameter_count(network),
+    printf("%s%d parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network_parameter_count(network),
            request->output);
     print_verdict(&score);
     return true;

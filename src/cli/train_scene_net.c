@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "impact_training/scene_training.h"
@@ -59,7 +60,7 @@ static bool store(SlotNetwork *network, const TrainRequest *request, int width, 
     train_set(&found, "--within", NULL);
     train_describe(&found, network->command, sizeof network->command);
     if (!slot_network_write(network, request->output, error)) return false;
-    printf("%s%d slots, %zu parameters -> %s\n", progress_interrupted() ? "stopped early; " : "", network->slot_count,
+    printf("%s%d slots, %zu parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network->slot_count,
            network->parameter_count, request->output);
     return true;
 }
@@ -101,7 +102,7 @@ static SlotNetwork *train_smallest(const Scene *scene, SceneTraining *training, 
         if (network == NULL) return NULL;
         const bool none = score.momentum <= within;
         if (none) printf("no network is needed: momentum with 20 sweeps is within %g m/s\n", within);
-        if (!none && (score.held_out <= within || progress_interrupted())) return network;
+        if (!none && (score.held_out <= within || interrupt_requested())) return network;
         slot_network_destroy(network);
         if (none) return NULL;
     }

@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct Background {
     pthread_t thread;
@@ -47,8 +48,9 @@ Background *background_start(BackgroundWork *work, void *context, Error *error) 
     background->context = context;
     pthread_mutex_init(&background->mutex, NULL);
     pthread_cond_init(&background->changed, NULL);
-    if (pthread_create(&background->thread, NULL, run, background) == 0) return background;
-    error_system(error, "second thread", "cannot be started");
+    const int cause = pthread_create(&background->thread, NULL, run, background);
+    if (cause == 0) return background;
+    error_system(error, "second thread", "cannot be started: %s", strerror(cause));
     pthread_cond_destroy(&background->changed);
     pthread_mutex_destroy(&background->mutex);
     free(background);

@@ -10,6 +10,7 @@
 
 #undef error_input
 #undef error_system
+#undef error_interrupted
 #undef error_memory
 
 /* A path can be longer than a message: what is wrong must still be in it. */
@@ -53,6 +54,14 @@ bool error_system(Error *error, const char *where, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     set(error, ERROR_SYSTEM, where, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_interrupted(Error *error, const char *where, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set(error, ERROR_INTERRUPTED, where, format, arguments);
     va_end(arguments);
     return false;
 }

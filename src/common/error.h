@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 /* The values are the program's exit statuses. */
-typedef enum ErrorKind { ERROR_NONE = 0, ERROR_INPUT = 2, ERROR_SYSTEM = 3 } ErrorKind;
+typedef enum ErrorKind { ERROR_NONE = 0, ERROR_INPUT = 2, ERROR_SYSTEM = 3, ERROR_INTERRUPTED = 130 } ErrorKind;
 
 typedef struct Error {
     ErrorKind kind;
@@ -25,6 +25,9 @@ bool error_input(Error *error, const char *where, const char *format, ...) PRINT
 /* The system failed: disk, memory, a missing library or program. */
 bool error_system(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
 
+/* Work was stopped on request (common/progress.h): by SIGINT or SIGTERM. */
+bool error_interrupted(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
 /* Out of memory: a system error whose text needs no arguments. */
 bool error_memory(Error *error, const char *where);
 
@@ -38,5 +41,6 @@ static inline bool error_false(bool set) {
 }
 #define error_input(...) error_false(error_input(__VA_ARGS__))
 #define error_system(...) error_false(error_system(__VA_ARGS__))
+#define error_interrupted(...) error_false(error_interrupted(__VA_ARGS__))
 #define error_memory(...) error_false(error_memory(__VA_ARGS__))
 #endif

@@ -136,7 +136,7 @@ bool file_find(const char *path, bool *there, Error *error) {
     struct stat status;
     *there = stat(path, &status) == 0;
     return *there || errno == ENOENT || errno == ENOTDIR ||
-           error_system(error, path, "cannot be inspected: %s", strerror(errno));
+           error_system(error, path, "cannot be read: %s", strerror(errno));
 }
 
 static bool is_directory(const char *path) {

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/file.h"
 
+#include "common/memory_stream.h"
+
 #include <locale.h>
 #include <stdlib.h>
 
 char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size) {
     char *text = NULL;
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    FILE *out = c != (locale_t)0 ? open_memstream(&text, size) : NULL;
+    FILE *out = c != (locale_t)0 ? memory_stream(&text, size) : NULL;
     bool done = out != NULL;
     if (done) {
         locale_t previous = uselocale(c);

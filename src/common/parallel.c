@@ -28,6 +28,7 @@ bool parallel_for(const ParallelWork *work, int count, const char *what, const P
         if (!ok) atomic_store(&stopped, true);
     }
     if (!atomic_load(&stopped)) return true;
-    return error->kind == ERROR_NONE ? error_input(error, what, "stopped after %d of %d", atomic_load(&done), count)
-                                     : false;
+    return error->kind == ERROR_NONE
+               ? error_interrupted(error, what, "stopped after %d of %d", atomic_load(&done), count)
+               : false;
 }

@@ -3,6 +3,7 @@
 
 #include "simulate/launch_check.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -90,6 +91,7 @@ static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *gener
 
 /* The split is drawn first, so that it does not depend on later draws. */
 static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
+    gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return error_memory(error, "dataset");
     gsl_rng_set(generator, (unsigned long)options->seed);

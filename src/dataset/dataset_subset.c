@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dataset/dataset_subset.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -85,6 +86,7 @@ static bool draw(const Dataset *dataset, int count, uint64_t seed, bool *keep, i
     const int launches = list_launches(dataset, keep, order);
     if (count < 1 || count > launches)
         return error_input(error, "dataset", "%d training launches requested; expected 1 to %d", count, launches);
+    gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return error_memory(error, "dataset");
     gsl_rng_set(generator, (unsigned long)seed);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "image/mask.h"
 
+#include "image/mask_picture.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,12 +17,10 @@ bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *
 }
 
 bool mask_add_picture(Mask *mask, const char *path, Error *error) {
-    MaskPart part = {.kind = MASK_PICTURE, .picture = image_read_png(path, error)};
-    if (part.picture == NULL) return false;
-    part.path = strdup(path);
-    if (part.path == NULL ? error_memory(error, path) : add(mask, part, error)) return true;
-    image_destroy(part.picture);
-    free(part.path);
+    MaskPicture *picture = mask_picture_read(path, error);
+    if (picture == NULL) return false;
+    if (add(mask, (MaskPart){.kind = MASK_PICTURE, .picture = picture}, error)) return true;
+    mask_picture_destroy(picture);
     return false;
 }
 
@@ -29,21 +29,11 @@ bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error) {
 }
 
 void mask_free(Mask *mask) {
-    for (int i = 0; i < mask->count; i++) {
-        image_destroy(mask->parts[i].picture);
-        free(mask->parts[i].path);
-    }
+    for (int i = 0; i < mask->count; i++) mask_picture_destroy(mask->parts[i].picture);
     mask->count = 0;
 }
 
 static size_t pixel_count(const Image *image) { return (size_t)image->width * (size_t)image->height; }
-
-static void draw_picture(const Image *picture, uint8_t *masked) {
-    for (size_t i = 0; i < pixel_count(picture); i++) {
-        const uint8_t *p = picture->pixels + 4 * i;
-        if (p[3] > 0 && (p[0] | p[1] | p[2]) != 0) masked[i] = IGNORED_MASK;
-    }
-}
 
 static void draw_color(const uint8_t color[3], const Image *expected, uint8_t *masked) {
     for (size_t i = 0; i < pixel_count(expected); i++) {
@@ -68,10 +58,7 @@ bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_
         case MASK_RECTANGLE: draw_rectangle(part, width, height, masked); break;
         case MASK_COLOR: draw_color(part->color, expected, masked); break;
         case MASK_PICTURE:
-            if (part->picture->width != width || part->picture->height != height)
-                return error_input(error, part->path, "the mask has %d x %d pixels, but %s has %d x %d",
-                                   part->picture->width, part->picture->height, path, width, height);
-            draw_picture(part->picture, masked);
+            if (!mask_picture_draw(part->picture, expected, path, masked, error)) return false;
         }
     }
     return true;

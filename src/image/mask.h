@@ -9,10 +9,9 @@ typedef enum MaskKind { MASK_RECTANGLE, MASK_PICTURE, MASK_COLOR } MaskKind;
 
 typedef struct MaskPart {
     MaskKind kind;
-    int x, y, width, height; /* of a rectangle, which may extend beyond the edges */
-    Image *picture;          /* masks where it is neither black nor transparent */
-    char *path;              /* of the picture */
-    uint8_t color[3];        /* masks opaque pixels that have this colour in the expected picture */
+    int x, y, width, height;     /* of a rectangle, which may extend beyond the edges */
+    struct MaskPicture *picture; /* masks where it is neither black nor transparent */
+    uint8_t color[3];            /* masks opaque pixels that have this colour in the expected picture */
 } MaskPart;
 
 typedef struct Mask {
@@ -20,7 +19,7 @@ typedef struct Mask {
     MaskPart parts[MASK_PARTS];
 } Mask;
 
-/* ERROR_INPUT for more than MASK_PARTS parts or an unreadable picture. */
+/* ERROR_INPUT for more than MASK_PARTS parts or an unreadable picture; its pixels are decompressed when it is drawn. */
 bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *error);
 bool mask_add_picture(Mask *mask, const char *path, Error *error);
 bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error);
@@ -29,8 +28,8 @@ void mask_free(Mask *mask);
 /* What a byte of masked[height, width] tells of its pixel. Pixels that are not IGNORED_NOT are ignored. */
 typedef enum Ignored { IGNORED_NOT, IGNORED_MASK, IGNORED_EDGE /* image/antialias.h */ } Ignored;
 
-/* Sets the masked bytes to IGNORED_MASK. ERROR_INPUT if a picture has another size than the expected picture; `path`
-   names that one in the message. */
+/* Sets the masked bytes to IGNORED_MASK. ERROR_INPUT if a picture has another size than the expected picture, or pixels
+   that are damaged; `path` names the expected picture in the message. Threads may share a mask. */
 bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_t *masked, Error *error);
 
 /* Copies the ignored pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */

@@ -90,7 +90,7 @@ static bool solve_references(ImpactProblems *problems, const Progress *progress,
         ImpactProblem *item = &problems->items[done];
         ok = reference_solve(&reference, &item->problem, NULL, error);
         if (ok && !progress_report(progress, (double)done, (double)problems->count))
-            ok = error_input(error, "recording", "stopped");
+            ok = error_interrupted(error, "recording", "stopped");
         if (!ok) break;
         memcpy(item->reference, reference.velocities, (size_t)item->problem.body_count * sizeof *item->reference);
         ImpactProblem moved = *item;

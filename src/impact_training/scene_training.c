@@ -8,6 +8,7 @@
 #include "solvers/scene_net.h"
 #include "solvers/solvers.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdio.h>
@@ -216,6 +217,7 @@ SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *trainin
     trainer.progress = (Progress){progress_stage, &trainer.stage};
     const int launches = training->launches > HELD_OUT_LAUNCHES ? training->launches : HELD_OUT_LAUNCHES;
     trainer.launches = malloc((size_t)launches * sizeof *trainer.launches);
+    gsl_set_error_handler_off(); /* its default aborts */
     trainer.generator = gsl_rng_alloc(gsl_rng_mt19937);
     bool ok = trainer.launches != NULL && trainer.generator != NULL;
     ok = ok ? train(&trainer, error) : error_memory(error, "scene-net");

@@ -3,6 +3,7 @@
 
 #include "impact_training/principal.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -200,6 +201,7 @@ static void draw(float *numbers, size_t count, double spread, gsl_rng *generator
 /* Hidden layers preserve the variance of their inputs (Glorot, Bengio 2010); the last layer starts with outputs near
    0. */
 static bool draw_weights(SlotNetwork *network, uint64_t seed) {
+    gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return false;
     gsl_rng_set(generator, (unsigned long)seed);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "naming/view.h"
 
+#include "image/sequence.h"
 #include "json/json_read.h"
 
 #include <math.h>
@@ -42,7 +43,8 @@ static bool read_panel(const JsonReader *json, const json_t *item, ViewPanel *pa
         return bad(json, error, "'runs' of a panel");
     for (size_t i = 0; i < json_array_size(runs); i++) {
         const char *run = json_string_value(json_array_get(runs, i));
-        if (run == NULL || strlen(run) >= VIEW_NAME_SIZE || strchr(run, '/') != NULL || run[0] == '.')
+        if (run == NULL || strlen(run) >= VIEW_NAME_SIZE || strchr(run, '/') != NULL || run[0] == '.' ||
+            !name_is_text(run))
             return bad(json, error, "'runs' with file names");
         strcpy(i == 0 ? panel->run : panel->outlines[panel->outline_count++], run);
     }

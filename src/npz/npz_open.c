@@ -126,7 +126,9 @@ static bool check_budget(NpzFile *file, Error *error) {
 
 static bool refuse_pointer(int descriptor, const char *path, Error *error) {
     char start[64];
-    ssize_t size = pread(descriptor, start, sizeof start, 0);
+    ssize_t size = -1;
+    do size = pread(descriptor, start, sizeof start, 0);
+    while (size < 0 && errno == EINTR);
     return size < 0 ? error_system(error, path, "cannot read: %s", strerror(errno))
                     : lfs_pointer_refuse(start, (size_t)size, path, error);
 }

@@ -26,7 +26,7 @@ typedef struct RenderResult {
    frames, numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file
    k is frame k. manifest.json (manifest.h) describes the pictures. Child processes draw, so the caller's environment
    and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are finished and the
-   error is "stopped" (ERROR_INPUT). `result` may be NULL.
+   error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL.
    If that is the whole run, frames of an earlier sequence that would remain beside these are removed (stale.h).
    options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
    draws all others. If that call had other runs or options or was another version, it draws all. */

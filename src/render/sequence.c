@@ -111,7 +111,8 @@ static bool wait_for_workers(Sequence *sequence, const Progress *progress, Error
             return error_system(error, "render", "cannot wait for the drawing processes: %s", strerror(errno));
         for (int i = 0; i < sequence->jobs; i++)
             if (sequence->polls[i].revents != 0 && !listen_to(sequence, &sequence->workers[i], error)) return false;
-        if (!progress_report(progress, sequence->done, sequence->total)) return error_input(error, "render", "stopped");
+        if (!progress_report(progress, sequence->done, sequence->total))
+            return error_interrupted(error, "render", "stopped");
     }
     return true;
 }

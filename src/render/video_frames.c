@@ -42,7 +42,7 @@ bool video_feed(const VideoOptions *options, int stride, int width, int height, 
         image_destroy(image);
         if (!ok) return false;
         if (!progress_report(progress, index - options->first + 1, options->last - options->first + 1))
-            return error_input(error, options->path, "stopped");
+            return error_interrupted(error, options->path, "stopped");
     }
     return true;
 }

@@ -54,8 +54,7 @@ bool root_open(Root *root, const char *path, Error *error) {
                            : error_system(error, path, "the folder cannot be opened: %s", strerror(cause));
 }
 
-/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. */
-static const char *below_current(const char *path) {
+const char *path_below_current(const char *path) {
     char current[PATH_MAX];
     if (path[0] == '/') {
         const size_t length = getcwd(current, sizeof current) != NULL ? strlen(current) : 0;
@@ -70,7 +69,7 @@ static const char *below_current(const char *path) {
 
 bool root_open_below(Root *root, const char *path, const char *report, Error *error) {
     char whole[PATH_MAX];
-    const char *relative = below_current(path), *rest = whole;
+    const char *relative = path_below_current(path), *rest = whole;
     *root = (Root){-1, path};
     if (relative == NULL)
         return error_input(error, report,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
-   if one is made meanwhile. Only approve.c includes this. */
+   if one is made meanwhile. Only approve.c and the page, which states the command, include this. */
 #pragma once
 #include "common/error.h"
 
@@ -19,6 +19,10 @@ typedef struct Place {
 
 /* Opens a folder that the user named, or one that is only read: links in `path` are followed. Then root_close(). */
 bool root_open(Root *root, const char *path, Error *error);
+
+/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. Links
+   are not looked at. */
+const char *path_below_current(const char *path);
 
 /* Opens a folder that a file named: ERROR_INPUT unless it lies below the current directory, without links on the way.
    report: that file, for messages. */

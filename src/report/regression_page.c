@@ -2,6 +2,7 @@
 /* report.html: the fixed parts of page/, and pictures and results as data for its script. */
 #include "common/base64.h"
 #include "common/html_text.h"
+#include "report/approve_place.h"
 #include "report/page.h"
 #include "report/regression_parts.h"
 
@@ -126,6 +127,11 @@ static void write_approval(FILE *file, const Report *report) {
           file);
     write_code(file, "twinbox approve ");
     write_code(file, report->folder);
+    const char *expected = report->regression->sequences[EXPECTED]->folder;
+    if (path_below_current(expected) == NULL) { /* approve must be told. */
+        write_code(file, " --expected ");
+        write_code(file, expected);
+    }
     fputs(" replaces the expected files by the actual ones; with <code>--only 'stack_*'</code>, only files of matching "
           "names.</p></section>\n",
           file);

@@ -116,7 +116,7 @@ static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Err
     if (!ok) return false;
     batch->done += batch->count;
     batch->count = 0;
-    if (!progress_report(progress, batch->done, batch->wanted)) return error_input(error, "report", "stopped");
+    if (!progress_report(progress, batch->done, batch->wanted)) return error_interrupted(error, "report", "stopped");
     return true;
 }
 

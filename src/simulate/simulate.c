@@ -59,7 +59,7 @@ static bool observe(const Run *run, int frame, const RunWatch *watch, Error *err
         if (!watch->observers[i].observe(watch->observers[i].context, frame, run->world, error)) return false;
     if (watch->fallbacks != NULL) network_fallbacks_add(watch->fallbacks, &world_solution(run->world)->fallbacks);
     if (progress_report(watch->progress, frame, run->scene->frames)) return true;
-    return error_input(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
+    return error_interrupted(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
 }
 
 bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *watch, Error *error) {

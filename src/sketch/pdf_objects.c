@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sketch/pdf_objects.h"
 
+#include "common/memory_stream.h"
 #include "common/utf8.h"
 #include "sketch/sketch_formats.h"
 #include "type/type.h"
@@ -72,7 +73,7 @@ static bool write_to_unicode(Pdf *pdf, const FontFile *font) {
     enum { MAX_ENTRIES = 100 }; /* the maximum length of a list */
     char *text = NULL;
     size_t size = 0;
-    FILE *map = open_memstream(&text, &size);
+    FILE *map = memory_stream(&text, &size);
     if (map == NULL) return false;
     fprintf(map, "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CMapName /Inter def\n"
                  "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");

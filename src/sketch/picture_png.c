@@ -2,6 +2,8 @@
 /* PNG with alpha and resolution, which frames do not need. */
 #include "sketch/sketch_formats.h"
 
+#include "common/memory_stream.h"
+
 #include <math.h>
 #include <png.h>
 #include <stdlib.h>
@@ -36,7 +38,7 @@ static bool write_png(FILE *file, const Image *image, double dpi) {
 
 char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error) {
     char *data = NULL;
-    FILE *file = open_memstream(&data, size);
+    FILE *file = memory_stream(&data, size);
     bool whole = file != NULL && write_png(file, image, dpi) && !ferror(file);
     if (file != NULL) whole = fclose(file) == 0 && whole;
     if (whole) return data;

@@ -2,6 +2,7 @@
 /* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font and its title, without date and document ID. Text can
    be searched and copied. */
 #include "sketch/pdf_objects.h"
+#include "common/memory_stream.h"
 #include "sketch/sketch_formats.h"
 #include "type/type.h"
 
@@ -107,7 +108,7 @@ static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput 
 static bool write_content(Pdf *pdf, const SketchOutput *output, const size_t *order) {
     char *text = NULL;
     size_t size = 0;
-    FILE *content = open_memstream(&text, &size);
+    FILE *content = memory_stream(&text, &size);
     if (content == NULL) return false;
     write_marks(content, pdf->sketch, output, order);
     bool whole = !ferror(content);
@@ -210,7 +211,7 @@ char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *si
     int images = 0;
     for (size_t i = 0; i < sketch->mark_count; i++) images += sketch->marks[i].kind == MARK_IMAGE;
     char *data = NULL;
-    Pdf pdf = {open_memstream(&data, size), sketch, NULL, FIRST_IMAGE + 2 * images};
+    Pdf pdf = {memory_stream(&data, size), sketch, NULL, FIRST_IMAGE + 2 * images};
     pdf.offsets = calloc((size_t)pdf.count, sizeof *pdf.offsets);
     bool whole = pdf.file != NULL && pdf.offsets != NULL && write_document(&pdf, output, images);
     if (pdf.file != NULL) whole = fclose(pdf.file) == 0 && whole;

@@ -3,6 +3,7 @@
    take the next of its family, and alignment holds with any. As outlines text looks the same everywhere; then aria-label
    holds its content. */
 #include "common/base64.h"
+#include "common/memory_stream.h"
 #include "common/utf8.h"
 #include "sketch/sketch_formats.h"
 #include "type/type.h"
@@ -178,7 +179,7 @@ static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput 
 
 char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
     char *data = NULL;
-    FILE *file = open_memstream(&data, size);
+    FILE *file = memory_stream(&data, size);
     if (file == NULL) {
         error_memory(error, "figure");
         return NULL;

@@ -22,6 +22,6 @@ typedef struct StabilityOptions {
 } StabilityOptions;
 
 /* Runs the studies and maps and writes the tables. An interrupted run is resumed at the unfinished study or map. The
-   tables do not depend on the number of threads. ERROR_INPUT also for an unknown name, and if progress stops the
-   run. */
+   tables do not depend on the number of threads. ERROR_INPUT also for an unknown name, ERROR_INTERRUPTED if
+   progress stops the run. */
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error);

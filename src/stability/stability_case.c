@@ -68,7 +68,7 @@ bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
         if (!counter->stopped) counter->stopped = !progress_report(counter->progress, done, counter->expected);
         stopped = counter->stopped;
     }
-    return !stopped || error_input(error, what, "stopped; finished parts are kept");
+    return !stopped || error_interrupted(error, what, "stopped; finished parts are kept");
 }
 
 bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {

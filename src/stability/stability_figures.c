@@ -7,12 +7,17 @@
 
 #include <stdlib.h>
 
+static bool go_on(int done, int total, const char *folder, const Progress *progress, Error *error) {
+    return progress_report(progress, done, total) ||
+           error_interrupted(error, folder, "stopped; the tables are finished");
+}
+
 /* Gathers every map and, if `draw`, draws it. A first pass without drawing detects errors before anything is drawn. */
-static bool process_maps(const MapTable *table, const char *folder, bool draw, Error *error) {
+static bool process_maps(const MapTable *table, const char *folder, bool draw, const Progress *progress, Error *error) {
     MapPanels *map = malloc(sizeof *map);
     bool ok = map != NULL || error_memory(error, folder);
     for (int row = 0; ok && row < table->count;) {
-        ok = map_panels_gather(map, table, &row, error);
+        ok = go_on(row, table->count, folder, progress, error) && map_panels_gather(map, table, &row, error);
         if (!ok || !draw) continue;
         GnuplotSheet sheet = {0};
         ok = gnuplot_sheet_open(&sheet, folder, error);
@@ -25,21 +30,22 @@ static bool process_maps(const MapTable *table, const char *folder, bool draw, E
     return ok;
 }
 
-static bool draw_borders(const BorderTable *table, const char *folder, Error *error) {
+static bool draw_borders(const BorderTable *table, const char *folder, const Progress *progress, Error *error) {
     if (table->count == 0) return true;
     GnuplotSheet sheet = {0};
-    bool ok = gnuplot_sheet_open(&sheet, folder, error) && stability_borders_write(table, &sheet.page, error) &&
-              gnuplot_sheet_close(&sheet, folder, error) && gnuplot_sheet_draw(&sheet, folder, "", "borders", error);
+    bool ok = go_on(0, 1, folder, progress, error) && gnuplot_sheet_open(&sheet, folder, error) &&
+              stability_borders_write(table, &sheet.page, error) && gnuplot_sheet_close(&sheet, folder, error) &&
+              gnuplot_sheet_draw(&sheet, folder, "", "borders", error);
     gnuplot_sheet_free(&sheet);
     return ok;
 }
 
-bool stability_figures_write(const char *folder, Error *error) {
+bool stability_figures_write(const char *folder, const Progress *progress, Error *error) {
     MapTable maps = {0};
     BorderTable borders = {0};
     bool ok = border_table_read(&borders, folder, error) && map_table_read(&maps, folder, error) &&
-              process_maps(&maps, folder, false, error) && draw_borders(&borders, folder, error) &&
-              process_maps(&maps, folder, true, error);
+              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, progress, error) &&
+              process_maps(&maps, folder, true, progress, error);
     map_table_free(&maps);
     border_table_free(&borders);
     return ok;

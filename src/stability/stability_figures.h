@@ -2,6 +2,7 @@
 /* The figures of a stability study, drawn from its tables. */
 #pragma once
 #include "common/error.h"
+#include "common/progress.h"
 
 /* Reads folder/stability.csv and folder/maps.csv (stability/stability_table.h) and draws, as .png, .svg
    (chart/gnuplot.h) and a caption .txt of one line,
@@ -11,5 +12,6 @@
    into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
 
    A table without rows gives no figure. An invalid table is an error "path:line:column: error: text" before anything is
-   drawn. ERROR_SYSTEM if gnuplot is missing or fails; figures already drawn stay. */
-bool stability_figures_write(const char *folder, Error *error);
+   drawn. ERROR_SYSTEM if gnuplot is missing or fails, ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
+   figures already drawn stay. */
+bool stability_figures_write(const char *folder, const Progress *progress, Error *error);

@@ -68,7 +68,7 @@ static bool measure(void *context, int frame, const World *world, Error *error) 
                                          unshifted->position[(size_t)frame * (size_t)unshifted->bodies + (size_t)i]));
     watch->chaos->distance[frame] = largest;
     return progress_stage(&watch->stage, frame, unshifted->frames) ||
-           error_input(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);
+           error_interrupted(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);
 }
 
 static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
@@ -78,8 +78,7 @@ static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, 
     chaos->distance[0] = trajectory_has(watch->unshifted, 0, chaos->body) ? chaos->shift : 0;
     Error failure = {0};
     /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
-    if (simulate_observed(scene, method, &observer, &failure) || (failure.kind == ERROR_INPUT && !watch->stage.stopped))
-        return true;
+    if (simulate_observed(scene, method, &observer, &failure) || failure.kind == ERROR_INPUT) return true;
     *error = failure;
     return false;
 }

@@ -37,6 +37,6 @@ typedef struct SpeedAccuracyScene {
 
 /* Writes folder/chart.csv and fills scenes[scene_count]. Finished rows are saved in folder/chart-KEY.part.csv: an
    interrupted study is resumed if options, files and program are the same. ERROR_INPUT for an invalid option, scene or
-   launch, or if progress stops the study. */
+   launch, ERROR_INTERRUPTED if progress stops the study. */
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,
                         Error *error);

@@ -3,6 +3,7 @@
 
 #include "common/array.h"
 #include "common/file.h"
+#include "common/memory_stream.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -52,12 +53,12 @@ static bool write_part(StudyParts *parts, const StudyPart *part, const char *pat
     const Progress progress = {report, &own};
     char *text = NULL;
     size_t size = 0;
-    FILE *lines = open_memstream(&text, &size);
+    FILE *lines = memory_stream(&text, &size);
     if (lines == NULL) return error_memory(error, "study");
     bool ok = part->write(part->context, lines, &progress, error);
     if (ferror(lines) && ok) ok = error_memory(error, "study");
     if (fclose(lines) != 0 && ok) ok = error_memory(error, "study");
-    if (ok && own.stopped) ok = error_input(error, part->name, "stopped; finished parts are kept");
+    if (ok && own.stopped) ok = error_interrupted(error, part->name, "stopped; finished parts are kept");
     ok = ok && file_write(path, text, size, error) && append_text(parts, text, size, error);
     free(text);
     return ok;

@@ -30,7 +30,7 @@ typedef struct StudyPart {
 bool study_parts_open(StudyParts *parts, const char *folder, uint64_t key, Error *error);
 void study_parts_close(StudyParts *parts);
 
-/* Does the part, unless its file exists. ERROR_INPUT if progress requests a stop; the part is not kept then. */
+/* Does the part, unless its file exists. ERROR_INTERRUPTED if progress requests a stop; the part is not kept then. */
 bool study_parts_do(StudyParts *parts, const StudyPart *part, Error *error);
 
 /* Writes a row as such a line; the table's name is the layout's. Errors as csv_row_print(). */

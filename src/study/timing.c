@@ -222,7 +222,7 @@ static bool measure(Timing *timing, const Progress *progress, Error *error) {
     for (int r = 0; r < repetitions; r++) {
         if (!repeat(timing, r, &clock, error)) return false;
         if (!progress_report(progress, r + 1, repetitions))
-            return error_input(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
+            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
     }
     return count_instructions(timing, error);
 }

@@ -109,6 +109,15 @@ for path in expected ./expected expected/ .//expected "$PWD/expected" "$PWD//exp
     rm -rf expected
     cp -r "$base/expected.kept" expected
 done
+# The command on the page works where compare ran.
+on_page() { sed -n 's/.*\(<code>twinbox approve .*\)<.code> replaces.*/\1/p' report/report.html | sed 's/<[^>]*>//g'; }
+run 1 compare expected actual --report report
+equal "the command on the page" "$(on_page)" "twinbox approve report"
+cp -r expected ../beside
+run 1 compare ../beside actual --report report
+equal "the command on the page" "$(on_page)" "twinbox approve report --expected ../beside"
+run 0 $(on_page | sed 's/^twinbox //')
+says "replaced ../beside/a.png"
 cd expected || exit 1
 "$twinbox" compare . ../actual --report ../here >/dev/null
 run 0 approve ../here

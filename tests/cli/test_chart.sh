@@ -76,7 +76,7 @@ for _ in $(seq 2000); do
 done
 kill -INT $!
 wait $!
-equal "exit status of an interrupted chart" $? 2
+equal "exit status of an interrupted chart" $? 130
 complains "stopped after"
 equal "what was done is kept" "$(ls part | grep -c '\.part\.csv$')" 1
 [ -e part/chart.csv ] && fail "an interrupted chart has a table"

@@ -143,7 +143,7 @@ training=$!
 until grep -q '^ *10 ' cut.out; do kill -0 $training || break; sleep 0.1; done
 kill -INT $training
 wait $training
-equal "status after Ctrl-C" $? 0
+equal "status after Ctrl-C" $? 130
 grep -q "stopped early; 132 parameters -> cut.npz" cut.out || fail "Ctrl-C: $(tail -n 2 cut.out cut.err)"
 run 0 train pairs.npz -o after.npz --iterations 1 --from cut.npz
 rm cut.npz after.npz

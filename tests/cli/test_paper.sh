@@ -84,7 +84,7 @@ study=$!
 await cut network-baseline
 kill -INT $study
 wait $study
-equal "exit status of an interrupted study" $? 2
+equal "exit status of an interrupted study" $? 130
 complains "stopped"
 ls cut/parts-*/network-baseline >/dev/null 2>&1 || fail "what was done is gone"
 [ -e cut/report.html ] && fail "an interrupted study has a report"

@@ -174,6 +174,7 @@ for signal in INT KILL; do
     done
     kill -$signal $!
     wait $! 2>/dev/null
+    equal "exit status after $signal" $? $([ $signal = INT ] && echo 130 || echo 137)
     [ -e broken/manifest.json ] && fail "$signal came too late"
     draw broken --resume >out 2>err || fail "resumed: status $?: $(cat err)"
     sed -n 's/.*, \([0-9]*\) of them kept/\1/p' out >kept

@@ -90,7 +90,7 @@ training=$!
 until grep -qs '^ *1 ' cut.out; do kill -0 $training || break; sleep 0.05; done
 kill -INT $training
 wait $training
-equal "status after Ctrl-C" $? 0
+equal "status after Ctrl-C" $? 130
 grep -q "stopped early; .* -> cut.npz" cut.out || fail "Ctrl-C: $(tail -n 2 cut.out cut.err)"
 run 0 simulate stack.yaml --method scene-net:network=cut.npz
 finish

@@ -54,7 +54,7 @@ for _ in $(seq 6000); do
 done
 kill -INT $!
 wait $!
-equal "exit status of an interrupted study" $? 2
+equal "exit status of an interrupted study" $? 130
 complains "stopped; finished parts are kept"
 equal "what was done is kept" "$(ls part/parts-*)" heavy_on_one
 sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/heavy_on_one

@@ -59,7 +59,7 @@ for _ in $(seq 6000); do
 done
 kill -INT $!
 wait $!
-equal "exit status of an interrupted study" $? 2
+equal "exit status of an interrupted study" $? 130
 complains "stopped; finished parts are kept"
 sed -i 's/engine,k=10,ratio,,[0-9.]*/engine,k=10,ratio,,1.5/' part/parts-*/five_ratio
 run 0 stability five.yaml $two -o part

@@ -48,7 +48,7 @@ static void progress_can_stop_it(void **state) {
     Error error = {0};
     Progress progress = {stop_at_ten, &limit};
     assert_false(parallel_for(&(ParallelWork){add_one, done}, PIECES, "launches", &progress, &error));
-    assert_error(error, ERROR_INPUT, "launches: error: stopped after 1");
+    assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after 1");
     for (int i = 0; i < PIECES; i++) count += done[i];
     assert_true(count >= 10 && count < PIECES);
 }

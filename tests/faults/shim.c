@@ -199,8 +199,10 @@ static unsigned long long hash_stack(void) {
 }
 
 /* Hash 0 marks an empty slot. A full table notes a place again. */
-static void note_site(Call call, unsigned long long n, const char *function) {
-    const unsigned long long hash = hash_stack() * CALL_COUNT + call + 1;
+static void note_site(Call call, unsigned long long n, const char *function, const char *caller) {
+    /* Of what prints, the caller is enough: each number of a table has a stack of its own. */
+    const unsigned long long place = call == CALL_WRITE ? (unsigned long long)(size_t)caller : hash_stack();
+    const unsigned long long hash = place * CALL_COUNT + call + 1;
     for (unsigned probe = 0; probe < 64; probe++) {
         unsigned long long old = 0;
         if (atomic_compare_exchange_strong(&shim.sites[(hash + probe) % SITES], &old, hash)) break;
@@ -213,7 +215,7 @@ static void note_site(Call call, unsigned long long n, const char *function) {
 
 static Mode strike(Call call, const char *function, const char *caller) {
     const unsigned long long n = 1 + atomic_fetch_add(&shim.counts->calls[call], 1);
-    if (shim.sites != NULL) note_site(call, n, function);
+    if (shim.sites != NULL) note_site(call, n, function, caller);
     if (call != shim.call || shim.n == 0 || (shim.mode == MODE_REST ? n < shim.n : n != shim.n)) return MODE_NONE;
     if (shim.mode == MODE_KILL) kill_all();
     if (atomic_fetch_add(&shim.counts->struck, 1) == 0 && within(&shim.program, caller))

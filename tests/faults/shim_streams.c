@@ -9,10 +9,12 @@
 #include <stdio_ext.h>
 #include <unistd.h>
 
-/* A failure also sets the stream's error flag, as in the C library. */
+/* Nothing that cannot be printed to standard error could be reported either; streams to memory (-1) only allocate. */
+static bool is_a_file(FILE *stream) { return stream != NULL && fileno(stream) >= 0 && fileno(stream) != STDERR_FILENO; }
+
+/* A failure also sets the stream's error flag, as in the C library. Other modes are for calls that move bytes themselves. */
 static bool stream_fails(FILE *stream, Call call, const char *function, const void *caller) {
-    /* What cannot be printed to standard error cannot be reported either. */
-    if (stream == NULL || stream == stderr || !shim_fails(call, function, caller)) return false;
+    if (!is_a_file(stream) || shim_strikes(call, function, caller) != MODE_FAIL) return false;
     stream->_flags |= 0x20; /* glibc: _IO_ERR_SEEN */
     return true;
 }
@@ -96,7 +98,7 @@ int fflush(FILE *stream) {
 
 int fclose(FILE *stream) {
     REAL(fclose);
-    const bool fails = stream != stderr && FAILS(CALL_CLOSE);
+    const bool fails = is_a_file(stream) && FAILS(CALL_CLOSE);
     const int cause = errno;
     if (fails && __fwriting(stream)) __fpurge(stream);
     const int status = real(stream);

@@ -157,6 +157,7 @@ def png(width, height, depth=8, color=6, interlace=0, before=b"", pixels=None):
 
 def make_png():
     save("small.png", png(8, 8))
+    save("grey.png", png(8, 8, color=0))
     save("honest.png", png(3000, 3000, 16))
     save("changed.png", png(3000, 3000, 16, 2))
     save("deep.png", png(10000, 10000, 16))
@@ -181,7 +182,8 @@ def make_json():
                         ("members", ",".join('{"%d": 0}' % i for i in range(200000)))):
         os.makedirs(name, exist_ok=True)
         save(f"{name}/results.json", (start + value).encode())
-    os.makedirs("names", exist_ok=True)
+    for folder in ("names", "e", "a"):
+        os.makedirs(folder, exist_ok=True)
     items = [json.dumps({**item, "shown": False, "actual": {"name": f"{i}.png", "xxh3": "0" * 16}}) for i in range(60000)]
     save("names/results.json", (start + ",\n".join(items) + "]}").encode())
     for folder in ("expected", "actual"):

@@ -58,6 +58,28 @@ static void pictures_mask_where_they_are_not_black(void **state) {
     image_destroy(image);
 }
 
+/* Its header and checksums are right, so it is only found out where its pixels are needed; then for each picture. */
+static void pictures_with_damaged_pixels_are_refused_when_drawn(void **state) {
+    (void)state;
+    static const uint8_t damaged[] = {
+        0x89, 'P',  'N',  'G',  '\r', '\n', 0x1A, '\n', 0,    0,   0,   13,  'I',  'H',  'D',  'R',  0,
+        0,    0,    1,    0,    0,    0,    1,    8,    0,    0,   0,   0,   0x3A, 0x7E, 0x9B, 0x55, 0,
+        0,    0,    10,   'I',  'D',  'A',  'T',  0x78, 0x01, 7,   0,   0,   0,    0,    0,    0,    0,
+        0xD8, 0xE1, 0x07, 0x44, 0,    0,    0,    0,    'I',  'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
+    Error error = {0};
+    const char *path = temporary_path("damaged.png");
+    Image *image = image_create(1, 1, &error);
+    uint8_t masked = 0;
+    write_bytes(path, damaged, sizeof damaged);
+    assert_ok(mask_add_picture(&mask, path, &error), error);
+    for (int i = 0; i < 2; i++) {
+        Error found = {0};
+        assert_false(mask_draw(&mask, image, "frame.png", &masked, &found));
+        assert_error(found, ERROR_INPUT, "damaged.png: error: not a PNG file, or damaged");
+    }
+    image_destroy(image);
+}
+
 /* Opaque ones: the odd pixels are not. */
 static void colours_mask_where_the_expected_picture_has_them(void **state) {
     (void)state;
@@ -105,6 +127,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
         cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
+        cmocka_unit_test_teardown(pictures_with_damaged_pixels_are_refused_when_drawn, clear),
         cmocka_unit_test_teardown(colours_mask_where_the_expected_picture_has_them, clear),
         cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
         cmocka_unit_test_teardown(the_number_of_masks_is_limited, clear),

@@ -98,7 +98,7 @@ static void a_scene_without_impacts_is_refused(void **state) {
     Error error = {0};
     assert_true(parse_range("2:4:1", 10, &options.bomb_x));
     assert_false(momentum_fit(&schedules, scene, &options, &(Progress){stop_at_once, NULL}, &error));
-    assert_error(error, ERROR_INPUT, "stopped");
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
     error = (Error){0};
     assert_true(parse_range("4000:4002:1", 10, &options.bomb_x));
     scene->frames = 20;

@@ -104,7 +104,7 @@ static void a_training_stopped_before_the_first_network_fails(void **state) {
     Scores scores;
     Stop stop = {.at = 0.1};
     assert_null(train(scene, &scores, &(Progress){stop_at, &stop}, &error));
-    assert_error(error, ERROR_INPUT, "labels: error: stopped after");
+    assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
     scene_destroy(scene);
 }
 

@@ -88,7 +88,7 @@ static void only_samples_from_the_given_index_are_labelled(void **state) {
     slot_samples_free(&samples);
     record_impacts(&samples, LAUNCHES, 0);
     assert_false(slot_samples_label(&samples, 0, &stopping, &error));
-    assert_error(error, ERROR_INPUT, "labels: error: stopped after");
+    assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
     slot_samples_free(&samples);
 }
 

@@ -63,7 +63,7 @@ static void what_is_not_whole_does_not_count(void **state) {
     const Progress progress = {stop, NULL};
     LawStudy study = {.laws = "all", .weight = 1, .seed = 1, .iterations = 60};
     assert_false(law_study_train(dataset, &study, &result, &progress, &error));
-    assert_error(error, ERROR_INPUT, "training: error: stopped");
+    assert_error(error, ERROR_INTERRUPTED, "training: error: stopped");
     error = (Error){0};
     assert_false(law_study_train(without, &study, &result, NULL, &error));
     assert_error(error, ERROR_INPUT, "--context");

@@ -53,7 +53,7 @@ static void start_afresh(void) {
 
 static void draw(void) {
     Error error = {0};
-    assert_ok(plots_draw(temporary_folder, &error), error);
+    assert_ok(plots_draw(temporary_folder, NULL, &error), error);
 }
 
 /* Of a PNG: two big-endian numbers behind its signature and the first chunk's head. */
@@ -138,7 +138,7 @@ static void expect_refused(const char *table, const char *text, const char *mess
     Error error = {0};
     start_afresh();
     write_table(table, text, strlen(text));
-    assert_false(plots_draw(temporary_folder, &error));
+    assert_false(plots_draw(temporary_folder, NULL, &error));
     assert_error(error, ERROR_INPUT, message);
     assert_int_equal(access(temporary_path("figures"), F_OK), -1);
 }
@@ -221,7 +221,7 @@ static void too_many_lines_are_refused(void **state) {
         Error error = {0};
         start_afresh();
         write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most + 1);
-        assert_false(plots_draw(temporary_folder, &error));
+        assert_false(plots_draw(temporary_folder, NULL, &error));
         assert_error(error, ERROR_INPUT, cases[i].message);
     }
     for (int i = 0; i < 3; i++) write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most);
@@ -234,7 +234,7 @@ static void a_missing_table_is_refused(void **state) {
         Error error = {0};
         start_afresh();
         assert_int_equal(remove(table_path(tables[i])), 0);
-        assert_false(plots_draw(temporary_folder, &error));
+        assert_false(plots_draw(temporary_folder, NULL, &error));
         assert_int_not_equal(error.kind, ERROR_NONE);
         assert_non_null(strstr(error.message, tables[i]));
         assert_int_equal(access(temporary_path("figures"), F_OK), -1);

@@ -118,7 +118,7 @@ static void what_cannot_be_run_is_refused(void **state) {
     error = (Error){0};
     study.launches = 1;
     assert_false(transfer_study_run(&data, &study, &result, &progress, &error));
-    assert_error(error, ERROR_INPUT, "training: error: stopped");
+    assert_error(error, ERROR_INTERRUPTED, "training: error: stopped");
     error = (Error){0};
     assert_false(transfer_study_run(&mixed, &study, &result, NULL, &error));
     assert_error(error, ERROR_INPUT, "trained on other inputs");

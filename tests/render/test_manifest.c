@@ -283,7 +283,7 @@ static void a_stopped_sequence_goes_on(void **state) {
         Error error = {0};
         RenderOptions options = options_for(temporary_path("stopped"));
         assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
-        assert_error(error, ERROR_INPUT, "stopped");
+        assert_error(error, ERROR_INTERRUPTED, "stopped");
         assert_int_equal(access(manifest_of(options.directory), F_OK), -1);
         assert_true(resume(options.directory, NULL) >= at);
     }

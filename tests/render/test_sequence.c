@@ -128,7 +128,7 @@ static void a_sequence_can_be_stopped(void **state) {
     Listener listener = {.stop_at = 5};
     RenderOptions options = options_for(temporary_path("stopped"), 3);
     assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error));
-    assert_error(error, ERROR_INPUT, "stopped");
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_true(count_files(options.directory, ".png") < 1000);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
     for (int frame = 0; access(frame_path(options.directory, frame), F_OK) == 0; frame++) {

@@ -255,7 +255,7 @@ static void a_video_can_be_stopped(void **state) {
     Error error = {0};
     VideoOptions options = options_for(temporary_path("stopped.gif"));
     assert_false(video_encode(&options, &(Progress){never, NULL}, &error));
-    assert_error(error, ERROR_INPUT, "stopped");
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_int_equal(access(options.path, F_OK), -1);
     assert_nothing_left(temporary_folder);
 }

@@ -155,7 +155,7 @@ static void a_run_that_cannot_go_on_says_why(void **state) {
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
     assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
-    assert_error(error, ERROR_INPUT, "single: error: stopped after step 5 of 300");
+    assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
 
     error = (Error){0};
     scene->bomb.velocity_from_position = false;

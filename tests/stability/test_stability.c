@@ -253,7 +253,7 @@ static void an_interrupted_study_is_resumed(void **state) {
     assert_ok(run_shots(whole, "engine,momentum", &all, &error), error);
     some.stop_after = all.count - 3;
     assert_false(run_shots(cut, "engine,momentum", &some, &error));
-    assert_error(error, ERROR_INPUT, "speed_thickness: error: stopped; finished parts are kept");
+    assert_error(error, ERROR_INTERRUPTED, "speed_thickness: error: stopped; finished parts are kept");
     error = (Error){0};
     assert_ok(run_shots(cut, "engine,momentum", &rest, &error), error);
     assert_int_equal(rest.count, 2 * 5 * 4);

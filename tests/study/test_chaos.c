@@ -152,7 +152,7 @@ static void a_stop_is_an_error(void **state) {
     Trajectory *run = run_scene(path, "engine");
     Chaos chaos;
     assert_false(chaos_run(&chaos, path, run, 1, 101, &(Progress){stop_late, NULL}, &error));
-    assert_error(error, ERROR_INPUT, "stopped after step 51 of 100");
+    assert_error(error, ERROR_INTERRUPTED, "stopped after step 51 of 100");
     trajectory_destroy(run);
 }
 

@@ -111,7 +111,7 @@ static void an_interrupted_part_is_not_saved(void **state) {
     open_parts(&parts, folder);
     parts.progress = &(Progress){stop, &share};
     assert_false(study_parts_do(&parts, &part, &error));
-    assert_error(error, ERROR_INPUT, "stopped");
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_near(share, 0.125, 0);
     assert_true(counted.stopped);
     study_parts_close(&parts);
@@ -147,7 +147,7 @@ static void failures_of_the_folder_are_errors(void **state) {
     failing_stat = 1;
     error = (Error){0};
     assert_false(study_parts_do(&parts, &(StudyPart){"part", 1, write_counted, &part}, &error));
-    assert_error(error, ERROR_SYSTEM, "part: error: cannot be inspected: Input/output error");
+    assert_error(error, ERROR_SYSTEM, "part: error: cannot be read: Input/output error");
     assert_int_equal(part.done, 1);
     failing_opendir = failing_readdir = failing_stat = 0;
     error = (Error){0};

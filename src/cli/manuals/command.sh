@@ -53,6 +53,9 @@ bad usage or input
 .TP
 .B 3
 the system failed (disk, memory, a missing program)
+.TP
+.B 130
+interrupted by SIGINT (Ctrl-C) or SIGTERM
 
 [SEE ALSO]
 $(see_also)

@@ -23,14 +23,18 @@ static bool write_page(int i, const char *folder, GnuplotSheet *sheet, Error *er
     return done && gnuplot_sheet_close(sheet, folder, error);
 }
 
-bool plots_draw(const char *folder, Error *error) {
+bool plots_draw(const char *folder, const Progress *progress, Error *error) {
     GnuplotSheet sheets[PLOTS] = {0};
     char path[PATH_MAX];
     if (!file_path(path, sizeof path, error, "%s/figures", folder)) return false;
     bool done = true;
     for (int i = 0; done && i < PLOTS; i++) done = write_page(i, folder, &sheets[i], error);
     done = done && file_make_directory(path, error);
-    for (int i = 0; done && i < PLOTS; i++) done = gnuplot_sheet_draw(&sheets[i], path, "", plots[i].name, error);
+    for (int i = 0; done && i < PLOTS; i++) {
+        done =
+            progress_report(progress, i, PLOTS) || error_interrupted(error, path, "stopped; the tables are finished");
+        done = done && gnuplot_sheet_draw(&sheets[i], path, "", plots[i].name, error);
+    }
     for (int i = 0; i < PLOTS; i++) gnuplot_sheet_free(&sheets[i]);
     return done;
 }

@@ -2,6 +2,7 @@
 /* The results of the study as figures. */
 #pragma once
 #include "common/error.h"
+#include "common/progress.h"
 
 /* Draws folder/figures/NAME.png and .svg (chart/gnuplot.h) and writes NAME.txt, a caption of one line, for NAME =
      loss         table1.csv       mean squared error over training, each target
@@ -15,5 +16,5 @@
 
    ERROR_INPUT, with path:line:column, if one of the six tables is missing or damaged; then nothing is drawn. A plot
    whose table has no rows to show is left out; its files from an earlier run stay. ERROR_SYSTEM if gnuplot is missing
-   or fails; plots already drawn stay. */
-bool plots_draw(const char *folder, Error *error);
+   or fails, ERROR_INTERRUPTED if progress, which may be NULL, requests a stop; plots already drawn stay. */
+bool plots_draw(const char *folder, const Progress *progress, Error *error);

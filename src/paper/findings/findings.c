@@ -2,6 +2,7 @@
 #include "paper/findings/findings.h"
 
 #include "common/file.h"
+#include "common/memory_stream.h"
 #include "paper/findings/findings_tables.h"
 
 #include <limits.h>
@@ -15,11 +16,12 @@ static bool write_table(const FindingsTable *table, const StudyTables *study, co
     char path[PATH_MAX], *text = NULL;
     size_t size;
     if (!file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, table->layout.name)) return false;
-    const FindingsFile file = {&table->layout, open_memstream(&text, &size), error};
+    const FindingsFile file = {&table->layout, memory_stream(&text, &size), error};
     if (file.out == NULL) return error_memory(error, path);
     csv_header_print(file.out, file.layout);
     bool written = table->write(&file, study);
-    if (fclose(file.out) != 0 && written) written = error_memory(error, path);
+    const bool whole = !ferror(file.out);
+    if ((fclose(file.out) != 0 || !whole) && written) written = error_memory(error, path);
     written = written && file_write(path, text, size, error);
     free(text);
     return written;

@@ -2,6 +2,7 @@
 #include "paper/report/paper_report.h"
 
 #include "common/file.h"
+#include "common/memory_stream.h"
 #include "paper/findings/findings.h"
 #include "paper/report/html_page.h"
 #include "paper/report/report_files.h"
@@ -18,7 +19,7 @@ typedef struct Text {
 } Text;
 
 static bool text_begin(Text *text, Error *error) {
-    text->out = open_memstream(&text->data, &text->size);
+    text->out = memory_stream(&text->data, &text->size);
     return text->out != NULL || error_memory(error, "report");
 }
 

@@ -18,6 +18,6 @@ typedef struct PaperOptions {
 
 /* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, study.csv and
    folder/networks/NAME.npz. Finished parts are kept in folder/parts-KEY until the end: the same study, by the same
-   program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, or if progress_report()
-   stops it. */
+   program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, ERROR_INTERRUPTED
+   if progress_report() stops it. */
 bool paper_run(const PaperOptions *options, const Progress *progress, Error *error);

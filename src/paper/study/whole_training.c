@@ -19,5 +19,5 @@ Network *whole_training(const Dataset *dataset, const TrainingOptions *options, 
     Network *network = training_run(dataset, options, &watched, error);
     if (network == NULL || !watch.stopped) return network;
     network_destroy(network);
-    return error_input(error, "training", "stopped"), NULL;
+    return error_interrupted(error, "training", "stopped"), NULL;
 }

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command lines that are run with faults. SCENES stands for the folder of scenes."""
+
+# What the cases start from, in one folder; made once per run of the driver.
+PREPARATION = [
+    "simulate SCENES/single.yaml --frames 50 -o a.npz -q",
+    "simulate SCENES/single.yaml --frames 50 -m momentum:k=3 -o b.npz -q",
+    "export a.npz -o a.csv -q",
+    "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 -q",
+    "train pairs.npz -o net.npz --iterations 1 -q",
+    "problem SCENES/single.yaml --frame 45 -o problem.npz -q",
+    "render a.npz -o expected --size 64x64 --frames 40:42 --jobs 1 -q",
+    "render b.npz -o actual --size 64x64 --frames 41:43 --jobs 1 -q",
+    "render a.npz -o equal --size 64x64 --frames 40:42 --jobs 1 -q",
+    "render a.npz -o half --size 64x64 --frames 40:41 --jobs 1 -q",
+    "compare expected actual --report report -q",
+]
+
+
+class Case:
+    """inputs: what is copied from the prepared folder, also as NEW=OLD; journals: what a failed run may leave behind,
+    because the next run continues with it."""
+
+    def __init__(self, name, arguments, inputs="", journals=""):
+        self.name, self.arguments = name, arguments
+        self.inputs, self.journals = inputs.split(), journals.split()
+
+
+TINY = "SCENES/single.yaml --frames 4"
+SMALL = "--size 64x64 --jobs 1"
+PAGE = "--dpi 50 --width 60"
+
+# A few hundredths of a second each: every call fails in turn.
+SHORT = [
+    Case("new", "new wall.yaml --like wall"),
+    Case("methods", "methods"),
+    Case("completion", "completion bash"),
+    Case("simulate", f"simulate {TINY} -o run.npz --hash run.hash --verdict run.json --json",
+         "run.npz=b.npz run.hash=a.csv run.json=a.csv"),
+    Case("simulate-csv", f"simulate {TINY} -o run.csv -m momentum:k=5", "run.csv=a.csv"),
+    Case("simulate-net", f"simulate {TINY} -m pair-net -o run.npz", "run.npz=b.npz"),
+    Case("export-csv", "export a.npz -o out.csv", "a.npz out.csv=a.csv"),
+    Case("export-json", "export a.npz -o out.json", "a.npz out.json=a.csv"),
+    Case("export-blender", "export a.npz -o out.blend.py", "a.npz out.blend.py=a.csv"),
+    Case("import", "import a.csv -o out.npz", "a.csv out.npz=b.npz"),
+    Case("compare-runs", "compare a.npz b.npz", "a.npz b.npz"),
+    Case("compare-equal", "compare expected equal", "expected equal"),
+    Case("compare-json", "compare expected actual --json --antialias", "expected actual"),
+    Case("approve", "approve report", "report expected actual"),
+    Case("diverge", "diverge a.npz b.npz --csv out.csv --json", "a.npz b.npz out.csv=a.csv"),
+    Case("problem", "problem SCENES/single.yaml --frame 45 -o out.npz", "out.npz=problem.npz"),
+    Case("solve", "solve problem.npz -m engine:k=3 -m momentum:k=3 --json", "problem.npz"),
+]
+
+# Take longer: the first call from each place fails.
+LONG = [
+    Case("compare-report", "compare expected actual --report report", "expected actual report"),
+    Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz"),
+    Case("train-pair-net", "train pairs.npz -o out.npz --iterations 2", "pairs.npz"),
+    Case("train-from", "train pairs.npz -o net.npz --from net.npz --iterations 2", "pairs.npz net.npz"),
+    Case("train-lm", "train pairs.npz -o out.npz --iterations 2 --layers 10-8-8-6 --optimizer lm", "pairs.npz"),
+    Case("train-bfgs", "train pairs.npz -o out.npz --iterations 2 --optimizer bfgs", "pairs.npz"),
+    Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o out.npz --iterations 1 --bomb-x=1:2:1"),
+    Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1 --width 16"),
+    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1"),
+    Case("check", "check SCENES/single.yaml -o out.png", "out.png=expected/frame_000040.png"),
+    Case("figure-pdf", f"figure strip a.npz b.npz -o out.pdf --at 0.7 {PAGE}", "a.npz b.npz out.pdf=a.csv"),
+    Case("figure-svg", f"figure annotated a.npz -o out.svg --at 0.75 {PAGE} --outlines", "a.npz out.svg=a.csv"),
+    Case("figure-png", f"figure strobe a.npz -o out.png --at 0.5,0.7 {PAGE} --caption-text out.tex",
+         "a.npz out.png=a.csv out.tex=a.csv"),
+    Case("figure-plot", f"figure divergence a.npz b.npz -o out.pdf {PAGE}", "a.npz b.npz out.pdf=a.csv"),
+    Case("figure-network", f"figure network net.npz -o out.pdf {PAGE}", "net.npz out.pdf=a.csv"),
+    Case("render", f"render a.npz b.npz -o out --frames 40:42 {SMALL}", "a.npz b.npz", "out/manifest.json.part"),
+    Case("render-resume", f"render a.npz -o half --frames 40:42 {SMALL} --resume", "a.npz half",
+         "half/manifest.json.part"),
+    Case("render-jobs", "render a.npz -o out --size 64x64 --frames 0:9 --jobs 3", "a.npz", "out/manifest.json.part"),
+    Case("render-video", f"render a.npz -o out --frames 40:42 {SMALL} --video out.mp4 --video out.gif",
+         "a.npz out.mp4=a.csv out.gif=a.csv", "out/manifest.json.part"),
+    Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/chart.csv"),
+    Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "",
+         "out/stability.csv"),
+]

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# System calls fail, move half of their bytes or are interrupted: every second place that calls, in commands that take a few
+# hundredths of a second. Then a sample of the allocations by libraries.
+set -eu
+twinbox=$1
+sources=$2
+sample=1
+! nm -D "$twinbox" | grep -q __asan_init || sample=20
+
+# some SAMPLE CALLS CASE...
+some() {
+    local sample=$1 call=$2 cases="" name
+    shift 2
+    for name in "$@"; do cases+=" --case $name"; done
+    python3 "$sources/tests/faults/faults.py" "$twinbox" "$sources" --jobs 2 --sample "$sample" --call "$call" $cases
+}
+some $((sample * 2)) system simulate import compare-report approve
+some $((sample * 25)) libmalloc export-json import compare-report approve train-from

@@ -1,0 +1,101 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# SIGINT and SIGTERM end every command with exit status 130: while it waits for a file, in the middle of work, and between
+# two charts. What was begun has no name, and other programs' failures are no reason.
+. "$(dirname "$0")/../cli/checks.sh"
+
+# interrupted WHAT: the signal's run has ended as it should.
+interrupted() {
+    wait "$running"
+    equal "exit status of $1" $? 130
+    complains "error: "
+}
+
+# start COMMAND...: returns when it handles signals. Its input is a pipe without a byte.
+mkfifo pipe
+exec 3<>pipe
+start() {
+    "$twinbox" "$@" >out 2>err <&3 &
+    running=$!
+    # Bit 14 of the caught signals is SIGTERM; before, the process is still the shell.
+    for _ in $(seq 500); do
+        [ "$(readlink /proc/$running/exe)" = "$(readlink -f "$twinbox")" ] &&
+            grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$running/status && break
+        sleep 0.01
+    done 2>/dev/null
+}
+
+# waiting SIGNAL COMMAND...: the command reads its input.
+waiting() {
+    start "${@:2}"
+    kill "-$1" $running
+    interrupted "$2, which waits"
+    complains "twinbox: error: interrupted"
+}
+
+# working SIGNAL COMMAND...: the command would work for a long time.
+working() {
+    start "${@:2}"
+    sleep 0.2
+    kill "-$1" $running
+    interrupted "$2, which works"
+}
+
+run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
+run 0 render a.npz -o frames --size 64x64
+run 0 problem "$scenes/single.yaml" --frame 45 -o problem.npz
+waiting TERM simulate -
+waiting INT check -
+waiting INT render - -o drawn
+waiting TERM dataset - -o new.npz
+waiting INT problem - --frame 3 -o new.npz
+waiting TERM solve - -m engine
+waiting INT chart - -o chart
+waiting TERM stability - --vary height -o study
+waiting TERM import - -o new.npz
+waiting INT compare a.npz -
+waiting TERM diverge a.npz -
+waiting INT export - -o new.csv
+waiting INT figure strip - -o new.pdf
+waiting TERM train - -o new.npz
+waiting INT train --kind scene-net - -o new.npz
+
+working TERM simulate "$scenes/pyramid.yaml" --frames 500000 -o new.npz --verdict new.json
+complains "stopped after step"
+working INT dataset "$scenes/pyramid.yaml" --random 5000 -o new.npz
+working TERM train --kind momentum-schedule "$scenes/stack.yaml" -o new.npz --iterations 100000
+[ -e new.json ] && fail "an interrupted run has a verdict"
+working TERM paper -o paper --scenes "$scenes"
+[ -e paper/report.html ] && fail "an interrupted study has a report"
+working INT stability -o study --scenes "$scenes"
+working TERM chart "$scenes/pyramid.yaml" -o chart
+equal "tables of interrupted studies" "$(find study chart paper -name '*.csv' ! -name '*.part.csv')" ""
+# A training that was stopped early is stored, as its output says.
+equal "files" "$(ls -A | tr '\n' ' ')" \
+    "a.npz chart err frames new.npz out paper pipe problem.npz study "
+
+# Ctrl-C reaches gnuplot and ffmpeg, too; and a signal is noticed between two charts.
+for name in gnuplot ffmpeg; do
+    mkdir -p $name-ends
+    printf '#!/bin/sh\nkill -TERM $PPID\nkill -INT $$\nsleep 9\n' >$name-ends/$name
+    chmod +x $name-ends/$name
+done
+run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o two --quick --methods engine:k=10
+PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
+PATH="$PWD/ffmpeg-ends:$PATH" run 130 render a.npz -o frames --size 64x64 --video new.mp4
+equal "files" "$(ls -A drawn; ls -A | grep mp4)" ""
+printf '#!/bin/sh\nmkdir %s/once 2>/dev/null && kill -TERM $PPID\nexec %s "$@"\n' "$PWD" "$(command -v gnuplot)" >gnuplot-ends/gnuplot
+PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
+complains "stopped; chart.csv is finished"
+equal "charts" "$(ls -A drawn | tr '\n' ' ')" "chart-single.pdf chart-single.png chart-single.svg "
+run 0 chart two/chart.csv -o whole
+run 0 chart two/chart.csv -o drawn
+# gnuplot writes the time into a PDF.
+sed -i 's/CreationDate (D:[0-9]*/CreationDate (D:/' whole/*.pdf drawn/*.pdf
+diff -r whole drawn >out || fail "the charts differ after an interrupt: $(cat out)"
+
+# The documents name it.
+run 0 --help
+says "130 interrupted"
+grep -q "130 interrupted" "$sources/README.md" || fail "README.md does not name exit status 130"
+finish
