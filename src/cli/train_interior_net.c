@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train.h"
 #include "common/standard_io.h"
@@ -46,13 +45,9 @@ static bool run(const TrainRequest *request, Error *error) {
     bool ok = net_training_run(&training, &net, progress_bar_begin("training"), error);
     progress_bar_end();
     snprintf(net.command, sizeof net.command, "%s", command);
-    ok = ok && interior_net_write(&net, request->output, error);
-    if (!ok) return false;
-    if (interrupt_requested())
-        printf("stopped early -> %s; the same command continues\n", request->output);
-    else
-        printf("%d weights -> %s\n", INTERIOR_NET_WEIGHTS, request->output);
-    return true;
+    ok = ok && interior_net_write(&net, request->output, error) && file_remove(state, error);
+    if (ok) printf("%d weights -> %s\n", INTERIOR_NET_WEIGHTS, request->output);
+    return ok;
 }
 
 const TrainKind train_interior_net = {"interior-net",

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/net_training.h"
 
-#include "common/file.h"
 #include "interior_training/recording.h"
 #include "interior_training/split_mix.h"
 #include "solvers/interior_net.h"
@@ -178,7 +177,8 @@ bool net_training_run(const NetTraining *training, InteriorNet *net, const Progr
     bool ok = run(trainer, error);
     *net = (InteriorNet){0};
     round_weights(trainer->state.weights, net);
-    if (ok && !trainer->stage.stopped) ok = file_remove(training->state_path, error);
+    if (ok && trainer->stage.stopped)
+        ok = error_interrupted(error, training->state_path, "stopped; the same command continues");
     net_fit_free(&trainer->fit);
     impact_problems_free(&trainer->problems);
     impact_problems_free(&trainer->held_out);

@@ -19,13 +19,13 @@ typedef struct NetTraining {
     int epochs; /* per round */
     uint64_t seed;
     const char *command;    /* names the training: only the same command resumes it */
-    const char *state_path; /* where the state is stored, and read from if it exists; removed at the end */
+    const char *state_path; /* where the state is stored, and read from if it exists. The caller removes it once it has
+                               stored the network */
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const NetScore *score);
     void *context;
 } NetTraining;
 
-/* False with error set if the state cannot be written or read, memory is short, or nothing was recorded. If progress
-   requests a stop, *net is the network so far, the state stays, and the result is true once an epoch is done. Same bits
-   for any number of threads, and however often it was interrupted. */
+/* False with error set if the state cannot be written or read, memory is short, or nothing was recorded. ERROR_INTERRUPTED if
+   progress requests a stop: the state stays. Same bits for any number of threads, and however often it was interrupted. */
 bool net_training_run(const NetTraining *training, InteriorNet *net, const Progress *progress, Error *error);

@@ -18,6 +18,7 @@
      wait      poll, waitpid (always EINTR)
    MODE fail: the call fails with the usual errno. rest: so do all later ones. eintr: it fails with EINTR. short: it moves
    half of the bytes (read, write and their like; not streams). kill: SIGKILL for all processes of the run, before the call.
+   term: SIGTERM for the first process of the run, before the call, which is not changed.
 
    TWINBOX_FAULT_COUNTS=FILE   maps FILE, where all processes of a run count: see Counts.
    TWINBOX_FAULT_SITES=FILE    appends "CALL N FUNCTION" for the first call from each place, which is its stack.
@@ -43,7 +44,7 @@ static const char *const call_names[CALL_COUNT] = {"malloc", "libmalloc", "open"
                                                    "unlink", "readdir",   "close", "stat", "mkdir", "process", "wait"};
 static const int call_errors[CALL_COUNT] = {ENOMEM, ENOMEM, EMFILE, EIO, ENOSPC, EIO,    EIO,
                                             EIO,    EIO,    EIO,    EIO, ENOSPC, EAGAIN, EINTR};
-static const char *const mode_names[MODE_COUNT] = {"none", "fail", "rest", "eintr", "short", "kill"};
+static const char *const mode_names[MODE_COUNT] = {"none", "fail", "rest", "eintr", "short", "kill", "term"};
 
 enum { PROCESSES = 256, LIBRARIES = 64, SITES = 1 << 14, FRAMES = 12 };
 
@@ -218,6 +219,10 @@ static Mode strike(Call call, const char *function, const char *caller) {
     if (shim.sites != NULL) note_site(call, n, function, caller);
     if (call != shim.call || shim.n == 0 || (shim.mode == MODE_REST ? n < shim.n : n != shim.n)) return MODE_NONE;
     if (shim.mode == MODE_KILL) kill_all();
+    if (shim.mode == MODE_TERM) {
+        kill((pid_t)shim.counts->processes[0], SIGTERM);
+        return MODE_NONE;
+    }
     if (atomic_fetch_add(&shim.counts->struck, 1) == 0 && within(&shim.program, caller))
         shim.counts->struck_at = (unsigned long long)(caller - shim.base);
     return shim.mode == MODE_REST ? MODE_FAIL : shim.mode;

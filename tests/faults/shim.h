@@ -24,7 +24,7 @@ typedef enum Call {
     CALL_COUNT
 } Call;
 
-typedef enum Mode { MODE_NONE, MODE_FAIL, MODE_REST, MODE_EINTR, MODE_SHORT, MODE_KILL, MODE_COUNT } Mode;
+typedef enum Mode { MODE_NONE, MODE_FAIL, MODE_REST, MODE_EINTR, MODE_SHORT, MODE_KILL, MODE_TERM, MODE_COUNT } Mode;
 
 /* Counts a call and tells what is to happen to it: MODE_NONE; MODE_FAIL or MODE_EINTR, with errno set; MODE_SHORT. */
 Mode shim_strikes(Call call, const char *function, const void *caller);

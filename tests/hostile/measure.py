@@ -61,6 +61,7 @@ CASES = [
     (2, "bodies.yaml:20001:", ["bodies.yaml"], "check @"),
     (2, "anchors (&) are not allowed", ["aliases.yaml"], "check @"),
     (2, "larger than 1572864 bytes", ["large.yaml"], "check @"),
+    (2, "more than 1048576 pairs of boxes overlap", ["heap.yaml"], "simulate @ -o x.npz"),
     (2, "at most 256 rules (got 40000)", ["rules.yaml"], "compare expected actual --rules @"),
     (2, "the table has more than 20000 rows", ["rows.csv"], "chart @ -o x"),
     (2, "longer than 1023 bytes", ["line.csv"], "import @ -o x.npz"),
