@@ -62,8 +62,17 @@ class Bench:
         self.prepared = prepared
         self.folder = tempfile.mkdtemp(prefix="faults-")
         self.state = None
+        self.start = None
         self.work = os.path.join(self.folder, "run", "work")
         self.counts = os.path.join(self.folder, "counts")
+
+    def begin(self):
+        """Kills a first run of the case, and keeps what it leaves as the state to begin with."""
+        if self.run(f"{self.case.killed}:kill").status == -signal.SIGKILL:
+            start = os.path.join(self.folder, "start")
+            shutil.copytree(self.work, start)
+            self.start = start
+            self.state = None
 
     def close(self):
         shutil.rmtree(self.folder)
@@ -73,12 +82,15 @@ class Bench:
         if self.state is not None and snapshot(top) == self.state:
             return
         shutil.rmtree(top, ignore_errors=True)
-        os.makedirs(self.work)
-        os.mkdir(os.path.join(top, "tmp"))
-        for name in self.case.inputs:
-            new, _, old = name.partition("=")
-            source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
-            (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
+        os.makedirs(os.path.join(top, "tmp"))
+        if self.start is not None:
+            shutil.copytree(self.start, self.work)
+        else:
+            os.mkdir(self.work)
+            for name in self.case.inputs:
+                new, _, old = name.partition("=")
+                source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
+                (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
         self.state = snapshot(top)
 
     def run(self, fault, sites=None):
@@ -143,6 +155,9 @@ class Judge:
         with open(sites) as file:
             self.sites = [line.split() for line in file]
 
+    def is_journal(self, path):
+        return any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.bench.case.journals)
+
     def done(self, result):
         """None if the run did what it does without faults."""
         wanted = self.reference
@@ -169,12 +184,12 @@ class Judge:
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
         for path, digest in self.before.items():
-            if path not in result.files and path in self.reference.files:
+            if path not in result.files and path in self.reference.files and not self.is_journal(f"{path}.part"):
                 return f"{path} is lost"
         for path, digest in result.files.items():
             if digest in (self.before.get(path, ""), self.reference.files.get(path, "")) or path in self.timed:
                 continue
-            if any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.bench.case.journals):
+            if self.is_journal(path):
                 continue
             if digest is None and path.startswith("work/"):
                 continue  # a folder
@@ -226,8 +241,8 @@ class Driver:
             numbers = range(1, judge.reference.counts[call] + 1)
         else:
             numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
-        first = zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % self.options.sample
-        return numbers[first :: self.options.sample]
+        step = self.options.sample * judge.bench.case.sample
+        return numbers[zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % step :: step]
 
     def try_fault(self, judge, call, n, mode):
         """What a fault showed, or None."""
@@ -242,6 +257,8 @@ class Driver:
         begun = time.monotonic()
         bench = Bench(self.program, self.sources, self.prepared, case)
         try:
+            if case.killed:
+                bench.begin()
             judge = Judge(bench)
             faults = [(call, n, mode) for call in self.options.call or CALLS
                       for mode in MODES.get(call, ["fail"]) if mode in (self.options.mode or ALL_MODES)
