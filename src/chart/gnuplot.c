@@ -99,23 +99,33 @@ static bool run(const char *folder, const char *script, size_t size, Error *erro
     return process_finish(&process, text, sizeof text, error);
 }
 
+static bool is_unknown_svg(Error *error) {
+    return error_system(error, "gnuplot", "produced an SVG file of an unknown form");
+}
+
+/* Closes a text that replaces *svg. */
+static bool exchange(char **svg, FILE *out, char **text, Error *error) {
+    const bool whole = !ferror(out);
+    if (fclose(out) != 0 || !whole) {
+        free(*text);
+        return error_memory(error, "SVG file");
+    }
+    free(*svg);
+    *svg = *text;
+    return true;
+}
+
 /* Inserts the overlay before the SVG's end tag. */
-static bool insert_overlay(char **svg, size_t *size, const char *overlay) {
+static bool insert_overlay(char **svg, size_t *size, const char *overlay, Error *error) {
     static const char end[] = "</svg>";
     char *last = NULL, *text = NULL;
     for (char *at = *svg; (at = strstr(at, end)) != NULL; at++) last = at;
-    FILE *out = last != NULL ? memory_stream(&text, size) : NULL;
-    if (out == NULL) return false;
+    if (last == NULL) return is_unknown_svg(error);
+    FILE *out = memory_stream(&text, size);
+    if (out == NULL) return error_memory(error, "SVG file");
     fprintf(out, "%.*s<g transform=\"scale(%.6f)\">\n%s</g>\n%s", (int)(last - *svg), *svg, pixels_per_mm, overlay,
             last);
-    bool whole = !ferror(out);
-    if (fclose(out) != 0 || !whole) {
-        free(text);
-        return false;
-    }
-    free(*svg);
-    *svg = text;
-    return true;
+    return exchange(svg, out, &text, error);
 }
 
 static void put_replaced(FILE *out, const char *text, const char *from, const char *to) {
@@ -125,28 +135,35 @@ static void put_replaced(FILE *out, const char *text, const char *from, const ch
 }
 
 /* Its title, and the fonts of other figures: gnuplot names only one. */
-static bool dress_svg(char **svg, size_t *size, const char *title, FontFile font) {
+static bool dress_svg(char **svg, size_t *size, const char *title, FontFile font, Error *error) {
     static const char no_title[] = "<title>Gnuplot</title>";
     char *head = strstr(*svg, no_title), *text = NULL;
-    FILE *out = head != NULL ? memory_stream(&text, size) : NULL;
-    if (out == NULL) return false;
+    if (head == NULL) return is_unknown_svg(error);
+    FILE *out = memory_stream(&text, size);
+    if (out == NULL) return error_memory(error, "SVG file");
     fprintf(out, "%.*s<title>%s</title>\n", (int)(head - *svg), *svg, title);
     svg_write_font(out, font);
     put_replaced(out, head + strlen(no_title), "font-family=\"sans-serif\"", "font-family=\"" SVG_FONTS "\"");
-    const bool whole = !ferror(out);
-    if (fclose(out) != 0 || !whole) {
-        free(text);
-        return false;
-    }
-    free(*svg);
-    *svg = text;
-    return true;
+    return exchange(svg, out, &text, error);
 }
 
 static bool dress(const GnuplotDrawing *drawing, FontFile font, char **data, size_t *size, Error *error) {
-    return (dress_svg(&data[1], &size[1], drawing->title, font) &&
-            (drawing->without_pdf || pdf_set_title(&data[2], &size[2], drawing->title))) ||
-           error_system(error, "gnuplot", "produced an SVG or PDF file of an unknown form");
+    return dress_svg(&data[1], &size[1], drawing->title, font, error) &&
+           (drawing->without_pdf || pdf_set_title(&data[2], &size[2], drawing->title, error)) &&
+           (drawing->overlay == NULL || insert_overlay(&data[1], &size[1], drawing->overlay, error));
+}
+
+/* A drawing as gnuplot left it. */
+static char *read_drawing(const char *path, const char *ending, size_t *size, Error *error) {
+    Error cause = {0};
+    char *data = file_read(path, DRAWING_MAX_SIZE, size, &cause);
+    if (data != NULL && *size > 0) return data;
+    free(data);
+    if (cause.kind == ERROR_SYSTEM)
+        *error = cause;
+    else
+        error_system(error, "gnuplot", "produced no %s file", ending);
+    return NULL;
 }
 
 static bool collect(const char *folder, const GnuplotDrawing *drawing, FontFile font, const char *stem, Error *error) {
@@ -156,13 +173,10 @@ static bool collect(const char *folder, const GnuplotDrawing *drawing, FontFile 
     bool done = true;
     for (int i = 0; done && i < formats; i++) {
         done = file_path(path, sizeof path, error, "%s/plot.%s", folder, endings[i]);
-        data[i] = done ? file_read(path, DRAWING_MAX_SIZE, &size[i], &(Error){0}) : NULL;
-        done = done &&
-               ((data[i] != NULL && size[i] > 0) || error_system(error, "gnuplot", "produced no %s file", endings[i]));
+        data[i] = done ? read_drawing(path, endings[i], &size[i], error) : NULL;
+        done = data[i] != NULL;
     }
     done = done && dress(drawing, font, data, size, error);
-    if (done && drawing->overlay != NULL && !insert_overlay(&data[1], &size[1], drawing->overlay))
-        done = error_memory(error, stem);
     for (int i = 0; done && i < formats; i++) {
         done =
             file_path(path, sizeof path, error, "%s.%s", stem, endings[i]) && file_write(path, data[i], size[i], error);

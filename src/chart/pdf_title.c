@@ -74,19 +74,20 @@ static void write_update(FILE *file, const Section *section, size_t size, const 
     fprintf(file, "startxref\n%zu\n%%%%EOF\n", reference);
 }
 
-bool pdf_set_title(char **pdf, size_t *size, const char *title) {
+bool pdf_set_title(char **pdf, size_t *size, const char *title, Error *error) {
     Section section;
     char *whole = NULL;
     size_t whole_size;
-    if (!find_section(*pdf, *size, &section)) return false;
+    if (!find_section(*pdf, *size, &section))
+        return error_system(error, "gnuplot", "produced a PDF file of an unknown form");
     FILE *file = memory_stream(&whole, &whole_size);
-    if (file == NULL) return false;
+    if (file == NULL) return error_memory(error, "PDF file");
     fwrite(*pdf, 1, *size, file);
     write_update(file, &section, *size, title);
     const bool done = !ferror(file);
     if (fclose(file) != 0 || !done) {
         free(whole);
-        return false;
+        return error_memory(error, "PDF file");
     }
     free(*pdf);
     *pdf = whole, *size = whole_size;

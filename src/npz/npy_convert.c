@@ -45,7 +45,7 @@ static Number load(NpzType type, const void *item) {
     case NPZ_UINT32: LOAD(uint32_t, NATURAL, natural);
     case NPZ_UINT64: LOAD(uint64_t, NATURAL, natural);
     case NPZ_UINT8: LOAD(uint8_t, NATURAL, natural);
-    default: LOAD(bool, NATURAL, natural);
+    default: return (Number){NATURAL, .natural = *(const uint8_t *)item != 0}; /* a bool of a file may be any byte */
     }
 }
 

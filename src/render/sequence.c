@@ -97,7 +97,11 @@ static bool listen_to(Sequence *sequence, Worker *worker, Error *error) {
         sequence->kept += report.kept;
         return manifest_add(sequence->manifest, report.index, report.hashes, error);
     }
-    if (size == sizeof report) *error = report.error;
+    if (size == sizeof report)
+        *error = report.error;
+    else if (size != 0) /* 0: it has ended */
+        return error_system(error, "render", "cannot read the report of a drawing process: %s",
+                            size < 0 ? strerror(errno) : "it is cut short");
     stop_listening(sequence, worker);
     await_end(worker, error);
     return error->kind == ERROR_NONE;
@@ -114,7 +118,8 @@ static bool wait_for_workers(Sequence *sequence, const Progress *progress, Error
         if (!progress_report(progress, sequence->done, sequence->total))
             return error_interrupted(error, "render", "stopped");
     }
-    return true;
+    return sequence->done == sequence->total || error_system(error, "render", "%d of %d pictures were not reported",
+                                                             sequence->total - sequence->done, sequence->total);
 }
 
 /* After an error, close all pipes first, then wait for the workers. */

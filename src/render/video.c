@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 64, DRAFT_NAME_SIZE = 64 };
+enum { ARGUMENTS_MAX = 64, DRAFT_NAME_SIZE = 64, WORDS_SIZE = 1024 };
 
 typedef struct VideoFormat {
     const char *ending, *muxer; /* ffmpeg's name of the format */
@@ -120,6 +120,7 @@ typedef struct Encoding {
     /* Drafts (common/file.h), and the names under which ffmpeg opens them. A program that is killed leaves neither. */
     int draft, palette_draft;
     char part[DRAFT_NAME_SIZE], palette[DRAFT_NAME_SIZE];
+    char *words; /* [WORDS_SIZE] of ffmpeg, which ends with status 0 also after some failures to write */
     const Progress *progress;
 } Encoding;
 
@@ -167,9 +168,8 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
         ok = false;
     }
     free(target.rgb);
-    char text[1024];
-    if (!ok || !process_finish(&target.process, text, sizeof text, error)) return false;
-    return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", text);
+    if (!ok || !process_finish(&target.process, encoding->words, WORDS_SIZE, error)) return false;
+    return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", encoding->words);
 }
 
 /* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
@@ -211,8 +211,11 @@ static bool encode(const Encoding *encoding, Error *error) {
     if (!(gif ? run_for_gif(encoding, error) : run_for_film(encoding, error)) ||
         !count_frames(encoding->part, &count, error))
         return false;
-    if (count != wanted)
-        return error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
+    if (count != wanted) {
+        error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
+        if (encoding->words[0] != '\0') error_add(error, "\n%s", encoding->words);
+        return false;
+    }
     return file_draft_publish(encoding->draft, options->path, error);
 }
 
@@ -233,6 +236,8 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
     const double most = options->rate_is_chosen ? encoding.format->max_rate : encoding.format->usual_rate;
     /* 1e-3: tolerance for rounding of the frame rate. */
     if (most > 0) encoding.stride = (int)fmax(1, ceil(options->frame_rate / most - 1e-3));
+    char words[WORDS_SIZE] = "";
+    encoding.words = words;
     encoding.draft = encoding.palette_draft = -1;
     const bool ok = open_draft(&encoding.draft, encoding.part, options->path, error) &&
                     open_draft(&encoding.palette_draft, encoding.palette, options->path, error) &&

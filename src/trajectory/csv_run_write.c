@@ -21,11 +21,18 @@ static void print_head(FILE *out, const Trajectory *run) {
                 run->fixed[body] ? "static" : "dynamic");
 }
 
-/* A static body is written once: readers keep it where it is. */
-static bool is_shown(const Trajectory *run, int frame, int body) {
+/* Whether a body that is not static is there. */
+static bool has_dynamic(const Trajectory *run, int frame) {
+    for (int body = 0; body < run->bodies; body++)
+        if (!run->fixed[body] && trajectory_has(run, frame, body)) return true;
+    return false;
+}
+
+/* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a row. */
+static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
     const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body, before = i - (size_t)run->bodies;
     if (!trajectory_has(run, frame, body)) return false;
-    return !run->fixed[body] || frame == 0 || !trajectory_has(run, frame - 1, body) ||
+    return !run->fixed[body] || alone || frame == 0 || !trajectory_has(run, frame - 1, body) ||
            memcmp(&run->position[i], &run->position[before], sizeof(Vec2)) != 0 ||
            memcmp(&run->angle[i], &run->angle[before], sizeof(float)) != 0 ||
            memcmp(&run->velocity[i], &run->velocity[before], sizeof(Vec2)) != 0 ||
@@ -45,9 +52,11 @@ static void print_run(FILE *out, const void *context) {
     const Trajectory *run = context;
     print_head(out, run);
     fprintf(out, "frame,body,x,y,angle%s\n", run->no_velocities ? "" : ",vx,vy,omega");
-    for (int frame = 0; frame < run->frames; frame++)
+    for (int frame = 0; frame < run->frames; frame++) {
+        const bool alone = !has_dynamic(run, frame);
         for (int body = 0; body < run->bodies; body++)
-            if (is_shown(run, frame, body)) print_row(out, run, frame, body);
+            if (is_shown(run, frame, body, alone)) print_row(out, run, frame, body);
+    }
 }
 
 bool csv_run_write(const Trajectory *run, const char *path, Error *error) {

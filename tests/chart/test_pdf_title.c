@@ -15,7 +15,7 @@ static void expect_titled(const char *data, size_t size) {
     char *pdf = malloc(size);
     assert_non_null(pdf);
     memcpy(pdf, data, size);
-    assert_true(pdf_set_title(&pdf, &size, "Boxes: 1 µm (new)"));
+    assert_true(pdf_set_title(&pdf, &size, "Boxes: 1 µm (new)", &(Error){0}));
     const char *path = temporary_path("titled.pdf");
     assert_ok(file_write(path, pdf, size, &error), error);
     free(pdf);
@@ -70,7 +70,9 @@ static void other_files_stay_as_they_are(void **state) {
         char *pdf = malloc(size + 1), *before = pdf;
         assert_non_null(pdf);
         memcpy(pdf, files[i], size + 1);
-        assert_false(pdf_set_title(&pdf, &size, "title"));
+        Error error = {0};
+        assert_false(pdf_set_title(&pdf, &size, "title", &error));
+        assert_error(error, ERROR_SYSTEM, "produced a PDF file of an unknown form");
         assert_ptr_equal(pdf, before);
         assert_string_equal(pdf, files[i]);
         free(pdf);

@@ -20,10 +20,11 @@ PREPARATION = [
 class Case:
     """inputs: what is copied from the prepared folder, also as NEW=OLD; journals: what a failed run may leave behind,
     because the next run continues with it; killed: the call at which a first run is killed, which this one continues;
-    sample: only one in so many faults, for commands that take many seconds."""
+    sample: only one in so many faults, for commands that take many seconds; says_how: the output tells how the files were
+    made, which a fault may change."""
 
-    def __init__(self, name, arguments, inputs="", journals="", killed=None, sample=1):
-        self.name, self.arguments, self.killed, self.sample = name, arguments, killed, sample
+    def __init__(self, name, arguments, inputs="", journals="", killed=None, sample=1, says_how=False):
+        self.name, self.arguments, self.killed, self.sample, self.says_how = name, arguments, killed, sample, says_how
         self.inputs, self.journals = inputs.split(), journals.split()
 
 
@@ -34,6 +35,8 @@ PAGE = "--dpi 50 --width 60"
 # A few hundredths of a second each: every call fails in turn.
 SHORT = [
     Case("new", "new wall.yaml --like wall"),
+    Case("new-output", "new - --like wall"),
+    Case("simulate-output", f"simulate {TINY} -o -"),
     Case("methods", "methods"),
     Case("completion", "completion bash"),
     Case("simulate", f"simulate {TINY} -o run.npz --hash run.hash --verdict run.json --json",
@@ -62,9 +65,10 @@ LONG = [
     Case("train-lm", "train pairs.npz -o out.npz --iterations 2 --layers 10-8-8-6 --optimizer lm", "pairs.npz"),
     Case("train-bfgs", "train pairs.npz -o out.npz --iterations 2 --optimizer bfgs", "pairs.npz"),
     Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o out.npz --iterations 1 --bomb-x=1:2:1"),
-    Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1 --width 16"),
-    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1",
-         "", "out.npz.part"),
+    Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1"
+         " --width 16"),
+    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1", "",
+         "out.npz.part"),
     Case("check", "check SCENES/single.yaml -o out.png", "out.png=expected/frame_000040.png"),
     Case("figure-pdf", f"figure strip a.npz b.npz -o out.pdf --at 0.7 {PAGE}", "a.npz b.npz out.pdf=a.csv"),
     Case("figure-svg", f"figure annotated a.npz -o out.svg --at 0.75 {PAGE} --outlines", "a.npz out.svg=a.csv"),
@@ -74,10 +78,11 @@ LONG = [
     Case("figure-network", f"figure network net.npz -o out.pdf {PAGE}", "net.npz out.pdf=a.csv"),
     Case("render", f"render a.npz b.npz -o out --frames 40:42 {SMALL}", "a.npz b.npz", "out/manifest.json.part"),
     Case("render-resume", f"render a.npz -o half --frames 40:42 {SMALL} --resume", "a.npz half",
-         "half/manifest.json.part"),
+         "half/manifest.json.part", says_how=True),
     Case("render-jobs", "render a.npz -o out --size 64x64 --frames 0:9 --jobs 3", "a.npz", "out/manifest.json.part"),
     Case("render-video", f"render a.npz -o out --frames 40:42 {SMALL} --video out.mp4 --video out.gif",
          "a.npz out.mp4=a.csv out.gif=a.csv", "out/manifest.json.part"),
+    Case("render-output", f"render a.npz -o out --frames 40:42 {SMALL} --video -", "a.npz", "out/manifest.json.part"),
     Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/*.part.csv"),
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "",
          "out/*.part.csv out/parts-*"),

@@ -142,18 +142,16 @@ static void put_entry(Output *out, const Entry *entry, bool directory) {
 }
 
 /* Raw deflate; 0 if it does not fit. */
-static size_t deflate_member(const Member *member, uint8_t *out, size_t room) {
-    z_stream stream = {.next_in = (Bytef *)(uintptr_t)member->bytes,
-                       .avail_in = (uInt)member->size,
-                       .next_out = out,
-                       .avail_out = (uInt)room};
+static size_t deflate_member(Member *member, uint8_t *out, size_t room) {
+    z_stream stream = {
+        .next_in = member->bytes, .avail_in = (uInt)member->size, .next_out = out, .avail_out = (uInt)room};
     if (deflateInit2(&stream, 1, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) != Z_OK) return 0;
     const int status = deflate(&stream, Z_FINISH);
     deflateEnd(&stream);
     return status == Z_STREAM_END ? room - stream.avail_out : 0;
 }
 
-static void put_member(Output *out, const Member *member, Entry *entry) {
+static void put_member(Output *out, Member *member, Entry *entry) {
     static uint8_t packed[ARRAY_MAX + 4096];
     const size_t deflated = (member->kind & DEFLATED) != 0 ? deflate_member(member, packed, sizeof packed) : 0;
     *entry = (Entry){.method = deflated > 0 ? 8 : 0,

@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "image/png_check.h"
 #include "image/png_chunk.h"
+#include "image/png_display.h"
 #include "image/png_fast.h"
 
 #include <stdlib.h>
@@ -61,6 +62,16 @@ static void decode(const uint8_t *data, size_t size) {
     image_destroy(image);
 }
 
+/* A picture is displayed as itself. */
+static void check_display(const uint8_t *data, size_t size) {
+    PngDisplay display;
+    Error error = {0};
+    fuzz_begin();
+    const bool compared = png_display_compare(data, size, data, size, &display, &error);
+    fuzz_end(compared, &error, NULL);
+    if (display.text[0] != '\0') fuzz_fail("a picture is displayed as another: %s", display.text);
+}
+
 /* A pair of a picture and itself is equal; the texts of a picture are found or not. */
 static void read_others(const uint8_t *data, size_t size) {
     const uint8_t *const files[2] = {data, data};
@@ -72,6 +83,7 @@ static void read_others(const uint8_t *data, size_t size) {
     const bool ok = image_decode_png_pair(files, (size_t[]){size, size}, paths, MOST_PIXELS, images, &error);
     fuzz_end(ok, &error, "picture.png");
     if (ok && !same(images[0], images[1])) fuzz_fail("a picture differs from itself");
+    if (ok) check_display(data, size);
     image_destroy_pair(images);
     error = (Error){0};
     fuzz_begin();

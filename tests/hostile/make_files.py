@@ -95,12 +95,16 @@ def make_npz():
     frames, bodies, rows = 50000, 100, 1000000
     save("bomb.npz", zip_of(run(400000, 100)))
     save("twins.npz", zip_of({f"a{i}": Array("|u1", (16 * MiB,)) for i in range(100)}, shared=True))
-    for name, size in (("flat", 0), ("still", 1), ("still2", 1)):  # within the budget of the smallest file
-        arrays = {key: Array(kind, shape, sound=True) for key, kind, shape in
-                  (("position", "<f4", (6000, 100, 2)), ("angle", "<f4", (6000, 100)), ("velocity", "<f4", (6000, 100, 2)),
-                   ("angular_velocity", "<f4", (6000, 100)))}
-        sizes = Array("<f4", (100, 2), struct.pack("<f", size) * 200)
-        save(f"{name}.npz", zip_of(run(0, 0, size=sizes, fixed=Array("|u1", (100,), bytes([name == "still2"] * 100)), **arrays)))
+    for name, size, fixed in (("flat", 0, 0), ("still", 1, 0), ("still2", 1, 1)):  # within the budget of the smallest file
+        arrays = {key: Array("<f4", (6000, 100, 2)[:rank], sound=True) for key, rank in
+                  (("position", 3), ("angle", 2), ("velocity", 3), ("angular_velocity", 2))}
+        arrays |= {"size": Array("<f4", (100, 2), struct.pack("<f", size) * 200),
+                   "fixed": Array("|u1", (100,), bytes([fixed] * 100)),
+                   "contact_start": Array("<i8", (6001,), bytes(16) + struct.pack("<q", 50000) * 5999),
+                   "contact_bodies": Array("<i4", (50000, 2), struct.pack("<ii", 0, 1) * 50000),
+                   "contact_feature": Array("<u4", (50000,), sound=True)}
+        arrays |= {f"contact_{key}": Array("<f4", (50000, 2), sound=True) for key in ("point", "normal", "impulse")}
+        save(f"{name}.npz", zip_of(run(0, 0, **arrays)))
     save("run.npz", zip_of(run(frames, bodies, angular_velocity=Array("<f4", (frames, bodies - 1))), PADDING))
     contacts = {f"contact_{name}": Array(kind, (rows, 2)) for name, kind in
                 (("bodies", "<i4"), ("point", "<f4"), ("normal", "<f4"))}

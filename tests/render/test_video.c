@@ -228,10 +228,10 @@ static void a_video_that_lacks_a_frame_is_removed(void **state) {
     }
     Error error = {0};
     VideoOptions options = options_for(temporary_path("lacking.mp4"));
-    pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\n");
+    pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\necho File too large >&2\n");
     pretend("ffprobe", "#!/bin/sh\necho 8\n");
     assert_false(video_encode(&options, NULL, &error));
-    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)");
+    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)\nFile too large");
     setenv("PATH", "/usr/bin:/bin", 1);
 }
 
