@@ -6,11 +6,11 @@
 #include <gsl/gsl_multilarge_nlinear.h>
 #include <jansson.h>
 #include <libdeflate.h>
-#include <libfyaml.h>
 #include <png.h>
 #include <sanitizer/msan_interface.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <yaml.h>
 #include <zip.h>
 #include <zlib.h>
 
@@ -69,6 +69,10 @@ RESULT(int, deflateInit_, (z_streamp stream, int level, const char *version, int
 RESULT(int, deflateInit2_,
        (z_streamp stream, int level, int method, int bits, int memory, int strategy, const char *version, int size),
        (stream, level, method, bits, memory, strategy, version, size), stored_stream(stream, NULL))
+RESULT(int, uncompress, (Bytef * out, uLongf *size, const Bytef *in, uLong in_size), (out, size, in, in_size), {
+    STORED(size);
+    __msan_unpoison(out, *size);
+})
 RESULT(int, deflateReset, (z_streamp stream), (stream), stored_stream(stream, NULL))
 
 RESULT(enum libdeflate_result, libdeflate_zlib_decompress_ex,
@@ -123,10 +127,12 @@ static void *take_initialised(size_t size) {
 NO_RESULT(json_set_alloc_funcs, (json_malloc_t allocate, json_free_t release), (take_initialised, release),
           take = allocate == take_initialised ? malloc : allocate)
 
-RESULT(struct fy_event *, fy_parser_parse, (struct fy_parser * parser), (parser), )
-RESULT(const char *, fy_token_get_text, (struct fy_token * token, size_t *length), (token, length), {
-    STORED(length);
-    if (result != NULL) __msan_unpoison(result, *length);
+RESULT(int, yaml_parser_initialize, (yaml_parser_t * parser), (parser), STORED(parser))
+RESULT(int, yaml_parser_parse, (yaml_parser_t * parser, yaml_event_t *event), (parser, event), {
+    STORED(parser);
+    STORED(event);
+    if (result != 0 && event->type == YAML_SCALAR_EVENT)
+        __msan_unpoison(event->data.scalar.value, event->data.scalar.length + 1);
 })
 
 /* clang 14 knows other names of these than today's C library has. */
