@@ -238,8 +238,7 @@ class Driver:
 
     def numbers(self, judge, call, mode):
         """Which calls of a kind are to fail: all, or the first from each place. Of these, one in K, not always the first."""
-        short = judge.bench.case in SHORT
-        if (call == "malloc" and (short or self.options.every)) or (self.options.every and short and call != "write"):
+        if judge.bench.case in SHORT and (call == "malloc" or (self.options.every and call != "write")):
             numbers = range(1, judge.reference.counts[call] + 1)
         else:
             numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
