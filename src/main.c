@@ -54,6 +54,29 @@ static void check_exit(int status, void *command_ended) {
     if (status == 1 && !*(const bool *)command_ended) _exit(ERROR_SYSTEM);
 }
 
+/* The words begin with the one of the command. */
+static int run(const Command *command, int argc, char **argv) {
+    static bool ended;
+    char name[64];
+    Error error = {0};
+    snprintf(name, sizeof name, "twinbox %s", command->name);
+    argv[0] = name;
+    on_exit(check_exit, &ended);
+    const bool same = command->run(argc, argv, &error);
+    note_end();
+    ended = true;
+    /* Output that could not be written is a failure of the system, not success. */
+    if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
+        error_system(&error, "standard output", "cannot write");
+    if (error.kind != ERROR_NONE) fprintf(stderr, "%s\n", error.message);
+    if (interrupt_requested() && error.kind != ERROR_INTERRUPTED) {
+        fprintf(stderr, "%s: error: interrupted\n", name);
+        return ERROR_INTERRUPTED;
+    }
+    if (error.kind != ERROR_NONE) return (int)error.kind;
+    return same ? 0 : 1;
+}
+
 int main(int argc, char **argv) {
     interrupt_handle();
     signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
@@ -75,23 +98,5 @@ int main(int argc, char **argv) {
     }
     if (command == NULL) return refuse_command(wanted);
     if (help) argv[2] = "--help";
-    char name[64];
-    snprintf(name, sizeof name, "twinbox %s", command->name);
-    argv[1] = name;
-    static bool command_ended;
-    on_exit(check_exit, &command_ended);
-    Error error = {0};
-    bool same = command->run(argc - 1, argv + 1, &error);
-    note_end();
-    command_ended = true;
-    /* Output that could not be written is a failure of the system, not success. */
-    if (error.kind == ERROR_NONE && (fflush(stdout) != 0 || ferror(stdout)))
-        error_system(&error, "standard output", "cannot write");
-    if (error.kind != ERROR_NONE) fprintf(stderr, "%s\n", error.message);
-    if (interrupt_requested() && error.kind != ERROR_INTERRUPTED) {
-        fprintf(stderr, "%s: error: interrupted\n", name);
-        return ERROR_INTERRUPTED;
-    }
-    if (error.kind != ERROR_NONE) return (int)error.kind;
-    return same ? 0 : 1;
+    return run(command, argc - 1, argv + 1);
 }
