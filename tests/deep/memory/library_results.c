@@ -46,6 +46,12 @@ static void begin_call(void) {
     }
 #define STORED(pointer) ((pointer) != NULL ? __msan_unpoison((pointer), sizeof *(pointer)) : (void)0)
 
+__attribute__((no_sanitize("memory"))) static void stored_text(const char *text) {
+    size_t length = 0;
+    while (text[length] != '\0') length++;
+    __msan_unpoison(text, length + 1);
+}
+
 /* zlib: what lies before next_out. */
 static void stored_stream(z_stream *stream, unsigned char *before) {
     __msan_unpoison(stream, sizeof *stream);
@@ -87,7 +93,10 @@ RESULT(enum libdeflate_result, libdeflate_zlib_decompress_ex,
 RESULT(zip_int64_t, zip_fread, (zip_file_t * file, void *data, zip_uint64_t size), (file, data, size),
        if (result > 0) __msan_unpoison(data, (size_t)result))
 RESULT(int, zip_stat_index, (zip_t * archive, zip_uint64_t index, zip_flags_t flags, zip_stat_t *status),
-       (archive, index, flags, status), STORED(status))
+       (archive, index, flags, status), {
+           STORED(status);
+           if (result == 0 && (status->valid & ZIP_STAT_NAME) != 0) stored_text(status->name);
+       })
 RESULT(int, zip_close, (zip_t * archive), (archive), )
 RESULT(zip_t *, zip_fdopen, (int file, int flags, int *cause), (file, flags, cause), STORED(cause))
 
@@ -134,6 +143,12 @@ RESULT(int, yaml_parser_parse, (yaml_parser_t * parser, yaml_event_t *event), (p
     if (result != 0 && event->type == YAML_SCALAR_EVENT)
         __msan_unpoison(event->data.scalar.value, event->data.scalar.length + 1);
 })
+
+NO_RESULT(amd_2,
+          (int count, int *start, int *list, int *length, int size, int used, int *a, int *b, int *order, int *c,
+           int *d, int *e, int *f, double *control, double *information),
+          (count, start, list, length, size, used, a, b, order, c, d, e, f, control, information),
+          __msan_unpoison(order, (size_t)count * sizeof *order))
 
 /* clang 14 knows other names of these than today's C library has. */
 RESULT(int, stat, (const char *path, struct stat *status), (path, status), STORED(status))
