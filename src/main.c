@@ -20,7 +20,7 @@ static void print_help(FILE *file) {
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad usage or input, 3 system failure, 130 interrupted.\n"
+    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad input, 3 system failure, 130 interrupted.\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/notes.h"
+#include "common/file_reserve.h"
 #include "common/names.h"
 #include "npz/output_check.h"
 
@@ -122,5 +123,8 @@ bool command_train(int argc, char **argv, Error *error) {
     char command[TEXT_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    return request.kind->train(&request, error);
+    FileReservation reservation;
+    if (!file_reserve(&reservation, request.output, error)) return false;
+    const bool done = request.kind->train(&request, error);
+    return file_release(&reservation, error) && done;
 }

@@ -34,14 +34,18 @@ typedef struct PairList {
    memory is short. */
 bool broad_phase_find(PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
+/* A hundred for each of 10,000 boxes. Boxes that lie on one another have a pair for every two: 10,000 would need 16 GB. */
+enum { BROAD_PHASE_MAX_PAIRS = 1 << 20 };
+
 typedef struct SweptBounds SweptBounds;
 
 /* The same pairs in the same order by sort and sweep (Baraff 1992): bounds are sorted by their lower end along an axis,
    and each is tested only against those that begin before it ends. The order persists and changes little from step to
    step. Across the axis the plane is cut into strips that are swept separately, so that the cost per body does not grow
-   with the width of the world. Zero-initialise. */
+   with the width of the world. Zero-initialise. sort_and_sweep_find() is also false for more than
+   BROAD_PHASE_MAX_PAIRS, and then sets too_many. */
 typedef struct SortAndSweep {
-    bool along_y;
+    bool along_y, too_many;
     int count, strip_count;
     float strips_begin, strips_per_metre;
     SweptBounds *sorted;   /* [count] along the axis */

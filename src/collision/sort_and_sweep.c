@@ -107,7 +107,7 @@ static bool fill_strips(SortAndSweep *sweep) {
 }
 
 static bool sweep_strip(PairList *found, const SweptBounds *items, int count, int strip) {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count && found->count <= BROAD_PHASE_MAX_PAIRS; i++) {
         SweptBounds item = items[i];
         if (!array_reserve((void **)&found->pairs, &found->capacity, found->count + (size_t)(count - i),
                            sizeof *found->pairs))
@@ -132,7 +132,8 @@ static bool find_overlaps(SortAndSweep *sweep) {
         int start = sweep->starts[strip], end = sweep->starts[strip + 1];
         if (!sweep_strip(&sweep->found, sweep->in_strip + start, end - start, strip)) return false;
     }
-    return true;
+    sweep->too_many = sweep->found.count > BROAD_PHASE_MAX_PAIRS;
+    return !sweep->too_many;
 }
 
 /* Sorts by one of the two bodies; stable. */
@@ -147,6 +148,7 @@ static void order_by(int *starts, int count, bool by_a, const PairList *from, Bo
 }
 
 bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count) {
+    sweep->too_many = false;
     const int few = 24; /* up to here testing every pair is faster */
     if (count <= few) return broad_phase_find(list, bounds, fixed, count);
     size_t items = (size_t)count;

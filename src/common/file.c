@@ -153,10 +153,9 @@ bool file_make_directory(const char *path, Error *error) {
     for (size_t end = 1; end <= length; end++) {
         if (path[end] != '/' && path[end] != '\0') continue;
         snprintf(part, sizeof part, "%.*s", (int)end, path);
-        if (mkdir(part, 0777) == 0 || is_directory(part)) continue;
-        /* is_directory() has overwritten errno; a second mkdir() restores it. */
-        mkdir(part, 0777);
-        return error_system(error, part, "cannot make the directory: %s", strerror(errno));
+        if (mkdir(part, 0777) == 0) continue;
+        const int cause = errno;
+        if (!is_directory(part)) return error_system(error, part, "cannot make the directory: %s", strerror(cause));
     }
     return true;
 }

@@ -194,7 +194,11 @@ static void commit(World *world) {
 }
 
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error) {
-    if (!collide(world)) return error_memory(error, "world");
+    if (!collide(world))
+        return world->broad_phase.too_many
+                   ? error_input(error, "world", "more than %d pairs of boxes overlap; move the boxes apart",
+                                 BROAD_PHASE_MAX_PAIRS)
+                   : error_memory(error, "world");
     if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
     apply_gravity(world, dt);
     contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);

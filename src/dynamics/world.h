@@ -38,7 +38,8 @@ bool world_copy(World *to, const World *from, Error *error);
    a step need not be ended.
 
    Begins a step of dt seconds (dt > 0): collision detection, gravity, the contact problem. The world owns the problem's
-   arrays and the solution, which the caller fills; they are valid until the next step. */
+   arrays and the solution, which the caller fills; they are valid until the next step. False with error set when memory is
+   short, or for more than BROAD_PHASE_MAX_PAIRS. */
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error);
 
 /* Ends the step: moves the bodies by the velocities of the solution. On failure the world is unchanged and error names

@@ -75,8 +75,13 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     char kind[64] = "";
     NpzFile *file = npz_open(spec->network, error);
     if (file == NULL) return false;
-    bool known = npz_has(file, "kind") && npz_read_text(file, "kind", kind, sizeof kind, &(Error){0});
+    Error cause = {0};
+    bool known = npz_has(file, "kind") && npz_read_text(file, "kind", kind, sizeof kind, &cause);
     npz_close(file);
+    if (cause.kind == ERROR_SYSTEM) {
+        *error = cause;
+        return false;
+    }
     if (known && strcmp(kind, "network") == 0) return draw_dense(sketch, spec, error);
     if (known && strcmp(kind, "scene-net") == 0) return draw_slots(sketch, spec, error);
     return error_input(error, spec->network, "contains no network with layers%s", known ? "" : ": it states no kind");

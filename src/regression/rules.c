@@ -11,7 +11,7 @@ void rules_destroy(Rules *rules) {
     if (rules == NULL) return;
     for (int i = 0; i < rules->count; i++) mask_free(&rules->rules[i].mask);
     free(rules->rules);
-    yaml_free(&rules->tree);
+    yaml_tree_free(&rules->tree);
     free(rules->path);
     free(rules);
 }

@@ -2,6 +2,7 @@
 /* The manifest on disk: its journal, and what remains valid of an earlier one. */
 #include "render/manifest_print.h"
 
+#include "common/cause.h"
 #include "common/file.h"
 #include "render/stale.h"
 
@@ -121,14 +122,30 @@ void manifest_recall(Manifest *manifest, char *why, size_t size) {
     if (manifest->valid || grows) why[0] = '\0';
 }
 
+/* Reads at most `size` characters; -1 if it fails. */
+static ssize_t read_start(int file, char *text, size_t size) {
+    size_t used = 0;
+    while (used < size) {
+        const ssize_t got = read(file, text + used, size - used);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return -1;
+        if (got == 0) break;
+        used += (size_t)got;
+    }
+    return (ssize_t)used;
+}
+
 /* A file that is not a manifest belongs to the user and must not be overwritten. */
 static bool check_overwritable(const char *path, Error *error) {
     struct stat status;
     char text[sizeof signature] = "";
-    if (lstat(path, &status) != 0 && errno == ENOENT) return true;
+    if (lstat(path, &status) != 0)
+        return errno == ENOENT || error_system(error, path, "cannot be inspected: %s", strerror(errno));
     int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    ssize_t size = file >= 0 ? read(file, text, sizeof text - 1) : -1;
+    const ssize_t size = file >= 0 ? read_start(file, text, sizeof text - 1) : -1;
+    const int cause = size < 0 ? errno : 0;
     if (file >= 0) close(file);
+    if (cause_is_system(cause)) return cause_error(cause, path, error);
     if (size == 0 && S_ISREG(status.st_mode)) return true;
     return (size > 0 && strcmp(text, signature) == 0) ||
            error_input(error, path, "is not a manifest of twinbox; move it away or choose another folder");

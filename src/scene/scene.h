@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene: the state before the first step, and the bomb. Read from YAML (libfyaml); constant while worlds run. SI
+/* A scene: the state before the first step, and the bomb. Read from YAML (libyaml); constant while worlds run. SI
    units, radians, y up. */
 #pragma once
 #include "common/error.h"

@@ -164,7 +164,7 @@ Scene *scene_read_with(const char *path, const SceneSetting *settings, int count
             scene = NULL;
         }
     }
-    yaml_free(&tree);
+    yaml_tree_free(&tree);
     if (scene != NULL) trace(scene);
     return scene;
 }

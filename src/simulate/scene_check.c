@@ -54,8 +54,7 @@ static bool check_end(const char *path, const SceneSetting *setting, Error *erro
     Scene *scene = scene_read_with(path, setting, 1, error);
     const bool ok = scene != NULL && scene_check_launches(scene, error);
     scene_destroy(scene);
-    if (!ok)
-        error_add(error, "\n(with %s = %.9g, an end of its range)", setting->name, setting->value);
+    if (!ok) error_add(error, "\n(with %s = %.9g, an end of its range)", setting->name, setting->value);
     return ok;
 }
 

@@ -195,7 +195,9 @@ static void note_numbers(const CsvImport *import) {
 
 static bool make_run(CsvImport *import, Error *error) {
     float dt = 0;
-    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) || !choose_step(import, &dt, error)) return false;
+    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) ||
+        !choose_step(import, &dt, error))
+        return false;
     import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
     if (import->run == NULL) return false;
     import->run->dt = dt;
@@ -222,7 +224,8 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
     notes->count = 0;
     const bool input = strcmp(path, "-") == 0;
     if (input) import.path = path = "standard input";
-    char *text = input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
+    char *text =
+        input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
     bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 read_text(&import, text, error);

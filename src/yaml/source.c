@@ -82,6 +82,12 @@ static size_t find_place(const Source *source, Place *place) {
     return start;
 }
 
+size_t source_offset(const Source *source, Place place) {
+    size_t at = find_place(source, &place);
+    for (int column = 0; column < place.column; column++) at += character_length(source, at);
+    return at;
+}
+
 /* Prints the excerpt of the line, and below it blanks up to the caret. */
 typedef struct Excerpt {
     char line[4 * EXCERPT_WIDTH + 8], blanks[EXCERPT_WIDTH];
@@ -124,50 +130,35 @@ bool source_error(const Source *source, Place place, Error *error, const char *f
                        excerpt.blanks);
 }
 
-/* State of the checks between characters. */
-typedef struct Check {
-    Place place;
-    size_t line_start;
-    size_t blanks, squares; /* length of the current run of blanks, and the sum of the squares of all runs */
-} Check;
-
-/* Updates the sum of squares: n^2 = 1 + 3 + ... + (2n - 1). */
-static void count_blanks(Check *check, char c) {
-    if (c == ' ' || c == '\t' || ends_line(c))
-        check->squares += 2 * ++check->blanks - 1;
-    else
-        check->blanks = 0;
+/* What libyaml refuses without a place, and what it takes for the end of a line but editors do not. */
+static bool is_allowed(uint32_t character) {
+    return !(character >= 0x80 && character < 0xa0) && character != 0x2028 && character != 0x2029 &&
+           character != 0xfeff && character != 0xfffe && character != 0xffff;
 }
 
-/* Refuses text that YAML forbids, that libfyaml wrongly accepts (0.7.12: invalid UTF-8) or that it takes minutes
-   for. */
-static bool check_character(const Source *source, size_t at, uint32_t character, Check *check, Error *error) {
-    count_blanks(check, source->text[at]);
-    if (check->squares > SOURCE_MAX_BLANKS)
-        return source_error(source, check->place, error, "too many blanks and empty lines in a row");
+static bool check_character(const Source *source, size_t at, uint32_t character, Place *place, Error *error) {
     if (ends_line(source->text[at])) {
         bool inside_pair = source->text[at] == '\r' && source->text[at + 1] == '\n';
-        check->place = (Place){check->place.line + !inside_pair, 0};
-        check->line_start = at + 1;
+        *place = (Place){place->line + !inside_pair, 0};
         return true;
     }
     if ((character < 0x20 && character != '\t') || character == 0x7f)
-        return source_error(source, check->place, error, "control character 0x%02x", (unsigned)character);
-    if (at - check->line_start >= SOURCE_MAX_LINE)
-        return source_error(source, check->place, error, "a line must have at most %d bytes", SOURCE_MAX_LINE);
-    if (at == check->line_start && character == '%')
-        return source_error(source, check->place, error, "YAML directives are not allowed");
-    check->place.column++;
+        return source_error(source, *place, error, "control character 0x%02x", (unsigned)character);
+    if (!is_allowed(character))
+        return source_error(source, *place, error, "the character U+%04X is not allowed", (unsigned)character);
+    if (place->column == 0 && character == '%')
+        return source_error(source, *place, error, "YAML directives are not allowed");
+    place->column++;
     return true;
 }
 
 static bool check_text(const Source *source, Error *error) {
-    Check check = {.line_start = 0};
+    Place place = {0, 0};
     for (size_t at = 0, length; at < source->size; at += length) {
         uint32_t character;
         length = utf8_decode(source->text + at, source->size - at, &character);
-        if (length == 0) return source_error(source, check.place, error, "not UTF-8 text");
-        if (!check_character(source, at, character, &check, error)) return false;
+        if (length == 0) return source_error(source, place, error, "not UTF-8 text");
+        if (!check_character(source, at, character, &place, error)) return false;
     }
     return true;
 }

@@ -5,15 +5,9 @@
 
 #include <stddef.h>
 
-/* libfyaml looks ahead to the end of the line for the colon of a key, and skips blanks in quadratic time: these limits
-   keep any file below 0.1 s. */
-enum {
-    SOURCE_MAX_SIZE = 3 << 19,   /* bytes: 157 for each of 10,000 bodies, one per line */
-    SOURCE_MAX_LINE = 4096,      /* bytes */
-    SOURCE_MAX_BLANKS = 50000000 /* sum of the squared lengths of runs of blanks and line ends */
-};
+enum { SOURCE_MAX_SIZE = 3 << 19 }; /* bytes: 157 for each of 10,000 bodies, one per line */
 
-/* Line and column from 0, the column in characters, as libfyaml counts them. */
+/* Line and column from 0, the column in characters, as libyaml counts them. */
 typedef struct Place {
     int line, column;
 } Place;
@@ -24,14 +18,17 @@ typedef struct Source {
     size_t size;
 } Source;
 
-/* Reads a file of UTF-8 text: no control characters but tab and line end, no line above the limit, no YAML directive (a
-   line that begins with '%'). A byte order mark is dropped. On failure there is nothing to free. */
+/* Reads a file of UTF-8 text: no control characters but tab and line end, no YAML directive (a line that begins with '%').
+   A byte order mark is dropped. On failure there is nothing to free. */
 bool source_read(Source *source, const char *path, Error *error);
 void source_free(Source *source);
 
 /* Sets an input error "path:line:column: error: text", the line, a caret; the message counts line and column from 1.
    Returns false. */
 bool source_error(const Source *source, Place place, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
+
+/* The byte at a place; beyond the end of a line, its end. */
+size_t source_offset(const Source *source, Place place);
 
 /* Copies UTF-8 text for a message: non-printable characters become '?', text that does not fit ends with "...". */
 void source_printable(char *out, size_t room, const char *text);

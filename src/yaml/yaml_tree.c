@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds a YamlTree from libfyaml's events. */
+/* Builds a YamlTree from libyaml's events. */
 #include "yaml/yaml_tree.h"
 
 #include "common/array.h"
+#include "yaml/syntax_words.h"
 
-#include <libfyaml.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
+#include <yaml.h>
 
 typedef struct Builder {
     YamlTree *tree;
@@ -17,8 +17,6 @@ typedef struct Builder {
     int depth, documents;
     int open[YAML_MAX_DEPTH]; /* open lists and mappings, outermost first */
     Place place;              /* of the last event that had one */
-    size_t fed, fed_before;   /* bytes that libfyaml has read, now and at the last event */
-    bool gap_too_long;
 } Builder;
 
 static bool fail(const Builder *builder, Error *error, const char *what) {
@@ -50,11 +48,8 @@ static bool add_node(Builder *builder, YamlKind kind, Error *error) {
     return true;
 }
 
-static bool add_scalar(Builder *builder, struct fy_token *value, Error *error) {
+static bool add_scalar(Builder *builder, const void *text, size_t length, Error *error) {
     if (!add_node(builder, YAML_SCALAR, error)) return false;
-    size_t length = 0;
-    const char *text = value == NULL ? "" : fy_token_get_text(value, &length);
-    if (text == NULL) return error_memory(error, builder->tree->source.path);
     if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text must not contain the character \\0");
     void *texts = builder->tree->texts;
     bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
@@ -82,125 +77,94 @@ static void close_node(Builder *builder) {
 }
 
 /* Aliases need an anchor before them, so without anchors there are no valid aliases. */
-static bool refuse_extras(const Builder *builder, const struct fy_token *anchor, const struct fy_token *tag,
-                          Error *error) {
+static bool refuse_extras(const Builder *builder, const void *anchor, const void *tag, Error *error) {
     if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed");
     return tag == NULL || fail(builder, error, "tags (!) are not allowed");
 }
 
 /* `dt:` without a value; `dt: ""` has one. */
-static bool is_missing_value(struct fy_event *event) {
-    if (event->type != FYET_SCALAR) return false;
-    struct fy_token *value = event->scalar.value;
-    return value == NULL || (fy_token_scalar_style(value) == FYSS_PLAIN && fy_token_get_text_length(value) == 0);
+static bool is_missing_value(const yaml_event_t *event) {
+    return event->type == YAML_SCALAR_EVENT && event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
+           event->data.scalar.length == 0;
 }
 
-static bool take_event(Builder *builder, struct fy_event *event, Error *error) {
-    const struct fy_mark *mark = fy_event_start_mark(event);
-    /* A missing value is shown at its key; not all versions of libfyaml give it a mark. */
-    if (mark != NULL && !is_missing_value(event)) builder->place = (Place){mark->line, mark->column};
-    builder->fed_before = builder->fed;
+static Place place_of(yaml_mark_t mark) { return (Place){(int)mark.line, (int)mark.column}; }
+
+/* A text begins behind its quote. */
+static Place place_of_event(const yaml_event_t *event) {
+    Place place = place_of(event->start_mark);
+    if (event->type != YAML_SCALAR_EVENT || event->data.scalar.anchor != NULL || event->data.scalar.tag != NULL)
+        return place;
+    const yaml_scalar_style_t style = event->data.scalar.style;
+    place.column += style == YAML_SINGLE_QUOTED_SCALAR_STYLE || style == YAML_DOUBLE_QUOTED_SCALAR_STYLE;
+    return place;
+}
+
+static bool take_event(Builder *builder, const yaml_event_t *event, Error *error) {
+    /* A missing value is shown at its key. */
+    if (!is_missing_value(event)) builder->place = place_of_event(event);
     switch (event->type) {
-    case FYET_DOCUMENT_START:
+    case YAML_DOCUMENT_START_EVENT:
         return ++builder->documents == 1 || fail(builder, error, "a file must hold one document only");
-    case FYET_MAPPING_START:
-        return refuse_extras(builder, event->mapping_start.anchor, event->mapping_start.tag, error) &&
+    case YAML_MAPPING_START_EVENT:
+        return refuse_extras(builder, event->data.mapping_start.anchor, event->data.mapping_start.tag, error) &&
                open_node(builder, YAML_MAPPING, error);
-    case FYET_SEQUENCE_START:
-        return refuse_extras(builder, event->sequence_start.anchor, event->sequence_start.tag, error) &&
+    case YAML_SEQUENCE_START_EVENT:
+        return refuse_extras(builder, event->data.sequence_start.anchor, event->data.sequence_start.tag, error) &&
                open_node(builder, YAML_SEQUENCE, error);
-    case FYET_MAPPING_END:
-    case FYET_SEQUENCE_END: close_node(builder); return true;
-    case FYET_SCALAR:
-        return refuse_extras(builder, event->scalar.anchor, event->scalar.tag, error) &&
-               add_scalar(builder, event->scalar.value, error);
-    case FYET_ALIAS: return fail(builder, error, "aliases (*) are not allowed");
+    case YAML_MAPPING_END_EVENT:
+    case YAML_SEQUENCE_END_EVENT: close_node(builder); return true;
+    case YAML_SCALAR_EVENT:
+        return refuse_extras(builder, event->data.scalar.anchor, event->data.scalar.tag, error) &&
+               add_scalar(builder, event->data.scalar.value, event->data.scalar.length, error);
+    case YAML_ALIAS_EVENT: return fail(builder, error, "aliases (*) are not allowed");
     default: return true;
     }
 }
 
-/* Reports the first error that libfyaml collected. */
-static bool syntax_error(const Builder *builder, struct fy_diag *diagnosis, Error *error) {
+/* A text without end, or a key without colon, is shown where it begins. source.c has refused what libyaml's reader would. */
+static bool syntax_error(const Builder *builder, const yaml_parser_t *parser, Error *error) {
     const Source *source = &builder->tree->source;
-    void *position = NULL;
-    for (const struct fy_diag_error *found; (found = fy_diag_errors_iterate(diagnosis, &position)) != NULL;) {
-        if (found->type != FYET_ERROR) continue;
-        char words[200];
-        source_printable(words, sizeof words, found->msg);
-        return source_error(source, (Place){found->line - 1, found->column - 1}, error, "%s", words);
-    }
-    return fail(builder, error, "not valid YAML");
+    if (parser->error == YAML_MEMORY_ERROR) return error_memory(error, source->path);
+    const bool begun = parser->error == YAML_SCANNER_ERROR && parser->context != NULL;
+    const yaml_mark_t mark = begun ? parser->context_mark : parser->problem_mark;
+    const size_t at = source_offset(source, place_of(mark));
+    return source_error(source, place_of(mark), error, "%s", syntax_words(parser->problem, source->text[at]));
 }
 
-static bool gap_error(const Builder *builder, Error *error) {
-    return source_error(&builder->tree->source, builder->place, error, "more than %d bytes from here to the next value",
-                        YAML_MAX_GAP);
-}
-
-static bool take_events(Builder *builder, struct fy_parser *parser, struct fy_diag *diagnosis, Error *error) {
+static bool take_events(Builder *builder, yaml_parser_t *parser, Error *error) {
     for (bool more = true; more;) {
-        struct fy_event *event = fy_parser_parse(parser);
-        more = event != NULL && event->type != FYET_STREAM_END;
-        bool taken = builder->gap_too_long ? gap_error(builder, error)
-                     : event == NULL       ? syntax_error(builder, diagnosis, error)
-                                           : take_event(builder, event, error);
-        fy_parser_event_free(parser, event);
+        yaml_event_t event;
+        if (!yaml_parser_parse(parser, &event)) return syntax_error(builder, parser, error);
+        more = event.type != YAML_STREAM_END_EVENT;
+        const bool taken = take_event(builder, &event, error);
+        yaml_event_delete(&event);
         if (!taken) return false;
     }
     return builder->tree->node_count > 0 ||
            source_error(&builder->tree->source, (Place){0, 0}, error, "the file is empty");
 }
 
-/* Feeds the text in pieces, which limits how far libfyaml reads ahead of its events: a million brackets would cost it a
-   second and half a gigabyte before the first event. */
-static ssize_t feed(void *user, void *buffer, size_t size) {
-    Builder *builder = user;
-    const Source *source = &builder->tree->source;
-    builder->gap_too_long = builder->fed - builder->fed_before > YAML_MAX_GAP;
-    if (builder->gap_too_long) return 0;
-    size_t left = source->size - builder->fed;
-    if (size > left) size = left;
-    memcpy(buffer, source->text + builder->fed, size);
-    builder->fed += size;
-    return (ssize_t)size;
-}
-
-static bool build(YamlTree *tree, struct fy_diag *diagnosis, Error *error) {
-    const struct fy_parse_cfg settings = {.flags = FYPCF_QUIET | FYPCF_DEFAULT_VERSION_1_2 | FYPCF_JSON_NONE,
-                                          .diag = diagnosis};
-    struct fy_parser *parser = fy_parser_create(&settings);
-    if (parser == NULL) return error_memory(error, tree->source.path);
+static bool build(YamlTree *tree, Error *error) {
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser)) return error_memory(error, tree->source.path);
     Builder builder = {.tree = tree};
-    bool done = fy_parser_set_input_callback(parser, &builder, feed) == 0
-                    ? take_events(&builder, parser, diagnosis, error)
-                    : error_memory(error, tree->source.path);
-    fy_parser_destroy(parser);
-    return done;
-}
-
-/* Collects libfyaml's messages; without this object it writes them to stderr, even if set to quiet.
- */
-static bool build_silently(YamlTree *tree, Error *error) {
-    struct fy_diag_cfg nowhere;
-    fy_diag_cfg_default(&nowhere);
-    nowhere.fp = NULL;
-    struct fy_diag *diagnosis = fy_diag_create(&nowhere);
-    if (diagnosis == NULL) return error_memory(error, tree->source.path);
-    fy_diag_set_collect_errors(diagnosis, true);
-    bool done = build(tree, diagnosis, error);
-    fy_diag_destroy(diagnosis);
+    yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)tree->source.text, tree->source.size);
+    const bool done = take_events(&builder, &parser, error);
+    yaml_parser_delete(&parser);
     return done;
 }
 
 bool yaml_read(YamlTree *tree, const char *path, Error *error) {
     *tree = (YamlTree){.node_count = 0};
     if (!source_read(&tree->source, path, error)) return false;
-    if (build_silently(tree, error)) return true;
-    yaml_free(tree);
+    if (build(tree, error)) return true;
+    yaml_tree_free(tree);
     return false;
 }
 
-void yaml_free(YamlTree *tree) {
+void yaml_tree_free(YamlTree *tree) {
     source_free(&tree->source);
     free(tree->nodes);
     free(tree->texts);

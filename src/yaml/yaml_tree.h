@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A YAML file as a small tree: plain arrays, built from libfyaml's events within fixed limits.
-
-   libfyaml's own documents take seconds for thousands of keys and minutes for aliases of aliases. This tree allows no
-   aliases, anchors, tags or second documents. */
+/* A YAML file as a small tree: plain arrays, built from libyaml's events within fixed limits. It allows no aliases, anchors,
+   tags or second documents. */
 #pragma once
 #include "yaml/source.h"
 
@@ -12,7 +10,6 @@ enum {
     YAML_MAX_DEPTH = 8,      /* nested lists and mappings */
     YAML_MAX_KEYS = 64,      /* of one mapping */
     YAML_MAX_NODES = 220000, /* 10,000 bodies with every key take 210,000 */
-    YAML_MAX_GAP = 65536,    /* bytes of one value, of comments, or that libfyaml reads ahead */
     YAML_SHOWN_SIZE = 48     /* room for a scalar in a message */
 };
 
@@ -38,7 +35,7 @@ typedef struct YamlTree {
 
 /* Reads the file. An error shows the place (source_error). On failure there is nothing to free. */
 bool yaml_read(YamlTree *tree, const char *path, Error *error);
-void yaml_free(YamlTree *tree);
+void yaml_tree_free(YamlTree *tree);
 
 /* The text of a scalar. */
 const char *yaml_text(const YamlTree *tree, int node);

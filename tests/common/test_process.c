@@ -46,9 +46,19 @@ static void a_deaf_program_is_survived(void **state) {
     free(much);
 }
 
+static void output_is_kept_in_tmpdir(void **state) {
+    (void)state;
+    Error error = {0};
+    Process process;
+    assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
+    assert_false(process_start(&process, (const char *const[]){"true", NULL}, &error));
+    unsetenv("TMPDIR");
+    assert_error(error, ERROR_SYSTEM, "true: error: no temporary file in /nonexistent: No such file or directory");
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_program_is_fed_and_what_it_says_comes_back),
-                                       cmocka_unit_test(failure_comes_with_its_words),
-                                       cmocka_unit_test(a_deaf_program_is_survived)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(output_is_kept_in_tmpdir), cmocka_unit_test(a_program_is_fed_and_what_it_says_comes_back),
+        cmocka_unit_test(failure_comes_with_its_words), cmocka_unit_test(a_deaf_program_is_survived)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

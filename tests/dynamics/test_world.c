@@ -235,6 +235,26 @@ static void a_body_in_the_place_of_one_taken_out_starts_anew(void **state) {
     }
 }
 
+/* n boxes in one place are n (n - 1) / 2 pairs: 1448 are just below 2^20, 1449 above. */
+static void too_many_pairs_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    const WorldDef def = {.gravity = {0, -10}};
+    const BodyDef box = {.size = {1, 1}, .mass = 1};
+    World *world = world_create(&def, &error);
+    ContactProblem problem;
+    ContactSolution *solution;
+    for (int i = 0; i < 1448; i++) assert_ok(world_add_body(world, &box, &error), error);
+    assert_ok(world_begin_step(world, 0.01f, &problem, &solution, &error), error);
+    assert_ok(world_add_body(world, &box, &error), error);
+    assert_false(world_begin_step(world, 0.01f, &problem, &solution, &error));
+    assert_error(error, ERROR_INPUT, "more than 1048576 pairs of boxes overlap");
+    error = (Error){0};
+    world_remove_last_body(world);
+    assert_ok(world_begin_step(world, 0.01f, &problem, &solution, &error), error);
+    world_destroy(world);
+}
+
 static void fixed_bodies_stay(void **state) {
     (void)state;
     World *world = box_on_ground(true, true, 5);
@@ -256,6 +276,7 @@ int main(void) {
                                        cmocka_unit_test(a_step_can_end_at_poses_given),
                                        cmocka_unit_test(a_body_taken_out_takes_its_contacts_with_it),
                                        cmocka_unit_test(a_body_in_the_place_of_one_taken_out_starts_anew),
+                                       cmocka_unit_test(too_many_pairs_are_refused),
                                        cmocka_unit_test(fixed_bodies_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

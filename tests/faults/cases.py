@@ -19,10 +19,11 @@ PREPARATION = [
 
 class Case:
     """inputs: what is copied from the prepared folder, also as NEW=OLD; journals: what a failed run may leave behind,
-    because the next run continues with it."""
+    because the next run continues with it; killed: the call at which a first run is killed, which this one continues;
+    sample: only one in so many faults, for commands that take many seconds."""
 
-    def __init__(self, name, arguments, inputs="", journals=""):
-        self.name, self.arguments = name, arguments
+    def __init__(self, name, arguments, inputs="", journals="", killed=None, sample=1):
+        self.name, self.arguments, self.killed, self.sample = name, arguments, killed, sample
         self.inputs, self.journals = inputs.split(), journals.split()
 
 
@@ -62,7 +63,8 @@ LONG = [
     Case("train-bfgs", "train pairs.npz -o out.npz --iterations 2 --optimizer bfgs", "pairs.npz"),
     Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o out.npz --iterations 1 --bomb-x=1:2:1"),
     Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1 --width 16"),
-    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1"),
+    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1",
+         "", "out.npz.part"),
     Case("check", "check SCENES/single.yaml -o out.png", "out.png=expected/frame_000040.png"),
     Case("figure-pdf", f"figure strip a.npz b.npz -o out.pdf --at 0.7 {PAGE}", "a.npz b.npz out.pdf=a.csv"),
     Case("figure-svg", f"figure annotated a.npz -o out.svg --at 0.75 {PAGE} --outlines", "a.npz out.svg=a.csv"),
@@ -76,7 +78,8 @@ LONG = [
     Case("render-jobs", "render a.npz -o out --size 64x64 --frames 0:9 --jobs 3", "a.npz", "out/manifest.json.part"),
     Case("render-video", f"render a.npz -o out --frames 40:42 {SMALL} --video out.mp4 --video out.gif",
          "a.npz out.mp4=a.csv out.gif=a.csv", "out/manifest.json.part"),
-    Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/chart.csv"),
+    Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/*.part.csv"),
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "",
-         "out/stability.csv"),
+         "out/*.part.csv out/parts-*"),
+    Case("paper", "paper -o out --quick --scenes SCENES", "", "out/parts-*", "rename:60", 100),
 ]

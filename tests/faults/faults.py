@@ -5,10 +5,11 @@
 
 A run with a fault must either do what the run without does (the same status, output and files), or end with exit status 3,
 a message, every old file intact, and no file left over. Short moves and interrupted reads and writes must not be noticed.
-Prints a line per kind of call, and each finding; exit status 1: there are findings."""
+Prints each finding, and counts; exit status 1: there are findings."""
 import argparse
 import collections
 import concurrent.futures
+import fnmatch
 import hashlib
 import os
 import shutil
@@ -32,7 +33,8 @@ ALL_MODES = {mode for modes in MODES.values() for mode in modes}
 NO_THREAD = "Resource temporarily unavailable"
 REASONS = {"malloc": ["memory"], "libmalloc": ["memory", NO_THREAD], "open": ["Too many open files"],
            "write": ["No space left"], "mkdir": ["No space left"], "process": [NO_THREAD]}
-STREAM = "standard output: error: cannot write"  # a stream keeps no reason
+# A stream keeps no reason; a process that cannot write its report has none.
+UNNAMED = ["standard output: error: cannot write", "a drawing process failed without an error message"]
 HUNG = 120  # s
 
 Result = collections.namedtuple("Result", "status out err files counts struck place strays")
@@ -60,8 +62,17 @@ class Bench:
         self.prepared = prepared
         self.folder = tempfile.mkdtemp(prefix="faults-")
         self.state = None
+        self.start = None
         self.work = os.path.join(self.folder, "run", "work")
         self.counts = os.path.join(self.folder, "counts")
+
+    def begin(self):
+        """Kills a first run of the case, and keeps what it leaves as the state to begin with."""
+        if self.run(f"{self.case.killed}:kill").status == -signal.SIGKILL:
+            start = os.path.join(self.folder, "start")
+            shutil.copytree(self.work, start)
+            self.start = start
+            self.state = None
 
     def close(self):
         shutil.rmtree(self.folder)
@@ -71,22 +82,27 @@ class Bench:
         if self.state is not None and snapshot(top) == self.state:
             return
         shutil.rmtree(top, ignore_errors=True)
-        os.makedirs(self.work)
-        os.mkdir(os.path.join(top, "tmp"))
-        for name in self.case.inputs:
-            new, _, old = name.partition("=")
-            source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
-            (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
+        os.makedirs(os.path.join(top, "tmp"))
+        if self.start is not None:
+            shutil.copytree(self.start, self.work)
+        else:
+            os.mkdir(self.work)
+            for name in self.case.inputs:
+                new, _, old = name.partition("=")
+                source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
+                (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
         self.state = snapshot(top)
 
     def run(self, fault, sites=None):
         self.restore()
         if os.path.exists(self.counts):
             os.remove(self.counts)
+        # Libraries leak where their own memory runs out.
+        leaks = 0 if fault.startswith("libmalloc") else 1
         environment = {"PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1", "TMPDIR": os.path.join(self.folder, "run", "tmp"),
                        "LD_PRELOAD": os.path.join(os.path.dirname(self.program), "tests", "libfault_shim.so"),
                        "TWINBOX_FAULT": fault, "TWINBOX_FAULT_COUNTS": self.counts,
-                       "ASAN_OPTIONS": "exitcode=99:verify_asan_link_order=0:allocator_may_return_null=1",
+                       "ASAN_OPTIONS": f"exitcode=99:verify_asan_link_order=0:detect_leaks={leaks}",
                        "LSAN_OPTIONS": f"suppressions={self.sources}/tests/known_leaks.txt:print_suppressions=0"}
         if sites:
             environment["TWINBOX_FAULT_SITES"] = sites
@@ -139,6 +155,9 @@ class Judge:
         with open(sites) as file:
             self.sites = [line.split() for line in file]
 
+    def is_journal(self, path):
+        return any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.bench.case.journals)
+
     def done(self, result):
         """None if the run did what it does without faults."""
         wanted = self.reference
@@ -161,16 +180,16 @@ class Judge:
             return f"exit status {result.status}: {result.err.strip()[-200:] or 'no message'}"
         if not result.err.strip():
             return "no message"
-        named = any(reason in result.err for reason in [*REASONS.get(call, [""]), STREAM])
+        named = any(reason in result.err for reason in [*REASONS.get(call, [""]), *UNNAMED])
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
         for path, digest in self.before.items():
-            if path not in result.files and path in self.reference.files:
+            if path not in result.files and path in self.reference.files and not self.is_journal(f"{path}.part"):
                 return f"{path} is lost"
         for path, digest in result.files.items():
             if digest in (self.before.get(path, ""), self.reference.files.get(path, "")) or path in self.timed:
                 continue
-            if any(path == f"work/{journal}" for journal in self.bench.case.journals):
+            if self.is_journal(path):
                 continue
             if digest is None and path.startswith("work/"):
                 continue  # a folder
@@ -205,7 +224,6 @@ class Driver:
         self.options = options
         self.program, self.sources = os.path.abspath(options.program), os.path.abspath(options.sources)
         self.tally = collections.Counter()
-        self.findings = []
         self.lock = threading.Lock()
         self.prepared = tempfile.mkdtemp(prefix="faults-")
 
@@ -223,39 +241,48 @@ class Driver:
             numbers = range(1, judge.reference.counts[call] + 1)
         else:
             numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
-        first = zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % self.options.sample
-        return numbers[first :: self.options.sample]
+        step = self.options.sample * judge.bench.case.sample
+        return numbers[zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % step :: step]
 
     def try_fault(self, judge, call, n, mode):
+        """What a fault showed, or None."""
         result = judge.bench.run(f"{call}:{n}:{mode}")
         finding = judge.judge(result, call, mode)
         kind = "found" if finding else "unreached" if not result.struck else "refused" if result.status == 3 else "harmless"
         with self.lock:
             self.tally[call, mode, kind] += 1
-            if finding:
-                self.findings.append((judge.bench.case.name, call, n, mode, result.place, finding))
+        return (call, n, mode, result.place, finding) if finding else None
 
     def try_case(self, case):
+        begun = time.monotonic()
         bench = Bench(self.program, self.sources, self.prepared, case)
         try:
+            if case.killed:
+                bench.begin()
             judge = Judge(bench)
-            for call in self.options.call or CALLS:
-                for mode in set(MODES.get(call, ["fail"])) & set(self.options.mode or ALL_MODES):
-                    for n in self.numbers(judge, call, mode):
-                        self.try_fault(judge, call, n, mode)
+            faults = [(call, n, mode) for call in self.options.call or CALLS
+                      for mode in MODES.get(call, ["fail"]) if mode in (self.options.mode or ALL_MODES)
+                      for n in self.numbers(judge, call, mode)]
+            findings = [finding for fault in faults if (finding := self.try_fault(judge, *fault))]
         finally:
             bench.close()
+        with self.lock:
+            self.print_case(case, findings, time.monotonic() - begun)
+
+    def print_case(self, case, findings, seconds):
+        place = places(self.program, {finding[3] for finding in findings})
+        for call, n, mode, address, finding in sorted(findings):
+            print(f"{case.name}: {call}:{n}:{mode} in {place.get(address, 'a library')}: {finding}")
+        print(f"{case.name}: {len(findings)} findings, {seconds:.0f} s", flush=True)
 
     def report(self):
-        place = places(self.program, {finding[4] for finding in self.findings})
-        for name, call, n, mode, address, finding in sorted(self.findings):
-            print(f"{name}: {call}:{n}:{mode} in {place.get(address, 'a library')}: {finding}")
         print(f"{'call':10} {'mode':6} {'tried':>7} {'refused':>8} {'harmless':>9} {'findings':>9}")
         for call, mode in sorted({key[:2] for key in self.tally}, key=lambda key: (CALLS.index(key[0]), key[1])):
             kinds = [self.tally[call, mode, kind] for kind in ("refused", "harmless", "found")]
             print(f"{call:10} {mode:6} {sum(kinds):7} {kinds[0]:8} {kinds[1]:9} {kinds[2]:9}")
-        print(f"{sum(self.tally.values())} faults, {len(self.findings)} findings")
-        return 1 if self.findings else 0
+        findings = sum(count for key, count in self.tally.items() if key[2] == "found")
+        print(f"{sum(self.tally.values())} faults, {findings} findings")
+        return 1 if findings else 0
 
     def run(self):
         cases = [case for case in SHORT + LONG if not self.options.case or case.name in self.options.case]

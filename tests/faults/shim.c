@@ -3,7 +3,7 @@
 
    TWINBOX_FAULT=CALL:N:MODE   strikes the N-th call (from 1; 0: none) of a kind, counted over all processes of a run:
      malloc    allocations by our own code (malloc, calloc, realloc, aligned_alloc, strdup, strndup)
-     libmalloc allocations by libraries that the program is linked with; not those of the OpenGL driver
+     libmalloc allocations by libraries that the program is linked with; not those of the OpenGL driver and the loader
      open      open, openat, opendir, fdopendir, fopen, mkstemp, tmpfile
      read      read, pread, fread, fgets
      write     write, pwrite, send, fflush, and what prints to a stream (but stderr)
@@ -88,11 +88,13 @@ void shim_leave(bool before) { inside = before; }
 
 static bool within(const Range *range, const char *address) { return address >= range->begin && address < range->end; }
 
-/* The program is the first, then what it is linked with; libraries that are loaded later are not in the list. */
+/* The program is the first, then what it is linked with; libraries that are loaded later are not in the list. Neither is the
+   loader, which ends the program (status 127) when it gets no memory. */
 static int add_range(struct dl_phdr_info *info, size_t size, void *unused) {
     (void)size;
     (void)unused;
     const char *base = (const char *)info->dlpi_addr;
+    if (strstr(info->dlpi_name, "/ld-linux") != NULL) return 0;
     for (int i = 0; i < info->dlpi_phnum; i++) {
         const ElfW(Phdr) *part = &info->dlpi_phdr[i];
         if (part->p_type != PT_LOAD || (part->p_flags & PF_X) == 0) continue;

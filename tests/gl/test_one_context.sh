@@ -8,13 +8,17 @@ if grep -q "^TWINBOX_SANITIZE:STRING=." "$cache"; then
     echo "1 check left to the release build"
     exit 0
 fi
-compiler=$(sed -n "s/^CMAKE_C_COMPILER:[A-Z]*=//p" "$cache")
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$cache"; }
+# With ccache (tests/run), most files are those of the preset `portable`.
+launcher=$(cached CMAKE_C_COMPILER_LAUNCHER)
+type=${launcher:+Release}
 
 # configure FOLDER OPTION...
 configure() {
     local build=$1
     shift
-    cmake -S "$sources" -B "$build" -G Ninja -DCMAKE_C_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug \
+    cmake -S "$sources" -B "$build" -G Ninja -DCMAKE_C_COMPILER="$(cached CMAKE_C_COMPILER)" \
+        -DCMAKE_C_COMPILER_LAUNCHER="$launcher" -DCMAKE_BUILD_TYPE="${type:-Debug}" -DCMAKE_COMPILE_WARNING_AS_ERROR=ON \
         -DTWINBOX_AVX=OFF "$@" >"$build.log" 2>&1
 }
 

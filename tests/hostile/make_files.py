@@ -195,6 +195,8 @@ def make_json():
 def make_yaml():
     most = 3 << 19
     bodies = "bodies:\n" + "".join(f"  - {{size: [1, 1], mass: 1, position: [{i}, 0]}}\n" for i in range(40000))
+    heap = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 2\noverlaps: allowed\ncamera: {center: [0, 0], size: [9, 9]}\nbodies:\n"
+    save("heap.yaml", (heap + "  - {size: [1, 1], mass: 1, position: [0, 0]}\n" * 9900).encode())
     for name, words in (("line", "[" * most), ("nested", "- " * 2000), ("keys", "".join(f"k{i}: 1\n" for i in range(99999))),
                         ("comments", "#\n" * most), ("folded", "a: >\n" + " x\n\n" * most), ("bodies", bodies),
                         ("aliases", "a: &a [x, x]\nb: &b [*a, *a]\n"), ("large", "#" * (most + 1))):

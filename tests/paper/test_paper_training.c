@@ -17,7 +17,7 @@ static int begin(void **state) {
     static char folder[256];
     assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
     training.network = paper_network(0);
-    training.network.iterations = 60;
+    training.network.iterations = 20;
     training.folder = strcpy(folder, temporary_path("."));
     return 0;
 }

@@ -13,8 +13,8 @@
 
 enum { FRAMES = 6 };
 
-static bool interrupting;       /* every other call, and short calls in between */
-static const char *undeletable; /* ending of a path */
+static bool interrupting;                /* every other call, and short calls in between */
+static const char *undeletable, *unseen; /* ending of a path */
 
 #define REAL(name, type, ...)  \
     type (*real)(__VA_ARGS__); \
@@ -42,6 +42,13 @@ ssize_t read(int file, void *data, size_t size) {
 int unlink(const char *path) {
     REAL("unlink", int, const char *);
     if (undeletable == NULL || !file_name_ends_with(path, undeletable)) return real(path);
+    errno = EIO;
+    return -1;
+}
+
+int lstat(const char *restrict path, struct stat *restrict status) {
+    REAL("lstat", int, const char *restrict, struct stat *restrict);
+    if (unseen == NULL || !file_name_ends_with(path, unseen)) return real(path, status);
     errno = EIO;
     return -1;
 }
@@ -93,8 +100,24 @@ static void what_cannot_be_removed_is_an_error(void **state) {
     }
 }
 
+/* The system is to blame, not the file. */
+static void what_cannot_be_inspected_is_an_error(void **state) {
+    (void)state;
+    static const char *const endings[] = {"manifest.json", "manifest.json.part"};
+    RenderOptions options = options_for(temporary_path("unseen"));
+    for (int i = 0; i < 2; i++) {
+        Error error = {0};
+        unseen = endings[i];
+        assert_false(draw(&options, FRAMES, &error));
+        unseen = NULL;
+        assert_error(error, ERROR_SYSTEM, endings[i]);
+        assert_error(error, ERROR_SYSTEM, "Input/output error");
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(interrupted_calls_are_continued),
-                                       cmocka_unit_test(what_cannot_be_removed_is_an_error)};
+                                       cmocka_unit_test(what_cannot_be_removed_is_an_error),
+                                       cmocka_unit_test(what_cannot_be_inspected_is_an_error)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

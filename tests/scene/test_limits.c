@@ -95,8 +95,8 @@ static void deep_nesting_is_refused(void **state) {
     text = text_new("a: ");
     text_add(&text, "[", 10000);
     text_add(&text, "]", 10000);
-    text_expect(&text, "1:4097: error: a line must have at most 4096 bytes");
-    expect_flood("", "[\n ", 500000, "1:1: error: more than 65536 bytes from here to the next value");
+    text_expect(&text, (snprintf(message, sizeof message, "1:11: error: %s", deep), message));
+    expect_flood("", "[\n ", 500000, (snprintf(message, sizeof message, "9:2: error: %s", deep), message));
 }
 
 static void aliases_of_aliases_are_refused(void **state) {
@@ -107,19 +107,23 @@ static void aliases_of_aliases_are_refused(void **state) {
             (size_t)sprintf(text.data + text.size, "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", 'a' + level,
                             'a' + level, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1,
                             'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1);
-    text_expect(&text, "1:7: error: anchors (&) are not allowed");
+    text_expect(&text, "1:4: error: anchors (&) are not allowed");
 }
 
 static void floods_are_refused(void **state) {
     (void)state;
-    static const char gap[] = "1:1: error: more than 65536 bytes from here to the next value";
-    expect_flood("a: ", "x", 100000, "1:4097: error: a line must have at most 4096 bytes");
-    expect_flood("a: ", "x\n ", 100000, gap);
-    expect_flood("a: |\n", " x\n", 100000, gap);
-    expect_flood("", "#\n", 100000, gap);
-    expect_flood("", "!a\n", 100000, gap);
-    expect_flood("", "\n", 100000, "7072:1: error: too many blanks and empty lines in a row");
-    expect_flood("{a:\n", " \n", 100000, "3537:1: error: too many blanks and empty lines in a row");
+    static const char key[] = "1:1: error: 'a' is not a key of a scene; known: gravity, dt, iterations, "
+                              "warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, "
+                              "bodies, bomb, networks, parameters";
+    static const char empty[] = "1:1: error: the file is empty";
+    expect_flood("a: ", "x", 300000, key);
+    expect_flood("a: ", "x\n ", 100000, key);
+    expect_flood("a: |\n", " x\n", 100000, key);
+    expect_flood("a:", " ", 300000, key);
+    expect_flood("", "#\n", 100000, empty);
+    expect_flood("", "\n", 300000, empty);
+    expect_flood("", "!a\n", 100000, "1:1: error: tags (!) are not allowed");
+    expect_flood("{\"a", "a", 300000, "1:2: error: a text in quotes has no end");
     expect_flood("%", "%", 100000, "1:1: error: YAML directives are not allowed");
     expect_flood("bodies: [", "a,\n ", 300000, "219998:2: error: more than 220000 values in one file");
 }
@@ -129,9 +133,9 @@ static void large_line_numbers_keep_the_excerpt_aligned(void **state) {
     Text text = text_new("");
     text_add(&text, "- a\n", 100000);
     text_add(&text, "- &b c\n", 1);
-    text_expect(&text, "100001:6: error: anchors (&) are not allowed\n"
+    text_expect(&text, "100001:3: error: anchors (&) are not allowed\n"
                        "100001 | - &b c\n"
-                       "       |      ^");
+                       "       |   ^");
 }
 
 static void large_files_are_refused(void **state) {

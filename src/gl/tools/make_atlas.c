@@ -46,14 +46,13 @@ static FT_Pos figure_advance(FT_Face face) {
     return widest;
 }
 
-/* Coverage in the levels of the shapes (shaders/shape.frag). */
+/* Coverage in the levels of the shapes (shaders/shape.frag). One string: a list of numbers takes a compiler seconds. */
 static void print_bitmap(const FT_Bitmap *bitmap) {
     for (unsigned y = 0; y < bitmap->rows; y++) {
         for (unsigned x = 0; x < bitmap->width; x++) {
             int coverage = bitmap->buffer[(int)y * bitmap->pitch + (int)x];
-            fprintf(output, "%d,", (coverage * 51 + 127) / 255 * 5);
+            fprintf(output, "\\%03o", (unsigned)(coverage * 51 + 127) / 255 * 5);
         }
-        fputc('\n', output);
     }
     bitmap_size += bitmap->rows * bitmap->width;
 }
@@ -98,7 +97,7 @@ int main(int argc, char **argv) {
     if (argc != FONT_FACES + 2) quit("usage: make_atlas REGULAR.otf SEMIBOLD.otf OUTPUT.c");
     if ((output = fopen(argv[FONT_FACES + 1], "w")) == NULL) quit("cannot write the output");
     if (FT_Init_FreeType(&library) != 0) quit("cannot start FreeType");
-    fputs("#include \"gl/font_atlas.h\"\nconst uint8_t font_bitmaps[] = {\n", output);
+    fputs("#include \"gl/font_atlas.h\"\nconst uint8_t font_bitmaps[] = \"", output);
     for (int i = 0; i < FONT_FACES; i++) {
         FT_Face face;
         if (FT_New_Face(library, argv[1 + i], 0, &face) != 0) quit("cannot read a font");
@@ -109,7 +108,7 @@ int main(int argc, char **argv) {
         }
         FT_Done_Face(face);
     }
-    fputs("};\n", output);
+    fputs("\";\n", output);
     print_glyphs(glyphs);
     FT_Done_FreeType(library);
     if (fclose(output) != 0) quit("cannot write the output");

@@ -7,8 +7,9 @@
 #include "common/file.h"
 #include "common/html_text.h"
 #include "image/image.h"
+#include "paper/report/markdown_memory.h"
 
-#include <cmark-gfm-core-extensions.h>
+#include <cmark-gfm-extension_api.h>
 #include <cmark-gfm.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -26,7 +27,6 @@ typedef struct Writing {
 static void write_block(const Writing *writing, cmark_node *block) {
     char *html = cmark_render_html(block, CMARK_OPT_TABLE_PREFER_STYLE_ATTRIBUTES, writing->extensions);
     fputs(html, writing->out);
-    free(html);
 }
 
 /* Without marks. */
@@ -34,7 +34,6 @@ static void write_text(const Writing *writing, cmark_node *node) {
     char *text = cmark_render_plaintext(node, CMARK_OPT_DEFAULT, 0);
     text[strcspn(text, "\n")] = '\0';
     html_put(writing->out, text);
-    free(text);
 }
 
 static bool is_heading(cmark_node *node, int level) {
@@ -73,12 +72,13 @@ static cmark_node *image_of(cmark_node *block) {
 /* At most two pixels of the picture for each of the page, so that it is sharp on all screens. */
 static bool write_picture(const Writing *writing, cmark_node *node, const char *path) {
     size_t size;
+    const char *words = cmark_node_get_literal(cmark_node_first_child(node));
     char *png = file_read(path, MAX_PICTURE_SIZE, &size, writing->error);
     Image *image = png != NULL ? image_read_png(path, writing->error) : NULL;
     if (image != NULL) {
         fprintf(writing->out, "<img width=\"%d\" height=\"%d\" style=\"max-width:%dpx\" alt=\"", image->width,
                 image->height, (image->width + 1) / 2);
-        html_put(writing->out, cmark_node_get_literal(cmark_node_first_child(node)));
+        html_put(writing->out, words);
         fputs("\" src=\"data:image/png;base64,", writing->out);
         base64_put(writing->out, png, size);
         fputs("\">\n", writing->out);
@@ -134,15 +134,17 @@ static bool write_page(const Writing *writing, cmark_node *document) {
     return written;
 }
 
-bool html_page_write(const HtmlPage *page, FILE *out, Error *error) {
-    cmark_gfm_core_extensions_ensure_registered();
+static bool write_markdown(void *context) {
+    Writing *writing = context;
+    const char *markdown = writing->page->markdown;
     cmark_parser *parser = cmark_parser_new(CMARK_OPT_DEFAULT);
     cmark_parser_attach_syntax_extension(parser, cmark_find_syntax_extension("table"));
-    cmark_parser_feed(parser, page->markdown, strlen(page->markdown));
-    cmark_node *document = cmark_parser_finish(parser);
-    const Writing writing = {page, cmark_parser_get_syntax_extensions(parser), out, error};
-    bool written = write_page(&writing, document);
-    cmark_node_free(document);
-    cmark_parser_free(parser);
-    return written;
+    cmark_parser_feed(parser, markdown, strlen(markdown));
+    writing->extensions = cmark_parser_get_syntax_extensions(parser);
+    return write_page(writing, cmark_parser_finish(parser));
+}
+
+bool html_page_write(const HtmlPage *page, FILE *out, Error *error) {
+    Writing writing = {page, NULL, out, error};
+    return markdown_memory_run(write_markdown, &writing, error);
 }
