@@ -26,11 +26,11 @@ PREPARED = {
 class Case:
     """inputs: NEW=OLD copies OLD of the prepared folder to NEW. resume: the command that continues (default: the same).
     most: kills in a run of everything. times: patterns of files with times in them, which differ between runs. status:
-    the exit status of a run that is not disturbed."""
+    the exit status of a run that is not disturbed. early: the file that a run which SIGTERM stops early stores."""
 
-    def __init__(self, name, command, inputs="", resume=None, most=16, times="", status=0):
+    def __init__(self, name, command, inputs="", resume=None, most=16, times="", status=0, early=""):
         self.name, self.command, self.inputs, self.resume = name, command, inputs.split(), resume or command
-        self.most, self.times, self.status = most, times.split(), status
+        self.most, self.times, self.status, self.early = most, times.split(), status, early
 
     def timed(self, path):
         return any(fnmatch.fnmatch(path, pattern) for pattern in self.times)
@@ -55,10 +55,11 @@ CASES = [
     render("render-jobs", "--jobs 3", ""),
     render("render-over-older", "--jobs 2 --frames 0:5", "out=older"),
     render("video", "--jobs 1 --video film.mp4 --video film.gif", "film.mp4", most=16),
-    Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz", most=14),
+    Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz", most=14,
+         early="net.npz"),
     Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o net.npz --iterations 1 --bomb-x=1:2:1",
-         most=10),
-    Case("train-scene-net", SCENE_NET, most=12),
+         most=10, early="net.npz"),
+    Case("train-scene-net", SCENE_NET, most=12, early="net.npz"),
     Case("train-interior-net", "train --kind interior-net -o net.npz --scenes 7 --rounds 2 --epochs 2", most=20),
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
     Case("approve", "approve report --expected expected", "report expected actual", most=20),
