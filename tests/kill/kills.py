@@ -28,7 +28,8 @@ STRUCK = ["rename", "write", "unlink", "fsync"]
 INTERRUPTED = 130
 # What may differ between two runs: times in the tables, and what is drawn from them; gnuplot's time in a PDF.
 DATE = re.compile(rb"/CreationDate \(D:[^)]*\)")
-ENDS = {".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".pdf": b"%%EOF", ".csv": b""}
+ENDS = {".html": b"</html>", ".md": b"", ".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>",
+        ".pdf": b"%%EOF", ".csv": b""}
 
 
 class Finding(Exception):
@@ -109,7 +110,7 @@ class Bench:
         return done.returncode
 
     def check_names(self, interrupted):
-        """No final name holds another file than before or at the end; but an interrupted training stores its network."""
+        """No final name holds another file than before or at the end. An interrupted training stores its network."""
         for path, now in self.snapshot().items():
             if interrupted and path == self.case.early:
                 continue
