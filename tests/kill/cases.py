@@ -45,7 +45,7 @@ SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 -
 
 CASES = [
     Case("paper", "paper -o out --quick --scenes small", "small", most=6,
-         times="out/closed_loop.csv out/figures/closed-loop.* out/findings/summary.csv out/report.*"),
+         times="out/closed_loop.csv out/figures/closed-loop.[ps]* out/findings/summary.csv out/report.*"),
     Case("chart-study", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", most=16,
          times="out/*.csv out/*.png out/*.svg out/*.pdf"),
     Case("chart-draw", "chart charts/chart.csv -o out", "charts", most=16),
