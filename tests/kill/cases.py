@@ -2,7 +2,8 @@
 """The command lines that are killed. SCENES stands for the folder of scenes."""
 import fnmatch
 
-# What the cases start from, in one folder: how each file or folder is made. A command needs those that it names.
+# What the cases start from, in one folder: how each file or folder is made, by a command of twinbox, which needs those
+# that it names, or of the shell (sh).
 PREPARED = {
     "a.npz": "simulate SCENES/single.yaml --frames 8 -o a.npz",
     "b.npz": "simulate SCENES/single.yaml --frames 8 -m momentum -o b.npz",
@@ -14,24 +15,28 @@ PREPARED = {
     "report": "compare expected actual --report report",
     "film.mp4": "render a.npz -o frames --size 64x64 --video film.mp4",
     "charts": "chart SCENES/single.yaml SCENES/stack.yaml -o charts --quick --methods engine:k=10,momentum:k=20",
+    # Short scenes for the paper: 60 frames of each.
+    "small": "sh mkdir small && cp -r SCENES/networks small && for name in single stack pyramid; do "
+             "sed 's/^frames: .*/frames: 60/' SCENES/$name.yaml >small/$name.yaml; done && "
+             "cp small/stack.yaml small/pyramid_settled.yaml",
     "study": "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o study",
 }
 
 
 class Case:
     """inputs: NEW=OLD copies OLD of the prepared folder to NEW. resume: the command that continues (default: the same).
-    most: kills in a run of everything. times: patterns of files with times in them, which differ between runs.
-    done_again: exit statuses of a command whose work was over."""
+    most: kills in a run of everything. times: patterns of files with times in them, which differ between runs. status:
+    the exit status of a run that is not disturbed. early: the file that a run which SIGTERM stops early stores."""
 
-    def __init__(self, name, command, inputs="", resume=None, most=16, times="", status=0, done_again=()):
+    def __init__(self, name, command, inputs="", resume=None, most=16, times="", status=0, early=""):
         self.name, self.command, self.inputs, self.resume = name, command, inputs.split(), resume or command
-        self.most, self.times, self.status, self.done_again = most, times.split(), status, done_again
+        self.most, self.times, self.status, self.early = most, times.split(), status, early
 
     def timed(self, path):
         return any(fnmatch.fnmatch(path, pattern) for pattern in self.times)
 
 
-def render(name, options, inputs, most=24):
+def render(name, options, inputs, most=16):
     command = f"render a.npz -o out --size 64x64 {options}"
     return Case(name, command, "a.npz " + inputs, command + " --resume", most)
 
@@ -39,22 +44,28 @@ def render(name, options, inputs, most=24):
 SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 --rounds 1 --iterations 1 --width 16"
 
 CASES = [
-    Case("paper", "paper -o out --quick --scenes SCENES", most=10),
-    Case("chart-study", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", most=20,
+    Case("paper", "paper -o out --quick --scenes small", "small", most=6,
+         times="out/closed_loop.csv out/figures/closed-loop.[ps]* out/findings/summary.csv out/report.*"),
+    Case("chart-study", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", most=16,
          times="out/*.csv out/*.png out/*.svg out/*.pdf"),
-    Case("chart-draw", "chart charts/chart.csv -o out", "charts", most=20),
-    Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", most=24),
-    Case("stability-renew", "stability --scenes SCENES --study heavy_on_one --methods engine:k=5 -o study", "study", most=16),
+    Case("chart-draw", "chart charts/chart.csv -o out", "charts", most=16),
+    Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", most=16),
+    Case("stability-renew", "stability --scenes SCENES --study heavy_on_one --methods engine:k=5 -o study", "study",
+         most=12),
     render("render", "--jobs 1", ""),
     render("render-jobs", "--jobs 3", ""),
     render("render-over-older", "--jobs 2 --frames 0:5", "out=older"),
-    render("video", "--jobs 1 --video film.mp4 --video film.gif", "film.mp4", most=32),
-    Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz"),
-    Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o net.npz --iterations 1 --bomb-x=1:2:1"),
-    Case("train-scene-net", SCENE_NET),
-    Case("train-interior-net", "train --kind interior-net -o net.npz --scenes 7 --rounds 2 --epochs 2", most=24),
-    Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz"),
-    Case("approve", "approve report --expected expected", "report expected actual", most=32),
-    Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz"),
-    Case("compare", "compare expected actual --report report", "expected actual report", status=1, times="report/junit.xml"),
+    render("video", "--jobs 1 --video film.mp4 --video film.gif", "film.mp4", most=16),
+    Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz", most=14,
+         early="net.npz"),
+    Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o net.npz --iterations 1 --bomb-x=1:2:1",
+         most=10, early="net.npz"),
+    Case("train-scene-net", SCENE_NET, most=12, early="net.npz"),
+    Case("train-interior-net", "train --kind interior-net -o net.npz --scenes 7 --rounds 2 --epochs 2", most=20),
+    Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
+    Case("approve", "approve report --expected expected", "report expected actual", most=20),
+    Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz",
+         most=12),
+    Case("compare", "compare expected actual --report report", "expected actual report", status=1,
+         times="report/junit.xml", most=12),
 ]

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kills commands of twinbox at the entry of a call that changes files, continues them, and compares with a run that was not
-disturbed.
+"""Kills commands of twinbox at the entry of a call that changes files, continues them, and compares with a run that was
+not disturbed.
 
-    kills.py TWINBOX SOURCES [--most N] [--jobs N] [CASE...]
+    kills.py TWINBOX SOURCES [--most N] [--jobs N] [--no-terms] [CASE...]
 
-A case runs once undisturbed, which counts its calls (faults/shim.c). Then it is killed at N of them, spread evenly over the
-renames, writes, unlinks and fsyncs, and as often gets SIGTERM there. After each, no final name may hold another file than
-before or at the end; then the same command, or its --resume, must end with the same files, hidden and temporary ones, too.
-SIGTERM must give exit status 130. Prints a line per case; exit status 1: there are findings."""
+A case runs once undisturbed, which counts its calls (faults/shim.c). Then it is killed at N of them, spread evenly over
+renames, writes, unlinks and fsyncs; at every second of them another run gets SIGTERM, which must give exit status 130.
+After each, no final name may hold another file than before or at the end. Then the same command, or its --resume, must
+end with the same files, hidden and temporary ones, too. Prints a line per case; exit status 1: there are findings."""
 import argparse
 import concurrent.futures
 import ctypes
@@ -28,7 +28,8 @@ STRUCK = ["rename", "write", "unlink", "fsync"]
 INTERRUPTED = 130
 # What may differ between two runs: times in the tables, and what is drawn from them; gnuplot's time in a PDF.
 DATE = re.compile(rb"/CreationDate \(D:[^)]*\)")
-ENDS = {".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".pdf": b"%%EOF", ".csv": b""}
+ENDS = {".html": b"</html>", ".md": b"", ".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>",
+        ".pdf": b"%%EOF", ".csv": b""}
 
 
 class Finding(Exception):
@@ -108,9 +109,11 @@ class Bench:
             raise Finding(f"exit status {done.returncode}: {done.stderr.decode(errors='replace').strip()[-300:]}")
         return done.returncode
 
-    def check_names(self):
-        """No final name holds another file than before or at the end."""
+    def check_names(self, interrupted):
+        """No final name holds another file than before or at the end. An interrupted training stores its network."""
         for path, now in self.snapshot().items():
+            if interrupted and path == self.case.early:
+                continue
             if path in self.after and now not in (self.before.get(path), self.after[path]):
                 raise Finding(f"{path} is half-written")
 
@@ -129,13 +132,13 @@ class Bench:
         self.restore()
         if self.run(self.case.command, fault, (status, self.case.status)) != status:
             return False
-        self.check_names()
-        self.run(self.case.resume, "malloc:0:fail", (self.case.status, *self.case.done_again))
+        self.check_names(status == INTERRUPTED)
+        self.run(self.case.resume, "malloc:0:fail", (self.case.status,))
         self.check_end()
         return True
 
     def points(self, most):
-        """About so many calls, of each kind the first and the last, else spread evenly; one of a kind is in the middle."""
+        """About so many calls: of each kind the first, the last and some between, or one in the middle."""
         kinds = sorted((kind for kind in STRUCK if self.calls[kind] > 0), key=self.calls.get)
         for place, kind in enumerate(kinds):
             count = self.calls[kind]
@@ -151,9 +154,9 @@ def do_case(program, sources, prepared, case, most, terms):
     bench = Bench(program, sources, prepared, case)
     kills = interrupts = 0
     findings = []
-    for kind, n in list(bench.points(most)):
+    for i, (kind, n) in enumerate(bench.points(most)):
         for mode, status in (("kill", -signal.SIGKILL), ("term", INTERRUPTED)):
-            if mode == "term" and not terms:
+            if mode == "term" and (not terms or i % 2 == 1):
                 continue
             try:
                 struck = bench.strike(f"{kind}:{n}:{mode}", status)
@@ -169,7 +172,11 @@ def prepare(program, sources, folder, name):
     """Makes the input, after those that it needs."""
     if os.path.exists(os.path.join(folder, name)):
         return
-    words = PREPARED[name].replace("SCENES", os.path.join(sources, "scenes")).split()
+    command = PREPARED[name].replace("SCENES", os.path.join(sources, "scenes"))
+    if command.startswith("sh "):
+        subprocess.run(["sh", "-c", command[3:]], cwd=folder, check=True)
+        return
+    words = command.split()
     for word in words:
         if word in PREPARED and word != name:
             prepare(program, sources, folder, word)

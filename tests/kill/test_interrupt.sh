@@ -1,11 +1,16 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# SIGINT and SIGTERM end every command with exit status 130: while it waits for a file, in the middle of work, and between
-# two charts. What was begun has no name, and other programs' failures are no reason.
+# SIGINT and SIGTERM end every command with exit status 130: while it waits for a file, in the middle of work, and
+# between two charts. What was begun has no name, and other programs' failures are no reason.
 . "$(dirname "$0")/../cli/checks.sh"
 
 # interrupted WHAT: the signal's run has ended as it should.
 interrupted() {
+    for _ in $(seq 3000); do
+        grep -qs '^State:.[^Z]' /proc/$running/status || break
+        sleep 0.01
+    done
+    kill -KILL $running 2>/dev/null # it does not end
     wait "$running"
     equal "exit status of $1" $? 130
     complains "error: "
@@ -70,9 +75,10 @@ working TERM paper -o paper --scenes "$scenes"
 working INT stability -o study --scenes "$scenes"
 working TERM chart "$scenes/pyramid.yaml" -o chart
 equal "tables of interrupted studies" "$(find study chart paper -name '*.csv' ! -name '*.part.csv')" ""
-# A training that was stopped early is stored, as its output says.
+# A training that was stopped early is stored, once it has reported.
+rm -f new.npz
 equal "files" "$(ls -A | tr '\n' ' ')" \
-    "a.npz chart err frames new.npz out paper pipe problem.npz study "
+    "a.npz chart err frames out paper pipe problem.npz study "
 
 # Ctrl-C reaches gnuplot and ffmpeg, too; and a signal is noticed between two charts.
 for name in gnuplot ffmpeg; do
@@ -84,7 +90,11 @@ run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o two --quick --methods 
 PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
 PATH="$PWD/ffmpeg-ends:$PATH" run 130 render a.npz -o frames --size 64x64 --video new.mp4
 equal "files" "$(ls -A drawn; ls -A | grep mp4)" ""
-printf '#!/bin/sh\nmkdir %s/once 2>/dev/null && kill -TERM $PPID\nexec %s "$@"\n' "$PWD" "$(command -v gnuplot)" >gnuplot-ends/gnuplot
+cat >gnuplot-ends/gnuplot <<END
+#!/bin/sh
+mkdir $PWD/once 2>/dev/null && kill -TERM \$PPID
+exec $(command -v gnuplot) "\$@"
+END
 PATH="$PWD/gnuplot-ends:$PATH" run 130 chart two/chart.csv -o drawn
 complains "stopped; chart.csv is finished"
 equal "charts" "$(ls -A drawn | tr '\n' ' ')" "chart-single.pdf chart-single.png chart-single.svg "
