@@ -46,7 +46,9 @@ static const VideoFormat formats[] = {
      true,
      0,
      0,
-     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"},
+     /* bitexact: the file has no random number. */
+     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p",
+      "-fflags", "+bitexact"},
      "-lag-in-frames",
      25},
     /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform and small. */

@@ -92,6 +92,21 @@ static void each_form_has_all_its_frames(void **state) {
     assert_nothing_left(temporary_folder);
 }
 
+static void the_same_frames_give_the_same_bytes(void **state) {
+    (void)state;
+    static const char *const endings[] = {"mp4", "webm", "gif"};
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        char paths[2][256];
+        for (int k = 0; k < 2; k++) {
+            snprintf(paths[k], sizeof paths[k], "%s/same%d.%s", temporary_folder, k, endings[i]);
+            const VideoOptions options = options_for(paths[k]);
+            assert_ok(video_encode(&options, NULL, &error), error);
+        }
+        assert_same_file(paths[0], paths[1]);
+    }
+}
+
 /* A GIF of a chosen rate has up to 50 frames per second, of the run's rate up to 25. */
 static void gifs_keep_a_chosen_rate(void **state) {
     (void)state;
@@ -343,12 +358,19 @@ static void a_reader_that_has_gone_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gifs_keep_a_chosen_rate),         cmocka_unit_test(gifs_are_small),
-        cmocka_unit_test(each_form_has_all_its_frames),    cmocka_unit_test(any_file_name_works),
-        cmocka_unit_test(a_damaged_frame_makes_no_video),  cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
-        cmocka_unit_test(missing_programs_are_told),       cmocka_unit_test(a_video_can_be_stopped),
-        cmocka_unit_test(a_killed_program_leaves_nothing), cmocka_unit_test(wrong_names_are_refused),
-        cmocka_unit_test(y4m_holds_every_frame),           cmocka_unit_test(a_reader_that_has_gone_is_told),
+        cmocka_unit_test(gifs_keep_a_chosen_rate),
+        cmocka_unit_test(gifs_are_small),
+        cmocka_unit_test(each_form_has_all_its_frames),
+        cmocka_unit_test(any_file_name_works),
+        cmocka_unit_test(the_same_frames_give_the_same_bytes),
+        cmocka_unit_test(a_damaged_frame_makes_no_video),
+        cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
+        cmocka_unit_test(missing_programs_are_told),
+        cmocka_unit_test(a_video_can_be_stopped),
+        cmocka_unit_test(a_killed_program_leaves_nothing),
+        cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(y4m_holds_every_frame),
+        cmocka_unit_test(a_reader_that_has_gone_is_told),
     };
     return cmocka_run_group_tests(tests, make, destroy);
 }
