@@ -136,6 +136,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
 bool command_chart(int argc, char **argv, Error *error) {
     Options options = {0};
     options.study.scenes = options.scenes;
+    options.study.draw = draw;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const LaunchChoice *launches = &options.study.launches;
     if (launches->bomb_x.count > 0 && (launches->table != NULL || launches->count > 0))
@@ -147,9 +148,8 @@ bool command_chart(int argc, char **argv, Error *error) {
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
-    bool ok = output_check_folder(options.study.folder, error) &&
-              speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
-    ok = ok && draw(&options.study, scenes, error);
+    const bool ok = output_check_folder(options.study.folder, error) &&
+                    speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
     progress_bar_end();
     return ok;
 }

@@ -46,10 +46,10 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 }
 
 bool command_paper(int argc, char **argv, Error *error) {
-    PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1};
+    PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1, .draw = draw_and_report};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_folder(options.folder, error)) return false;
-    const bool ok = paper_run(&options, progress_bar_begin("paper"), error) && draw_and_report(&options, error);
+    const bool ok = paper_run(&options, progress_bar_begin("paper"), error);
     progress_bar_end();
     return ok;
 }

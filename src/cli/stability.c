@@ -95,9 +95,12 @@ static bool make_clip(const Options *options, Error *error) {
     return ok;
 }
 
+static bool draw(const char *folder, Error *error) {
+    return stability_figures_write(folder, progress_bar_begin("maps"), error);
+}
+
 static bool study(const StabilityOptions *options, Error *error) {
     bool ok = stability_run(options, progress_bar_begin("stability"), error);
-    ok = ok && stability_figures_write(options->folder, progress_bar_begin("maps"), error);
     progress_bar_end();
     ok = ok && stability_print(options->folder, error);
     const NameList left_out = contenders_left_out(STUDY_STABILITY);
@@ -117,7 +120,7 @@ static bool check_options(const Options *options, Error *error) {
 }
 
 bool command_stability(int argc, char **argv, Error *error) {
-    Options options = {.study.scenes = installed_path("scenes")};
+    Options options = {.study = {.scenes = installed_path("scenes"), .draw = draw}};
     StabilityOwn own;
     list_names();
     if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;

@@ -10,9 +10,17 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* OpenMP calls exit() when it gets no memory or no thread. */
+static TemporaryFile *held;
+
+static void remove_held(void) {
+    if (held != NULL) temporary_remove_name(held);
+}
 
 /* False if the process that had the file removed its name while this one waited. */
 static bool has_name(const TemporaryFile *lock) {
@@ -40,13 +48,18 @@ bool file_reserve(FileReservation *reservation, const char *path, Error *error) 
     if (!file_path(lock->name, sizeof lock->name, error, "%.*s.twinbox-%016" PRIx64 ".tmp", (int)folder, path,
                    hash_xxh3(path + folder, strlen(path + folder))))
         return false;
-    if (take(lock, path, error)) return true;
-    if (lock->file >= 0) close(lock->file);
-    return false;
+    if (!take(lock, path, error)) {
+        if (lock->file >= 0) close(lock->file);
+        return false;
+    }
+    if (held == NULL) atexit(remove_held);
+    held = lock;
+    return true;
 }
 
 bool file_release(FileReservation *reservation, Error *error) {
     char name[PATH_MAX];
+    held = NULL;
     strcpy(name, reservation->lock.name);
     const bool done = temporary_remove_name(&reservation->lock) ||
                       error_system(error, name, "cannot be removed: %s", strerror(errno));

@@ -23,15 +23,23 @@ static void trace(const char *const *argv) {
     trace_line("started%s", line);
 }
 
+/* Each needs memory. */
+static int redirect(posix_spawn_file_actions_t *actions, int input, int output) {
+    int code = posix_spawn_file_actions_adddup2(actions, input, STDIN_FILENO);
+    if (code == 0) code = posix_spawn_file_actions_adddup2(actions, output, STDOUT_FILENO);
+    if (code == 0) code = posix_spawn_file_actions_adddup2(actions, output, STDERR_FILENO);
+    return code;
+}
+
 static bool spawn(Process *process, const char *const *argv, int child_input, Error *error) {
     posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, child_input, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(process->output), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(process->output), STDERR_FILENO);
-    /* posix_spawn's signature needs the cast; it does not write to the strings. */
-    int code = posix_spawnp(&process->pid, argv[0], &actions, NULL, (char *const *)argv, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    int code = posix_spawn_file_actions_init(&actions);
+    if (code == 0) {
+        code = redirect(&actions, child_input, fileno(process->output));
+        /* posix_spawn's signature needs the cast; it does not write to the strings. */
+        if (code == 0) code = posix_spawnp(&process->pid, argv[0], &actions, NULL, (char *const *)argv, environ);
+        posix_spawn_file_actions_destroy(&actions);
+    }
     process->missing = code == ENOENT;
     if (code != 0)
         return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
@@ -75,6 +83,7 @@ bool process_write(Process *process, const void *data, size_t size) {
     while (size > 0) {
         ssize_t sent = send(process->input, bytes, size, MSG_NOSIGNAL);
         if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0 && errno != EPIPE && errno != ECONNRESET) process->unsent = errno;
         if (sent <= 0) return false;
         bytes += sent;
         size -= (size_t)sent;
@@ -96,6 +105,8 @@ bool process_finish(Process *process, char *text, size_t size, Error *error) {
     size_t length = fread(text, 1, size - 1, process->output);
     text[length] = '\0';
     fclose(process->output);
+    if (process->unsent != 0)
+        return error_system(error, process->name, "cannot be given its input: %s", strerror(process->unsent));
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
     return error_system(error, process->name, "failed (%s %d)\n%s", WIFEXITED(status) ? "status" : "signal",
                         WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), text);

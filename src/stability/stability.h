@@ -19,9 +19,11 @@ typedef struct StabilityOptions {
     int name_count;      /* of studies and maps to run; 0: all */
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
+    /* Draws the tables in the folder; NULL: nothing is drawn. */
+    bool (*draw)(const char *folder, Error *error);
 } StabilityOptions;
 
-/* Runs the studies and maps and writes the tables. An interrupted run is resumed at the unfinished study or map. The
+/* Runs the studies and maps, writes the tables and draws. An interrupted run is resumed at the unfinished study or map. The
    tables do not depend on the number of threads. ERROR_INPUT also for an unknown name, ERROR_INTERRUPTED if
    progress stops the run. */
 bool stability_run(const StabilityOptions *options, const Progress *progress, Error *error);

@@ -162,8 +162,7 @@ static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
     if (!csv_table_path(path, run->options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < run->options->scene_count; i++)
         if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
-    return csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
-           part_file_remove(&run->part, error);
+    return csv_table_write(path, &chart_layout, run->rows, run->row_count, error);
 }
 
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,
@@ -173,7 +172,8 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
     if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
     bool ok = study_key(options, &key, error) && folder_reserve(options->folder, error) &&
-              part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error);
+              part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error) &&
+              options->draw(options, scenes, error) && part_file_remove(&run.part, error);
     part_file_close(&run.part);
     contenders_free(&run.contenders);
     free(run.rows);

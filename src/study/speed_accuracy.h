@@ -17,6 +17,8 @@ typedef struct StageProgress {
     void *context;
 } StageProgress;
 
+typedef struct SpeedAccuracyScene SpeedAccuracyScene;
+
 typedef struct SpeedAccuracyOptions {
     const char *const *scenes; /* paths of scene files */
     int scene_count;
@@ -24,18 +26,20 @@ typedef struct SpeedAccuracyOptions {
     LaunchChoice launches;
     bool quick;         /* fewer launches, settings, steps and repetitions */
     const char *folder; /* created if missing */
+    /* Draws folder/chart.csv; scenes[scene_count]. */
+    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, Error *error);
 } SpeedAccuracyOptions;
 
-typedef struct SpeedAccuracyScene {
+struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
     int contenders, launches;
     NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
     double frozen_residual;   /* m/s: largest residual of the reference solves of frozen steps */
     int solves, unconverged;  /* reference solves in closed loop since the study was started or resumed; those
                                  with a residual above SOLVE_CONVERGED (rollout.h) */
-} SpeedAccuracyScene;
+};
 
-/* Writes folder/chart.csv and fills scenes[scene_count]. Finished rows are saved in folder/chart-KEY.part.csv: an
+/* Writes folder/chart.csv, fills scenes[scene_count] and draws. Finished rows are saved in folder/chart-KEY.part.csv: an
    interrupted study is resumed if options, files and program are the same. ERROR_INPUT for an invalid option, scene or
    launch, ERROR_INTERRUPTED if progress stops the study. */
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,

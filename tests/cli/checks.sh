@@ -42,6 +42,15 @@ equal() {
     [ "$2" = "$3" ] || fail "$1: '$2', not '$3'"
 }
 
+# run_undrawn ARGUMENT...: gnuplot fails, and so does the command.
+run_undrawn() {
+    mkdir -p programs
+    printf '#!/bin/sh\n[ "$1" = --version ] || { echo "no space left" >&2; exit 1; }\n' >programs/gnuplot
+    chmod +x programs/gnuplot
+    PATH="$PWD/programs:$PATH" run 3 "$@"
+    complains "no space left"
+}
+
 finish() {
     echo "$checks checks, $failures failed"
     [ $checks -gt 0 ] && [ $failures -eq 0 ]

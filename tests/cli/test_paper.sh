@@ -69,9 +69,10 @@ html = open("quick/report.html").read()
 assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/)', html)
 PYTHON
 
-# A study continues from the parts that are done, to the same tables.
+# A study continues from the parts that are done, to the same tables; also when it could not be drawn.
 kept=$(echo part/parts-*)
 sed -i 's/^table1:baseline,pair,adam,0,[^,]*/table1:baseline,pair,adam,0,0.5/' "$kept/network-baseline"
+run_undrawn paper -o part --quick --scenes "$scenes"
 run 0 paper -o part --quick --scenes "$scenes"
 figures quick >figures.csv
 figures part | diff - figures.csv >difference

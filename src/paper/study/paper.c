@@ -195,7 +195,7 @@ bool paper_run(const PaperOptions *options, const Progress *progress, Error *err
     bool ok = begin(&run, error) && all_parts(&run, error);
     run.counting = false;
     ok = ok && all_parts(&run, error) && write_tables(&run, error);
-    ok = ok && study_parts_remove(&run.parts, error);
+    ok = ok && options->draw(options, error) && study_parts_remove(&run.parts, error);
     study_parts_close(&run.parts);
     paper_outlook_free(&run.outlook);
     paper_datasets_free(&run.datasets);

@@ -14,10 +14,12 @@ typedef struct PaperOptions {
     const char *folder; /* created if missing */
     bool quick;         /* fewer networks, launches, iterations */
     uint64_t seed;
+    /* Draws what the tables show, and writes the report. */
+    bool (*draw)(const struct PaperOptions *study, Error *error);
 } PaperOptions;
 
 /* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, study.csv and
-   folder/networks/NAME.npz. Finished parts are kept in folder/parts-KEY until the end: the same study, by the same
-   program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, ERROR_INTERRUPTED
+   folder/networks/NAME.npz, then draws. Finished parts are kept in folder/parts-KEY until that is done: the same study, by the
+   same program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, ERROR_INTERRUPTED
    if progress_report() stops it. */
 bool paper_run(const PaperOptions *options, const Progress *progress, Error *error);
