@@ -55,7 +55,8 @@ static bool report(void *context, double done, double total) {
 
 const Progress *progress_bar_begin(const char *what) {
     static const Progress progress = {report, NULL};
-    progress_bar_end();
+    progress_bar_clear();
+    bar.visible = false; /* signals stay held from one stage of a work to the next */
     bar.begun = clock_seconds();
     bar.shown = 0;
     time_left_begin(&bar.left);
