@@ -4,7 +4,7 @@
 #pragma once
 #include "common/progress.h"
 
-/* Ends the bar before it, and returns what the work reports to. */
+/* Replaces the bar before it, and returns what the work reports to. Signals that are held stay so. */
 const Progress *progress_bar_begin(const char *what);
 
 /* Removes the bar from the terminal so that a line can be printed; the next report shows it again. */
