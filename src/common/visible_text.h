@@ -10,5 +10,5 @@ typedef enum VisibleLines { VISIBLE_ONE_LINE, VISIBLE_LINES } VisibleLines;
    middle: "begin...end". Returns the length. */
 size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines);
 
-/* The first control character in the text (C0, DEL, C1 of Unicode, which includes ends of lines); 0 if there is none. */
+/* The first control character in the text (C0, DEL, C1 of Unicode, which includes ends of lines); 0 without one. */
 unsigned control_in_text(const char *text);

@@ -8,7 +8,7 @@
                    128: version 2 of .npy
      length, name  1 byte, then that many
      rank, shape   1 byte modulo 5, then 2 bytes for each dimension, little-endian; not of texts and own bytes
-     length, data  2 bytes, then that many; repeated up to the size of the array, zeros if there are none */
+     length, data  2 bytes, then that many; repeated up to the size of the array, zeros where nothing follows */
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
