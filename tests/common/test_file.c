@@ -3,8 +3,8 @@
 #include "testing.h"
 
 #include "common/file.h"
+#include "folder_entries.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -27,16 +27,6 @@ static void expect_file(const char *path, const char *text) {
     assert_int_equal(size, strlen(text));
     assert_string_equal(data, text);
     free(data);
-}
-
-static int count_entries(const char *folder) {
-    DIR *directory = opendir(folder);
-    assert_non_null(directory);
-    int count = 0;
-    for (struct dirent *entry; (entry = readdir(directory)) != NULL;)
-        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    closedir(directory);
-    return count;
 }
 
 static const char *fresh_folder(const char *name) {

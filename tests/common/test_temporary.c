@@ -5,8 +5,8 @@
 #include "testing.h"
 
 #include "common/file.h"
+#include "folder_entries.h"
 
-#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -76,16 +76,6 @@ static const char *below(const char *name) {
     return path;
 }
 
-static int count_entries(void) {
-    DIR *directory = opendir(folder);
-    assert_non_null(directory);
-    int count = 0;
-    for (struct dirent *entry; (entry = readdir(directory)) != NULL;)
-        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    closedir(directory);
-    return count;
-}
-
 static void expect_file(const char *path, const char *text) {
     Error error = {0};
     size_t size;
@@ -148,7 +138,7 @@ static int kill_at_each_call(Write *write_file) {
         assert_int_equal(write_in_child(write_file, "new", NO_CALL), 0);
         expect_file(below("file"), "new");
         unlink(below("file-created"));
-        assert_int_equal(count_entries(), 1);
+        assert_int_equal(count_entries(folder), 1);
     }
     return kills;
 }
@@ -203,7 +193,7 @@ static void files_in_use_stay(void **state) {
         assert_ok(file_write(below("file"), "new", 3, &error), error);
         assert_null(before_rename);
         expect_file(below("file"), "new");
-        assert_int_equal(count_entries(), 2);
+        assert_int_equal(count_entries(folder), 2);
     }
     all_have_names = false;
 }
@@ -217,7 +207,7 @@ static void only_such_names_are_removed(void **state) {
     assert_int_equal(mkdir(below(".twinbox-folder.tmp"), 0777), 0);
     assert_int_equal(symlink("file", below(".twinbox-link.tmp")), 0);
     assert_int_equal(write_in_child(replace_file, "new", NO_CALL), 0);
-    assert_int_equal(count_entries(), 5);
+    assert_int_equal(count_entries(folder), 5);
     assert_int_not_equal(access(below(".twinbox-1-2-3.tmp"), F_OK), 0);
 }
 
