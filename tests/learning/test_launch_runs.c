@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "learning/launch_runs.h"
+#include "simulate/simulate.h"
+
+#include <math.h>
+
+#define STACK SOURCE_DIR "/scenes/stack.yaml"
+
+/* Frames before the bomb have none. */
+static void poses_are_those_of_single_runs(void **state) {
+    (void)state;
+    enum { LAUNCHES = 3 };
+    Error error = {0};
+    Method method;
+    Launch launches[LAUNCHES];
+    LaunchRuns runs;
+    Scene *scene = scene_read(STACK, &error);
+    assert_ok(scene != NULL, error);
+    scene->frames = 60;
+    assert_ok(method_parse(&method, "engine", &error) && launches_for_training(scene, LAUNCHES, launches, &error),
+              error);
+    assert_ok(launch_runs_record(&runs, scene, &method, launches, LAUNCHES, NULL, &error), error);
+    for (int i = 0; i < LAUNCHES; i++) {
+        const Scene launched = launch_scene(scene, &launches[i]);
+        Trajectory *run = simulate(&launched, &method, NULL, &error);
+        assert_ok(run != NULL, error);
+        assert_int_equal(runs.bodies, run->bodies);
+        assert_int_equal(runs.frames, run->frames);
+        for (int frame = 0; frame < run->frames; frame++)
+            for (int body = 0; body < run->bodies; body++) {
+                const BodyPose pose = launch_runs_frame(&runs, i, frame)[body];
+                const int at = frame * run->bodies + body;
+                assert_true(isfinite(pose.angle) == trajectory_has(run, frame, body));
+                if (!isfinite(pose.angle)) continue;
+                assert_memory_equal(&pose.position, &run->position[at], sizeof pose.position);
+                assert_memory_equal(&pose.angle, &run->angle[at], sizeof pose.angle);
+            }
+        trajectory_destroy(run);
+    }
+    launch_runs_free(&runs);
+    scene_destroy(scene);
+}
+
+static void too_many_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Method method;
+    LaunchRuns runs;
+    Scene *scene = scene_read(STACK, &error);
+    assert_ok(scene != NULL && method_parse(&method, "engine", &error), error);
+    const Launch own = launch_of(scene);
+    scene->frames = 1000000;
+    assert_false(launch_runs_record(&runs, scene, &method, &own, 1000, NULL, &error));
+    assert_error(error, ERROR_INPUT, "at most 1024 MiB are allowed");
+    launch_runs_free(&runs);
+    scene->bomb.present = false;
+    error = (Error){0};
+    assert_false(launch_runs_record(&runs, scene, &method, &own, 1, NULL, &error));
+    assert_error(error, ERROR_INPUT, "the scene has no bomb");
+    launch_runs_free(&runs);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(poses_are_those_of_single_runs),
+        cmocka_unit_test(too_many_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
