@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a relation network sees does not depend on the numbers of the bodies, or on the tilt of the scene. */
+#include "relation_networks.h"
+
+enum { BODIES = 12, PAIRS = 16 };
+
+typedef struct Problem {
+    ProblemBody bodies[BODIES];
+    ContactPoint contacts[2 * PAIRS];
+    BodyVelocity engine[BODIES];
+    ContactProblem problem;
+} Problem;
+
+static Vec2 any(uint32_t *seed, float size) {
+    const float x = uniform(seed, -size, size), y = uniform(seed, -size, size);
+    return vec2(x, y);
+}
+
+/* Body 0 is the ground; each other body touches the one before, and some the ground. */
+static void fill(Problem *p, uint32_t seed) {
+    *p = (Problem){.problem = {.body_count = BODIES, .bomb = -1, .bodies = p->bodies, .contacts = p->contacts}};
+    for (int i = 0; i < BODIES; i++) {
+        const float inverse = i == 0 ? 0 : uniform(&seed, 0.1f, 1);
+        p->bodies[i] = (ProblemBody){.position = any(&seed, 1),
+                                     .angle = uniform(&seed, -0.3f, 0.3f),
+                                     .size = {i == 0 ? 100 : 1, i == 0 ? 20 : 1},
+                                     .inv_mass = inverse,
+                                     .inv_inertia = 6 * inverse,
+                                     .velocity = i == 0 ? vec2(0, 0) : any(&seed, 5),
+                                     .angular_velocity = i == 0 ? 0 : uniform(&seed, -3, 3)};
+        p->engine[i] = i == 0 ? (BodyVelocity){{0, 0}, 0} : (BodyVelocity){any(&seed, 5), uniform(&seed, -3, 3)};
+    }
+    for (int a = 0; a < BODIES; a++)
+        for (int b = a + 1; b < BODIES; b++)
+            for (int k = 0; k < 2 && (b == a + 1 || (a == 0 && b % 3 == 0)); k++)
+                p->contacts[p->problem.contact_count++] = (ContactPoint){.a = a,
+                                                                         .b = b,
+                                                                         .normal = {0.6f, 0.8f},
+                                                                         .arm_a = any(&seed, 0.5f),
+                                                                         .arm_b = any(&seed, 0.5f),
+                                                                         .friction = 0.2f,
+                                                                         .bias = uniform(&seed, 0, 0.1f),
+                                                                         .warm_normal = uniform(&seed, 0, 1)};
+}
+
+static Vec2 turned(Vec2 v, float angle) { return mat22_multiply(mat22_rotation(angle), v); }
+
+static void turn(Problem *p, float angle) {
+    for (int i = 0; i < BODIES; i++) {
+        ProblemBody *body = &p->bodies[i];
+        body->angle += angle;
+        body->velocity = turned(body->velocity, angle);
+        p->engine[i].linear = turned(p->engine[i].linear, angle);
+    }
+    for (int i = 0; i < p->problem.contact_count; i++) {
+        ContactPoint *contact = &p->contacts[i];
+        contact->normal = turned(contact->normal, angle);
+        contact->arm_a = turned(contact->arm_a, angle);
+        contact->arm_b = turned(contact->arm_b, angle);
+    }
+}
+
+/* Body i becomes body BODIES - 1 - i: the roles of a and b are exchanged, and the order of contacts reversed. */
+static void renumber(Problem *to, const Problem *from) {
+    *to = *from;
+    to->problem.bodies = to->bodies;
+    to->problem.contacts = to->contacts;
+    for (int i = 0; i < BODIES; i++) {
+        to->bodies[BODIES - 1 - i] = from->bodies[i];
+        to->engine[BODIES - 1 - i] = from->engine[i];
+    }
+    const int count = from->problem.contact_count;
+    for (int i = 0; i < count; i++) {
+        const ContactPoint *contact = &from->contacts[i];
+        ContactPoint *other = &to->contacts[count - 1 - i];
+        *other = *contact;
+        other->a = BODIES - 1 - contact->b;
+        other->b = BODIES - 1 - contact->a;
+        other->normal = vec2_negate(contact->normal);
+        other->arm_a = contact->arm_b;
+        other->arm_b = contact->arm_a;
+    }
+}
+
+/* Velocities of all bodies, the answers added. */
+static void answer(const Problem *p, const RelationNetwork *network, RelationForm form, BodyVelocity *velocities) {
+    RelationView view = {0};
+    RelationAnswers answers = {0};
+    for (int i = 0; i < BODIES; i++) velocities[i] = p->engine[i];
+    assert_true(relation_view_make(&view, &p->problem, form == RELATION_ALONE ? NULL : p->engine, form));
+    assert_int_equal(view.body_count, BODIES - 1);
+    assert_true(relation_answer(&answers, network, &view, false));
+    for (int b = 0; b < view.body_count; b++) {
+        assert_true(answers.known[b]);
+        velocities[view.bodies[b].body] = relation_corrected(&view.bodies[b], answers.outputs + b * RELATION_OUTPUTS);
+    }
+    relation_view_free(&view);
+    relation_answers_free(&answers);
+}
+
+static void numbers_of_bodies_do_not_matter(void **state) {
+    (void)state;
+    static Problem problem, other;
+    uint32_t seed = 3;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.4f);
+    /* Not shuffled: whose change a body is shown depends on the numbers. */
+    for (RelationForm form = RELATION_ENGINE; form <= RELATION_ALONE; form++) {
+        BodyVelocity first[BODIES], second[BODIES];
+        fill(&problem, 7);
+        renumber(&other, &problem);
+        answer(&problem, &network, form, first);
+        answer(&other, &network, form, second);
+        for (int i = 0; i < BODIES; i++) {
+            assert_near(first[i].linear.x, second[BODIES - 1 - i].linear.x, 1e-4);
+            assert_near(first[i].linear.y, second[BODIES - 1 - i].linear.y, 1e-4);
+            assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
+        }
+    }
+    relation_network_destroy(&network);
+}
+
+/* Quarter turns of the world leave each box's frame where it was, so a box must be seen from a frame that turns with
+   it. */
+static void answers_turn_with_the_scene(void **state) {
+    (void)state;
+    static Problem problem;
+    uint32_t seed = 4;
+    const float angle = 0.4f;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.4f);
+    network.body_low[0] = -FLT_MAX;
+    for (int h = 0; h < RELATION_HIDDEN; h++) /* the tilt itself is an input */
+        network.object->weights[0][h * RELATION_OBJECT_INPUTS] = 0;
+    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        BodyVelocity before[BODIES], after[BODIES];
+        fill(&problem, 9);
+        answer(&problem, &network, form, before);
+        turn(&problem, angle);
+        answer(&problem, &network, form, after);
+        for (int i = 1; i < BODIES; i++) {
+            const Vec2 expected = turned(before[i].linear, angle);
+            assert_near(after[i].linear.x, expected.x, 2e-4);
+            assert_near(after[i].linear.y, expected.y, 2e-4);
+            assert_near(after[i].angular, before[i].angular, 5e-4);
+        }
+    }
+    relation_network_destroy(&network);
+}
+
+static void answers_reach_their_target(void **state) {
+    (void)state;
+    static Problem problem;
+    RelationView view = {0};
+    fill(&problem, 1);
+    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        assert_true(relation_view_make(&view, &problem.problem, problem.engine, form));
+        for (int b = 0; b < view.body_count; b++) {
+            const RelationBody *body = &view.bodies[b];
+            double target[RELATION_OUTPUTS];
+            float outputs[RELATION_OUTPUTS];
+            relation_target(body, 1, -2, 3, target);
+            for (int o = 0; o < RELATION_OUTPUTS; o++) outputs[o] = (float)(target[o] / (double)body->scale);
+            const BodyVelocity velocity = relation_corrected(body, outputs);
+            assert_near(velocity.linear.x, 1, 1e-5);
+            assert_near(velocity.linear.y, -2, 1e-5);
+            assert_near(velocity.angular, 3, 1e-4);
+        }
+    }
+    relation_view_free(&view);
+}
+
+/* Each moving body is shown the change of another one, and all changes are shown. */
+static void shuffling_permutes_changes(void **state) {
+    (void)state;
+    static Problem problem;
+    RelationView view = {0};
+    int same = 0, found = 0;
+    fill(&problem, 2);
+    assert_true(relation_view_make(&view, &problem.problem, problem.engine, RELATION_SHUFFLED));
+    for (int b = 0; b < view.body_count; b++) {
+        const int to = view.bodies[b].body;
+        const Vec2 change = vec2_sub(view.bodies[b].base.linear, problem.bodies[to].velocity);
+        for (int i = 1; i < BODIES; i++) {
+            const Vec2 off = vec2_sub(change, vec2_sub(problem.engine[i].linear, problem.bodies[i].velocity));
+            if (vec2_dot(off, off) > 1e-8f) continue;
+            found++;
+            same += i == to;
+        }
+    }
+    assert_int_equal(found, BODIES - 1);
+    assert_int_equal(same, 0);
+    relation_view_free(&view);
+}
+
+/* What touches nothing is not seen; a problem without contacts has no receivers. */
+static void an_empty_problem_is_seen(void **state) {
+    (void)state;
+    static Problem problem;
+    RelationView view = {0};
+    RelationAnswers answers = {0};
+    RelationNetwork network;
+    uint32_t seed = 1;
+    fill(&problem, 2);
+    make_relation_network(&network, &seed, 1);
+    problem.problem.contact_count = 0;
+    assert_true(relation_view_make(&view, &problem.problem, problem.engine, RELATION_ENGINE));
+    assert_int_equal(view.body_count, 0);
+    assert_true(relation_answer(&answers, &network, &view, true));
+    relation_view_free(&view);
+    relation_answers_free(&answers);
+    relation_network_destroy(&network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_of_bodies_do_not_matter), cmocka_unit_test(answers_turn_with_the_scene),
+        cmocka_unit_test(answers_reach_their_target), cmocka_unit_test(shuffling_permutes_changes),
+        cmocka_unit_test(an_empty_problem_is_seen)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
