@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tabulation_training/entry_fit.h"
+
+#include "solvers/hybrid.h"
+#include "sweeps/contact_velocity.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* An ellipsoid grows by steps of at most this: farther points are accurate by chance. m/s; 2 are 17 cm of the bomb's
+   place. */
+static const float step_max = 2;
+/* Share of the neighbours' mean squared distance that is added to the normal equations: neighbours in one direction leave
+   them singular. */
+static const double ridge = 1e-4;
+
+float velocity_error(const ContactProblem *problem, const BodyVelocity *a, const BodyVelocity *b) {
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        if (problem->bodies[i].inv_mass == 0) continue;
+        const double x = (double)(a[i].linear.x - b[i].linear.x), y = (double)(a[i].linear.y - b[i].linear.y),
+                     spin = (double)(a[i].angular - b[i].angular);
+        sum += x * x + y * y + spin * spin / 6;
+        count++;
+    }
+    return count > 0 ? (float)sqrt(sum / count) : 0;
+}
+
+/* An entry in the making. */
+typedef struct Fit {
+    int count; /* neighbours */
+    int32_t near[TABULATION_NEAR];
+    float from[TABULATION_NEAR][TABULATION_KEY_MAX]; /* x_j - x0 */
+    float distance[TABULATION_NEAR];                 /* its squared length */
+    float weights[TABULATION_NEAR * TABULATION_KEY_MAX];
+    double images[TABULATION_NEAR][TABULATION_NEAR]; /* products of the velocity changes that P_j - P0 make */
+    float metric[TABULATION_KEY_MAX * (TABULATION_KEY_MAX + 1) / 2];
+} Fit;
+
+static void insert_neighbour(Fit *fit, const Tabulation *memory, int entry, const float *key) {
+    const float *other = memory->keys + (size_t)entry * (size_t)memory->key_size;
+    float from[TABULATION_KEY_MAX], distance = 0;
+    for (int i = 0; i < memory->key_size; i++) {
+        from[i] = other[i] - key[i];
+        distance += from[i] * from[i];
+    }
+    int at = fit->count < TABULATION_NEAR ? fit->count++ : TABULATION_NEAR;
+    if (at == TABULATION_NEAR && !(distance < fit->distance[--at])) return;
+    for (; at > 0 && distance < fit->distance[at - 1]; at--) {
+        fit->near[at] = fit->near[at - 1];
+        fit->distance[at] = fit->distance[at - 1];
+        for (int i = 0; i < memory->key_size; i++) fit->from[at][i] = fit->from[at - 1][i];
+    }
+    fit->near[at] = entry;
+    fit->distance[at] = distance;
+    for (int i = 0; i < memory->key_size; i++) fit->from[at][i] = from[i];
+}
+
+/* Within 2 step_max: between them both ellipsoids can reach. */
+static void find_neighbours(Fit *fit, const Tabulation *memory, const TabulationQuery *query) {
+    fit->count = 0;
+    int count;
+    const int32_t *entries = tabulation_about(memory, query, 2 * step_max, &count);
+    for (int i = 0; i < count; i++) insert_neighbour(fit, memory, entries[i], query->key);
+    while (fit->count > 0 && fit->distance[fit->count - 1] > 4 * step_max * step_max) fit->count--;
+}
+
+/* Inverts a symmetric positive definite matrix in place, by Gauss and Jordan. */
+static void invert(double matrix[TABULATION_NEAR][TABULATION_NEAR], int count) {
+    for (int p = 0; p < count; p++) {
+        const double pivot = 1 / matrix[p][p];
+        matrix[p][p] = 1;
+        for (int j = 0; j < count; j++) matrix[p][j] *= pivot;
+        for (int i = 0; i < count; i++) {
+            if (i == p) continue;
+            const double factor = matrix[i][p];
+            matrix[i][p] = 0;
+            for (int j = 0; j < count; j++) matrix[i][j] -= factor * matrix[p][j];
+        }
+    }
+}
+
+/* Rows of (D^T D + ridge)^-1 D^T, with the neighbours' x_j - x0 as columns of D. */
+static void fit_weights(Fit *fit, int key_size) {
+    double normal[TABULATION_NEAR][TABULATION_NEAR], trace = 0;
+    for (int n = 0; n < fit->count; n++)
+        for (int m = 0; m < fit->count; m++) {
+            normal[n][m] = 0;
+            for (int i = 0; i < key_size; i++) normal[n][m] += (double)fit->from[n][i] * (double)fit->from[m][i];
+            trace += n == m ? normal[n][n] : 0;
+        }
+    for (int n = 0; n < fit->count; n++) normal[n][n] += ridge * trace / fit->count + 1e-12;
+    invert(normal, fit->count);
+    for (int n = 0; n < TABULATION_NEAR; n++)
+        for (int i = 0; i < key_size; i++) {
+            double sum = 0;
+            for (int m = 0; n < fit->count && m < fit->count; m++) sum += normal[n][m] * (double)fit->from[m][i];
+            fit->weights[n * key_size + i] = (float)sum;
+        }
+}
+
+/* The velocity changes of P_j - P0; velocities[body_count] are 0 before. */
+static void push_difference(const Tabulation *memory, int entry, const SolvedStep *step, BodyVelocity *velocities) {
+    const ContactImpulse *other = memory->impulses + memory->entry_begin[entry];
+    for (int i = 0; i < step->problem->contact_count; i++) {
+        const ContactImpulse own = step->solution->impulses[i];
+        const ContactImpulse difference = {other[i].normal - own.normal, other[i].tangent - own.tangent};
+        contact_push(velocities, &step->problem->contacts[i], step->problem->bodies, difference);
+    }
+}
+
+static bool find_images(Fit *fit, const Tabulation *memory, const SolvedStep *step) {
+    const size_t bodies = (size_t)step->problem->body_count;
+    BodyVelocity *changes = calloc(TABULATION_NEAR * bodies, sizeof *changes);
+    if (changes == NULL) return false;
+    int moving = 0;
+    for (size_t i = 0; i < bodies; i++) moving += step->problem->bodies[i].inv_mass > 0;
+    for (int n = 0; n < fit->count; n++) push_difference(memory, fit->near[n], step, changes + (size_t)n * bodies);
+    for (int n = 0; n < fit->count; n++)
+        for (int m = 0; m < fit->count; m++) {
+            double sum = 0;
+            for (size_t i = 0; i < bodies; i++) {
+                const BodyVelocity *a = &changes[(size_t)n * bodies + i], *b = &changes[(size_t)m * bodies + i];
+                sum += (double)(a->linear.x * b->linear.x + a->linear.y * b->linear.y + a->angular * b->angular / 6);
+            }
+            fit->images[n][m] = moving > 0 ? sum / moving : 0;
+        }
+    free(changes);
+    return true;
+}
+
+/* M = A^T A / tolerance^2 + 1 / tolerance^2, A here of velocities: inside the ellipsoid the linear term is at most the
+   tolerance, as in Pope (1997), and in directions that A does not know bodies are taken to follow the state one to
+   one. */
+static void make_metric(Fit *fit, const Tabulation *memory) {
+    const int size = memory->key_size;
+    const double unit = 1 / ((double)memory->tolerance * (double)memory->tolerance);
+    float *metric = fit->metric;
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = i == j ? 1 : 0;
+            for (int n = 0; n < fit->count; n++)
+                for (int m = 0; m < fit->count; m++)
+                    sum += (double)fit->weights[n * size + i] * fit->images[n][m] * (double)fit->weights[m * size + j];
+            *metric++ = (float)(unit * sum);
+        }
+}
+
+static bool add(Tabulation *memory, const SolvedStep *step, Error *error) {
+    Fit fit;
+    find_neighbours(&fit, memory, &step->query);
+    for (int n = fit.count; n < TABULATION_NEAR; n++) fit.near[n] = -1;
+    fit_weights(&fit, memory->key_size);
+    if (!find_images(&fit, memory, step)) return error_memory(error, "hybrid");
+    make_metric(&fit, memory);
+    const TabulationEntry entry = {step->solution->impulses, fit.near, fit.weights, fit.metric,
+                                   memory->tolerance * memory->tolerance};
+    return tabulation_add(memory, &step->query, &entry, error);
+}
+
+static float error_of(const Tabulation *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
+    hybrid_answer(memory, entry, step->query.key, step->problem, answer);
+    return velocity_error(step->problem, answer->velocities, step->solution->velocities);
+}
+
+static bool is_near(const Tabulation *memory, int entry, const float *key) {
+    const float *centre = memory->keys + (size_t)entry * (size_t)memory->key_size;
+    float sum = 0;
+    for (int i = 0; i < memory->key_size; i++) sum += (key[i] - centre[i]) * (key[i] - centre[i]);
+    return sum <= step_max * step_max;
+}
+
+bool entry_learn(Tabulation *memory, const SolvedStep *step, size_t limit, ContactSolution *answer, Lesson *lesson,
+                 Error *error) {
+    const int entry = tabulation_nearest(memory, &step->query, step_max);
+    *lesson = LESSON_KNOWN;
+    if (entry >= 0 && tabulation_distance(memory, entry, step->query.key) <= 1) return true;
+    if (entry >= 0 && is_near(memory, entry, step->query.key) &&
+        error_of(memory, entry, step, answer) <= memory->tolerance) {
+        tabulation_stretch(memory, entry, step->query.key);
+        *lesson = LESSON_GROWN;
+        return true;
+    }
+    *lesson = LESSON_FULL;
+    if (memory->entry_count == TABULATION_ENTRIES_MAX || step->query.contacts > TABULATION_CONTACTS_MAX ||
+        tabulation_bytes(memory) + tabulation_entry_bytes(memory, step->query.contacts) > limit)
+        return true;
+    *lesson = LESSON_ADDED;
+    return add(memory, step, error);
+}
+
+float entry_check(Tabulation *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
+    const float wrong = error_of(memory, entry, step, answer);
+    if (!(wrong <= memory->tolerance)) tabulation_stretch(memory, entry, step->query.key);
+    return wrong;
+}
