@@ -3,15 +3,8 @@
    includes this. Not under a sanitizer, which has its own; then none fails. allocations.h: only a program's own. */
 #pragma once
 #include "failing_allocations.h"
+#include "sanitized.h"
 #include "testing.h"
-
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define SANITIZED
-#elif defined __has_feature
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define SANITIZED
-#endif
-#endif
 
 #ifndef SANITIZED
 void *__libc_malloc(size_t size);

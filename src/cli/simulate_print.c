@@ -17,7 +17,7 @@ enum { FALLBACKS = 4 };
 static void list_fallbacks(const NetworkFallbacks *fallbacks, Fallback list[FALLBACKS]) {
     const Fallback all[FALLBACKS] = {
         {"by_sweeps", "steps solved by sweeps instead", fallbacks->by_sweeps},
-        {"beyond_training", "steps without the network, as they are unlike its training", fallbacks->beyond_training},
+        {"beyond_training", "steps unlike the training of the network", fallbacks->beyond_training},
         {"not_finite", "outputs of the network that were NaN, infinite or out of bounds", fallbacks->not_finite},
         {"outside_cone", "impulses of the network outside the friction cone", fallbacks->outside_cone}};
     for (int i = 0; i < FALLBACKS; i++) list[i] = all[i];

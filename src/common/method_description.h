@@ -60,6 +60,9 @@ typedef struct MethodDescription {
     MethodRole role;
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
+    bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
+                            pictures only, so that its time is that between step_solving_begins() and step_solving_ends()
+                            (simulate/stepping.h), not the whole step's */
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same

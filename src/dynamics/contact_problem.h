@@ -60,7 +60,8 @@ typedef struct ContactImpulse {
 typedef struct NetworkFallbacks {
     int not_finite;      /* NaN, infinite or out of bounds; discarded */
     int outside_cone;    /* impulses that were clamped to the friction cone */
-    int beyond_training; /* steps without the network, because the gate found them unlike its training data */
+    int beyond_training; /* steps unlike the training data: taken without the network, or with inputs or components that
+                            were clamped to its range (the method's file says which) */
     int by_sweeps;       /* steps that sweeps solved, because the residual of interior-point steps stayed high or the
                             problem is too large for them */
 } NetworkFallbacks;
@@ -77,7 +78,8 @@ typedef struct ContactSolution {
     BodyVelocity *velocities; /* [body_count] */
     ContactImpulse *impulses; /* [contact_count]; zeros from a method without impulses */
     /* N s: momentum that the method created: the sum over pairs of moving bodies of |ma dva + mb dvb|; 0 for a method
-       that applies impulses; of avbd the sum over bodies of the momentum that its impulses do not account for */
+       that applies impulses; of avbd and sain the sum over bodies of the momentum that impulses do not account
+       for; of gns that which bodies without a contact gained beyond gravity's */
     float momentum_error;
     NetworkFallbacks fallbacks; /* zeros for most methods */
 } ContactSolution;

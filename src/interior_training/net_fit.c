@@ -2,7 +2,8 @@
 #include "interior_training/net_fit.h"
 
 #include "common/array.h"
-#include "interior_training/split_mix.h"
+#include "common/split_mix.h"
+#include "learning/adam.h"
 
 #include <math.h>
 #include <omp.h>
@@ -13,8 +14,9 @@ enum { BATCH = 64 };
 /* The residual decides after which iteration a solve stops, so the answers of all but the first count. The logarithm
    follows the median; the tail term follows the mean, which a few hits dominate. */
 static const InteriorTask task = {.first = 2, .last = 7, .floor = 0.003, .tail = 0.5};
-/* Of Adam. The slopes of one problem are limited, as an iteration can amplify them without bound. */
-static const double decay = 0.9, square_decay = 0.99, slope_max = 2;
+static const double square_decay = 0.99; /* of Adam */
+/* The slopes of one problem are limited, as an iteration can amplify them without bound. */
+static const double slope_max = 2;
 static const double error_max = 1e3; /* m/s: what a failed solve counts */
 
 void net_fit_free(NetFit *fit) {
@@ -67,25 +69,14 @@ static bool do_batch(NetFit *fit, const double *weights, const ImpactProblems *p
     return ok;
 }
 
-/* Not pow(): its last bit depends on the maths library. */
-static double power(double x, int n) {
-    double product = 1;
-    for (int i = 0; i < n; i++) product *= x;
-    return product;
-}
-
 static void step(NetFit *fit, NetState *state, int count, double rate) {
+    double *sum = fit->slopes;
+    for (int i = 1; i < count; i++)
+        for (int k = 0; k < INTERIOR_NET_WEIGHTS; k++) sum[k] += fit->slopes[(ptrdiff_t)INTERIOR_NET_WEIGHTS * i + k];
+    for (int k = 0; k < INTERIOR_NET_WEIGHTS; k++) sum[k] /= count;
+    Adam adam = adam_over(state->weights, state->mean, state->square, INTERIOR_NET_WEIGHTS, state->steps, square_decay);
+    adam_step(&adam, sum, rate);
     state->steps++;
-    const double over_mean = 1 / (1 - power(decay, state->steps)),
-                 over_square = 1 / (1 - power(square_decay, state->steps));
-    for (int k = 0; k < INTERIOR_NET_WEIGHTS; k++) {
-        double sum = 0;
-        for (int i = 0; i < count; i++) sum += fit->slopes[(ptrdiff_t)INTERIOR_NET_WEIGHTS * i + k];
-        const double slope = sum / count;
-        state->mean[k] = decay * state->mean[k] + (1 - decay) * slope;
-        state->square[k] = square_decay * state->square[k] + (1 - square_decay) * slope * slope;
-        state->weights[k] -= rate * state->mean[k] * over_mean / (sqrt(state->square[k] * over_square) + 1e-8);
-    }
 }
 
 bool net_fit_epoch(NetFit *fit, NetState *state, const ImpactProblems *problems, uint64_t seed, double rate,

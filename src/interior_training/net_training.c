@@ -2,7 +2,7 @@
 #include "interior_training/net_training.h"
 
 #include "interior_training/recording.h"
-#include "interior_training/split_mix.h"
+#include "common/split_mix.h"
 #include "solvers/interior_net.h"
 #include "solvers/solvers.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/random_scene.h"
 
-#include "interior_training/split_mix.h"
+#include "common/split_mix.h"
 
 #include <assert.h>
 #include <math.h>

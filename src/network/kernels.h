@@ -15,6 +15,7 @@ typedef struct Kernels {
     /* network_gradient.h */
     void (*forward)(NetworkBlock *block, const double *parameters);
     void (*backward)(NetworkBlock *block, const double *parameters);
+    void (*backward_to_inputs)(const NetworkBlock *block, const double *parameters, double *slopes);
     void (*add_gradient)(const NetworkBlock *block, double *gradient);
     double (*dot)(const double *a, const double *b);
 } Kernels;

@@ -166,6 +166,10 @@ static void backward(NetworkBlock *block, const double *parameters) {
     }
 }
 
+static void backward_to_inputs(const NetworkBlock *block, const double *parameters, double *slopes) {
+    layer_backward(parameters, block->shape->widths[0], block->shape->widths[1], block->deltas[0], slopes);
+}
+
 static void add_gradient(const NetworkBlock *block, double *gradient) {
     const Network *shape = block->shape;
     for (int l = 0; l < shape->layers; l++) {
@@ -177,4 +181,4 @@ static void add_gradient(const NetworkBlock *block, double *gradient) {
     }
 }
 
-const Kernels KERNELS = {KERNELS_NAME, predict, forward, backward, add_gradient, dot};
+const Kernels KERNELS = {KERNELS_NAME, predict, forward, backward, backward_to_inputs, add_gradient, dot};

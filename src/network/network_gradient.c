@@ -36,6 +36,10 @@ void network_forward(NetworkBlock *block, const double *parameters) { kernels_be
 
 void network_backward(NetworkBlock *block, const double *parameters) { kernels_best()->backward(block, parameters); }
 
+void network_backward_to_inputs(const NetworkBlock *block, const double *parameters, double *slopes) {
+    kernels_best()->backward_to_inputs(block, parameters, slopes);
+}
+
 void network_add_gradient(const NetworkBlock *block, double *gradient) {
     kernels_best()->add_gradient(block, gradient);
 }

@@ -31,6 +31,9 @@ void network_forward(NetworkBlock *block, const double *parameters);
    the deltas of all layers. */
 void network_backward(NetworkBlock *block, const double *parameters);
 
+/* After a backward pass: fills slopes[widths[0], BLOCK_ROWS], d loss / d (normalised) inputs. */
+void network_backward_to_inputs(const NetworkBlock *block, const double *parameters, double *slopes);
+
 /* After a backward pass: adds d loss / d parameters, summed over the rows, to gradient. Unused rows must have d loss /
    d output = 0. */
 void network_add_gradient(const NetworkBlock *block, double *gradient);

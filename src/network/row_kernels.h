@@ -13,6 +13,8 @@ typedef struct RowKernels {
     /* sums[width] += (numbers[i] * unit) * row index[i] for each i < count; index NULL: row i. In four partial sums,
        one for each i modulo 4 in rising order, the first starting from sums; then (0 + 1) + (2 + 3). */
     void (*add)(float *sums, const PackedRows *rows, const int32_t *index, const float *numbers, int count);
+    /* sums[width] += numbers[i] * row i of rows[count, width], in float, in the order of `add`. */
+    void (*combine)(float *sums, const float *rows, int width, const float *numbers, int count);
     /* products[2 i], [2 i + 1]: the dot products of rows 2 index[i] and 2 index[i] + 1 with vector[width], each in
        ROW_LANES partial sums that are added in halves, times the row's unit. */
     void (*multiply)(float *products, const PackedRows *rows, const int32_t *index, const float *vector, int count);

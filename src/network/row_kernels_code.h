@@ -66,6 +66,23 @@ static void add(float *sums, const PackedRows *rows, const int32_t *index, const
     for (; at < rows->width; at += ROW_LANES) add_columns(sums, rows, index, numbers, count, at, LANE_VECTORS);
 }
 
+static void combine(float *sums, const float *rows, int width, const float *numbers, int count) {
+    for (int at = 0; at < width; at += ROW_LANES) {
+        Floats held[CHAINS][LANE_VECTORS] = {{{0}}};
+        memcpy(held[0], sums + at, sizeof held[0]);
+        int i = 0;
+        for (; i + CHAINS <= count; i += CHAINS)
+            for (int c = 0; c < CHAINS; c++)
+                for (int v = 0; v < LANE_VECTORS; v++)
+                    held[c][v] += numbers[i + c] * ((const Floats *)(rows + (int64_t)(i + c) * width + at))[v];
+        for (int c = 0; i + c < count; c++)
+            for (int v = 0; v < LANE_VECTORS; v++)
+                held[c][v] += numbers[i + c] * ((const Floats *)(rows + (int64_t)(i + c) * width + at))[v];
+        for (int v = 0; v < LANE_VECTORS; v++)
+            ((Floats *)(sums + at))[v] = (held[0][v] + held[1][v]) + (held[2][v] + held[3][v]);
+    }
+}
+
 /* Lanes l, l + 4, l + 8, l + 12. */
 static inline Four fold(const Floats sums[LANE_VECTORS]) {
     Four quarters[4];
@@ -105,4 +122,4 @@ static void apply_tanh(float *numbers, int count) {
     for (int i = 0; i < count; i++) numbers[i] = tanh_float(numbers[i]);
 }
 
-const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, multiply, spread, apply_tanh};
+const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, combine, multiply, spread, apply_tanh};

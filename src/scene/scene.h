@@ -13,7 +13,7 @@ enum {
     SCENE_MAX_BODIES = 10000,
     SCENE_MAX_FRAMES = 1000000,
     SCENE_MAX_ITERATIONS = 1000000,
-    SCENE_MAX_NETWORKS = 8,
+    SCENE_MAX_NETWORKS = 16,
     SCENE_MAX_PARAMETERS = 4,
     SCENE_PARAMETER_SIZE = 32, /* of a parameter's name and of its unit, with the NUL */
     SCENE_IMPACT_FRAMES = 6    /* default of a file */

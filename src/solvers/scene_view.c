@@ -51,6 +51,8 @@ static float turns_of(const ProblemBody *body) {
     return step * floorf(body->angle / (step * quarter_turn) + 0.5f);
 }
 
+float scene_view_angle(const ProblemBody *body) { return body->angle - quarter_turn * turns_of(body); }
+
 /* Two bytes of a feature, edges of one box, renamed for so many quarter turns. */
 static uint32_t turn_edges(uint32_t edges, int turns) {
     uint32_t turned = 0;

@@ -28,5 +28,8 @@ void scene_view_free(SceneView *view);
 /* The feature of one of the problem's contacts, with the bomb rotated back. */
 uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact);
 
+/* rad: the angle of a body, turned back by quarter turns (half turns if it is oblong) to the smallest. */
+float scene_view_angle(const ProblemBody *body);
+
 /* The problem must have the network's bodies. False when memory is short. */
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);

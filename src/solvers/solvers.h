@@ -25,7 +25,11 @@
     STEPPING(soft_step)           \
     STEPPING(avbd)                \
     SOLVER(interior)              \
-    SOLVER(interior_net)
+    SOLVER(interior_net)          \
+    SOLVER(sain)                  \
+    SOLVER(hybrid)                \
+    STEPPING(gns)                 \
+    STEPPING(subspace)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;

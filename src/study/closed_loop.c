@@ -4,12 +4,91 @@
 #include "simulate/simulate.h"
 #include "study/meter.h"
 #include "study/statistics.h"
-#include "study/world_measures.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* One launch run by two methods. */
+bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
+    Method parsed;
+    if (!method_parse(&parsed, method, error)) return false;
+    Rollout rollout = {.log = *log};
+    Stepper *stepper = stepper_create(&parsed, launched, error);
+    bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    *log = rollout.log;
+    rollout.log = (RunLog){0};
+    rollout_free(&rollout);
+    if (ok && log->frames < launched->frames)
+        ok = error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
+                         method, log->frames);
+    return ok;
+}
+
+static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
+    const int launch = scene->bomb.frame < log->frames ? scene->bomb.frame : log->frames;
+    result->energy_put_in = result->energy_most = log->energy[launch];
+    for (int frame = 1; frame <= log->frames; frame++) {
+        result->penetration = fmax(result->penetration, log->penetration[frame]);
+        if (frame > launch) result->energy_most = fmax(result->energy_most, log->energy[frame]);
+    }
+}
+
+bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
+                        const RunLog *converged, LaunchLoop *result, Error *error) {
+    Stepper *stepper = stepper_create(method, launched, error);
+    const bool ok = stepper != NULL && rollout_run(rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    if (!ok) return false;
+    const RunLog *log = &rollout->log;
+    const int frames = launched->frames;
+    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, CLOSED_LOOP_APART, frames),
+                           .frames_converged = converged != NULL
+                                                   ? (double)run_log_apart(log, converged, CLOSED_LOOP_APART, frames)
+                                                   : (double)NAN,
+                           .moved = run_log_moved(log, launched),
+                           .momentum_error = log->momentum_error,
+                           .steps = log->frames,
+                           .fallen_back = log->fallen_back};
+    measure(log, launched, result);
+    return true;
+}
+
+static bool run_launch(Rollout *rollout, RunLog *engine, const Method *method, const Scene *launched,
+                       LaunchLoop *result, Error *error) {
+    Scene scene = *launched;
+    scene.frames = CLOSED_LOOP_FRAMES;
+    return closed_loop_log(engine, "engine", &scene, error) &&
+           closed_loop_launch(rollout, method, &scene, engine, NULL, result, error);
+}
+
+bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error) {
+    double *frames = malloc((size_t)count * sizeof *frames), momentum = 0, steps = 0;
+    if (frames == NULL) return error_memory(error, "closed loop");
+    Rollout rollout = {0};
+    RunLog engine = {0};
+    *result = (ClosedLoop){0};
+    bool ok = true;
+    for (int i = 0; ok && i < count; i++) {
+        LaunchLoop launch;
+        ok = run_launch(&rollout, &engine, method, &launches[i], &launch, error);
+        if (!ok) break;
+        frames[i] = launch.frames_engine;
+        result->penetration_max = fmax(result->penetration_max, launch.penetration);
+        result->energy_ratio = fmax(result->energy_ratio, launch.energy_most / launch.energy_put_in);
+        momentum += launch.momentum_error;
+        steps += launch.steps;
+    }
+    if (ok) {
+        result->frames_until_apart = statistics_quantile(frames, count, 0.5);
+        result->momentum_error = steps > 0 ? momentum / steps : 0;
+    }
+    run_log_free(&engine);
+    rollout_free(&rollout);
+    free(frames);
+    return ok;
+}
+
+/* The engine and a method, each with a world of its own. */
 typedef struct Pair {
     Stepper *steppers[2]; /* engine, method */
     World *worlds[2];
@@ -36,85 +115,6 @@ static bool pair_begin(Pair *pair, const Method *method, const Scene *scene, Err
         }
     }
     return true;
-}
-
-/* m: the largest distance of a body from its position in the engine's run. */
-static double distance_apart(const Pair *pair) {
-    const Body *a = world_bodies(pair->worlds[0]), *b = world_bodies(pair->worlds[1]);
-    double apart = 0;
-    for (int i = 0; i < world_body_count(pair->worlds[0]); i++) {
-        double x = (double)a[i].position.x - (double)b[i].position.x;
-        double y = (double)a[i].position.y - (double)b[i].position.y;
-        apart = fmax(apart, hypot(x, y));
-    }
-    return apart;
-}
-
-typedef struct LaunchResult {
-    double frames_until_apart, penetration, energy_before, energy_most, momentum_sum;
-    int steps;
-} LaunchResult;
-
-static void measure(const Pair *pair, const Scene *scene, int frame, LaunchResult *result) {
-    const World *world = pair->worlds[1];
-    const double energy = world_energy(world, scene->gravity);
-    if (result->frames_until_apart == CLOSED_LOOP_FRAMES && !(distance_apart(pair) <= CLOSED_LOOP_APART))
-        result->frames_until_apart = frame;
-    result->penetration = fmax(result->penetration, world_penetration(world));
-    result->momentum_sum += (double)world_solution(world)->momentum_error;
-    result->steps = frame;
-    if (frame <= scene->bomb.frame) result->energy_before = energy;
-    result->energy_most = frame <= scene->bomb.frame ? energy : fmax(result->energy_most, energy);
-}
-
-static bool run_launch(const Method *method, const Scene *launched, LaunchResult *result, Error *error) {
-    Pair pair;
-    Scene scene = *launched;
-    scene.frames = CLOSED_LOOP_FRAMES;
-    if (!pair_begin(&pair, method, &scene, error)) return false;
-    *result = (LaunchResult){.frames_until_apart = CLOSED_LOOP_FRAMES};
-    result->energy_before = result->energy_most = world_energy(pair.worlds[1], scene.gravity);
-    bool ok = true;
-    for (int frame = 1; ok && frame <= CLOSED_LOOP_FRAMES; frame++) {
-        const Step step = {.scene = &scene, .frame = frame};
-        Error failure = {0};
-        ok = simulate_step(pair.steppers[0], pair.worlds[0], &step, error);
-        if (ok && !simulate_step(pair.steppers[1], pair.worlds[1], &step, &failure)) {
-            /* The state became NaN or infinite. That is a valid result. */
-            if (failure.kind == ERROR_INPUT) {
-                result->frames_until_apart = fmin(result->frames_until_apart, frame);
-                break;
-            }
-            *error = failure;
-            ok = false;
-        }
-        if (ok) measure(&pair, &scene, frame, result);
-    }
-    pair_end(&pair);
-    return ok;
-}
-
-bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error) {
-    double *frames = malloc((size_t)count * sizeof *frames), momentum = 0, steps = 0;
-    if (frames == NULL) return error_memory(error, "closed loop");
-    *result = (ClosedLoop){0};
-    bool ok = true;
-    for (int i = 0; ok && i < count; i++) {
-        LaunchResult launch;
-        ok = run_launch(method, &launches[i], &launch, error);
-        if (!ok) break;
-        frames[i] = launch.frames_until_apart;
-        result->penetration_max = fmax(result->penetration_max, launch.penetration);
-        result->energy_ratio = fmax(result->energy_ratio, launch.energy_most / launch.energy_before);
-        momentum += launch.momentum_sum;
-        steps += launch.steps;
-    }
-    if (ok) {
-        result->frames_until_apart = statistics_quantile(frames, count, 0.5);
-        result->momentum_error = steps > 0 ? momentum / steps : 0;
-    }
-    free(frames);
-    return ok;
 }
 
 /* Mean microseconds per step over all states; negative if a step failed. */

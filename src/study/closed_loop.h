@@ -7,15 +7,35 @@ enum { CLOSED_LOOP_FRAMES = 600 };
 
 #define CLOSED_LOOP_APART 0.1 /* m */
 
+/* A run of one launch beside others of the same launch. */
+typedef struct LaunchLoop {
+    double frames_engine; /* first frame in which a body is more than CLOSED_LOOP_APART from its place in the engine's
+                                run; the scene's frames: never */
+    double frames_converged; /* the same of the converged run; NAN without one */
+    double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
+    double penetration;      /* m: the deepest contact */
+    double energy_put_in;    /* J: mechanical energy when the bomb was added */
+    double energy_most;      /* J: the largest from then on */
+    double momentum_error;   /* N s: momentum created by all steps (ContactSolution), sum */
+    int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
+} LaunchLoop;
+
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged may
+   be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch (study/rollout.h). */
+bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
+                        const RunLog *converged, LaunchLoop *result, Error *error);
+
+/* Logs a run of a launched scene to compare others with. ERROR_INPUT if its state becomes NaN or infinite. */
+bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error);
+
 typedef struct ClosedLoop {
-    double frames_until_apart; /* first frame in which a body is more than CLOSED_LOOP_APART from the engine's; median
-                                  over launches; CLOSED_LOOP_FRAMES: never */
-    double penetration_max;    /* m: the deepest contact of all launches */
+    double frames_until_apart; /* LaunchLoop.frames_engine, median over launches */
+    double penetration_max;    /* m: of all launches */
     double momentum_error;     /* N s: momentum created per step (ContactSolution), mean */
     double energy_ratio;       /* largest mechanical energy / energy when the bomb was added; largest of all launches */
 } ClosedLoop;
 
-/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. A run ends early if its state becomes NaN or infinite. */
+/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. */
 bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error);
 
 /* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over states, median

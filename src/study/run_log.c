@@ -15,23 +15,30 @@ void run_log_free(RunLog *log) {
     free(log->energy);
     free(log->penetration);
     free(log->phase);
+    free(log->bomb);
     *log = (RunLog){0};
 }
 
 bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     size_t rows = (size_t)scene->frames + 1;
     log->bodies = scene->body_count;
-    log->touch = 0;
+    log->touch = log->fallen_back = 0;
+    log->momentum_error = 0;
     log->launch_frame = scene->bomb.frame < scene->frames ? scene->bomb.frame : scene->frames;
     double end = log->launch_frame + moved_after / (double)scene->dt;
     log->end_frame = end < scene->frames ? (int)lround(end) : scene->frames;
     if (!array_reserve((void **)&log->position, &log->position_capacity, rows * (size_t)log->bodies, sizeof(Vec2)) ||
         !array_reserve((void **)&log->energy, &log->energy_capacity, rows, sizeof(double)) ||
         !array_reserve((void **)&log->penetration, &log->penetration_capacity, rows, sizeof(double)) ||
-        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(Phase)))
+        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(Phase)) ||
+        !array_reserve((void **)&log->bomb, &log->bomb_capacity, rows, sizeof(Vec2)))
         return false;
     run_log_step(log, scene, world, 0, PHASE_REST);
     return true;
+}
+
+static bool fell_back(const NetworkFallbacks *step) {
+    return step->not_finite + step->beyond_training + step->by_sweeps > 0;
 }
 
 void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
@@ -42,12 +49,32 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
     log->energy[frame] = world_energy(world, scene->gravity);
     log->penetration[frame] = world_penetration(world);
     log->phase[frame] = phase;
+    log->bomb[frame] = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0);
+    log->momentum_error += (double)world_solution(world)->momentum_error;
+    log->fallen_back += fell_back(&world_solution(world)->fallbacks);
 }
 
 static double distance(const Vec2 *a, const Vec2 *b) { return hypot((double)(a->x - b->x), (double)(a->y - b->y)); }
 
-/* If the run ended early (NaN or infinite), all boxes count as moved. */
-static double count_moved(const RunLog *log, const Scene *scene) {
+static double separation(const Vec2 *a, const Vec2 *b) {
+    return hypot((double)a->x - (double)b->x, (double)a->y - (double)b->y);
+}
+
+static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
+    const size_t row = (size_t)frame * (size_t)log->bodies;
+    double apart = separation(&log->bomb[frame], &other->bomb[frame]);
+    for (int i = 0; i < log->bodies; i++)
+        apart = fmax(apart, separation(&log->position[row + (size_t)i], &other->position[row + (size_t)i]));
+    return apart;
+}
+
+int run_log_apart(const RunLog *log, const RunLog *other, double limit, int frames) {
+    for (int frame = 1; frame <= frames; frame++)
+        if (frame > log->frames || (frame <= other->frames && distance_apart(log, other, frame) > limit)) return frame;
+    return frames;
+}
+
+double run_log_moved(const RunLog *log, const Scene *scene) {
     int moved = 0;
     const Vec2 *before = log->position + (size_t)log->launch_frame * (size_t)log->bodies;
     const Vec2 *after = log->position + (size_t)log->end_frame * (size_t)log->bodies;
@@ -71,7 +98,7 @@ static double mean_distance(const RunLog *log, const RunLog *other, const Scene 
 }
 
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
-    RunMeasures measures = {.drift = NAN, .moved = count_moved(log, scene)};
+    RunMeasures measures = {.drift = NAN, .moved = run_log_moved(log, scene)};
     int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
     double energy[PHASES] = {0};
     for (int frame = 1; frame <= last; frame++) {

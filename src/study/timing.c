@@ -130,7 +130,7 @@ static double mean_count(const StepLog *log, int phase) {
 
 /* Without repetitions: counts do not vary. */
 static bool count_instructions(Timing *timing, Error *error) {
-    bool can = meter_open_instructions();
+    bool can = !timing->options->no_instructions && meter_open_instructions();
     const Meter meter = {meter_instructions, 0};
     bool ok = true;
     for (int i = 0; ok && i < timing->count; i++) {
@@ -174,11 +174,13 @@ static StepCost summarise(const Timed *timed, int protocol, int phase, int repet
         add_step(&sum, logs, repetitions, i, times);
         steps++;
     }
-    if (steps == 0) return (StepCost){NAN, NAN, NAN, NAN, NAN};
+    if (steps == 0)
+        return (StepCost){.solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .instructions = NAN};
     return (StepCost){.solver = sum.solver / steps,
                       .solver_q1 = sum.solver_q1 / steps,
                       .solver_q3 = sum.solver_q3 / steps,
                       .step = sum.step / steps,
+                      .steps = steps,
                       .instructions = timed->instructions[protocol][phase]};
 }
 
@@ -241,4 +243,15 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
         }
     timing_end(&timing);
     return ok;
+}
+
+double step_cost_mean(const StepCost costs[PHASES], bool only_solver) {
+    double sum = 0;
+    int steps = 0;
+    for (int phase = 0; phase < PHASES; phase++) {
+        if (costs[phase].steps == 0) continue;
+        sum += costs[phase].steps * (only_solver ? costs[phase].solver : costs[phase].step);
+        steps += costs[phase].steps;
+    }
+    return steps > 0 ? sum / steps : NAN;
 }

@@ -16,6 +16,9 @@ fail() {
     failures=$((failures + 1))
 }
 
+# Whether the binary is a sanitizer's, which is up to ten times slower: it runs fewer cases of a kind (sanitized.h).
+sanitized() { grep -q "^TWINBOX_SANITIZE:STRING=." "$(dirname "$twinbox")/CMakeCache.txt" 2>/dev/null; }
+
 # run STATUS ARGUMENT...: output goes to out, errors to err; the exit status must be STATUS.
 run() {
     local wanted=$1 status

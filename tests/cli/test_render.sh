@@ -49,7 +49,8 @@ run 0 render short.npz -o one --size 192x108
 equal "frames of a shorter run" "$(ls one | grep -c png)" 4
 
 # One scene with its parameters set, beside a stored run; a body may go before the last frame.
-sed 's/until: 600/until: 2/; s/^frames:.*/frames: 4/; /^networks/d' "$scenes/stability/top_removed.yaml" >top.yaml
+sed "s/until: 600/until: 2/; s/^frames:.*/frames: 4/; s|\.\./networks/|$scenes/networks/|g" \
+    "$scenes/stability/top_removed.yaml" >top.yaml
 run 0 render top.yaml short.npz --set ratio=3 -o top --size 192x108
 /usr/bin/python3 -c "
 import numpy

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readers of trained networks, and of the state of a training. */
+/* Readers of trained networks, and of the states of trainings. */
 #include "fuzz.h"
 
 #include "fuzz_archive.h"
 #include "interior_training/net_state.h"
+#include "learning/fit_state.h"
 #include "network/momentum_schedule.h"
 #include "network/network.h"
 #include "network/slot_network.h"
+#include "particles/gns_net.h"
+#include "relation/relation_network.h"
+#include "subspace/subspace.h"
+#include "tabulation/tabulation.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -82,6 +87,17 @@ static void read_interior_net(const char *path) {
     if (ok) check_weights(net.weights, INTERIOR_NET_WEIGHTS);
 }
 
+static void read_gns_net(const char *path) {
+    GnsNet net;
+    Error error = {0};
+    fuzz_begin();
+    const bool ok = gns_net_read(&net, path, &error);
+    fuzz_end(ok, &error, path);
+    for (int i = 0; ok && i < net.layout.parameters; i++)
+        if (!isfinite(net.parameters[i])) fuzz_fail("parameter %d is NaN or infinite", i);
+    gns_net_free(&net);
+}
+
 /* No error: of another command. */
 static void read_state(const char *path) {
     static NetState state;
@@ -94,10 +110,88 @@ static void read_state(const char *path) {
     if (state.round < 0 || state.round >= NET_ROUNDS_MAX) fuzz_fail("round %d", (int)state.round);
 }
 
+static void read_fit(const char *path) {
+    enum { WEIGHTS = 3 };
+    double numbers[3][WEIGHTS] = {{0}};
+    FitState state = {.command = "train", .adam = adam_over(numbers[0], numbers[1], numbers[2], WEIGHTS, 0, 0.999)};
+    Error error = {0};
+    bool found;
+    fuzz_begin();
+    const bool ok = fit_state_read(&state, path, &found, &error);
+    fuzz_end(ok, &error, path);
+    if (ok && found) check_weights(numbers[0], 3 * WEIGHTS);
+}
+
+/* Each entry answers its own key with finite impulses. */
+static void read_memory(const char *path) {
+    static ContactImpulse impulses[TABULATION_CONTACTS_MAX];
+    Error error = {0};
+    fuzz_begin();
+    Tabulation *memory = tabulation_read(path, &error);
+    fuzz_end(memory != NULL, &error, path);
+    for (int entry = 0; memory != NULL && entry < memory->entry_count; entry++) {
+        const int set = memory->entry_set[entry];
+        const float *key = memory->keys + (size_t)entry * (size_t)memory->key_size;
+        const TabulationQuery query = {memory->set_hash[set], memory->set_contacts[set], key};
+        if (tabulation_find(memory, &query) < 0) continue; /* a metric may be anything */
+        tabulation_answer(memory, entry, key, impulses);
+        tabulation_stretch(memory, entry, key);
+    }
+    tabulation_destroy(memory);
+}
+
+/* Asked about one receiver with one sender, both at 0. */
+static void read_sain(const char *path) {
+    RelationNetworks networks;
+    Error error = {0};
+    fuzz_begin();
+    const bool ok = relation_networks_read(&networks, path, &error);
+    fuzz_end(ok, &error, path);
+    if (!ok) return;
+    float pair[RELATION_PAIR_INPUTS] = {0}, inputs[RELATION_BODY_INPUTS] = {0};
+    RelationBody body = {.rows = 1, .axis = {1, 0}, .radius = 1};
+    RelationView view = {1, 1, &body, pair, inputs, .row_capacity = 0};
+    RelationAnswers answers = {0};
+    for (int f = 0; f < RELATION_FORMS; f++) {
+        if (!relation_answer(&answers, &networks.forms[f], &view, true)) fuzz_fail("memory");
+        for (int i = 0; i < RELATION_PAIR_INPUTS; i++)
+            if (!isfinite(pair[i])) fuzz_fail("input %d is not in its range", i);
+    }
+    relation_answers_free(&answers);
+    relation_networks_destroy(&networks);
+}
+
+/* Steps from a state of zeros: what follows is finite and in range. */
+static void step_subspace(const SubspaceNet *net, const SubspacePredictor *predictor) {
+    static const float zeros[SUBSPACE_POSE * SUBSPACE_BODIES_MAX], launch[SUBSPACE_LAUNCH] = {1, 0, 0, 50};
+    Subspace subspace;
+    Error error = {0};
+    if (!subspace_make(&subspace, net, predictor, true, &error)) return;
+    subspace_start(&subspace, zeros, zeros);
+    for (int step = 0; step < 3; step++) {
+        subspace_step(&subspace, launch);
+        for (int k = 0; k < predictor->components; k++)
+            if (!isfinite(subspace.now[k])) fuzz_fail("component %d is not finite", k);
+    }
+    subspace_reconstruct(&subspace);
+    subspace_free(&subspace);
+}
+
+static void read_subspace(const char *path) {
+    Error error = {0};
+    fuzz_begin();
+    SubspaceNet *net = subspace_net_read(path, &error);
+    fuzz_end(net != NULL, &error, path);
+    if (net == NULL) return;
+    for (int i = 0; i < net->shape.predictor_count; i++) step_subspace(net, &net->predictors[i]);
+    subspace_net_destroy(net);
+}
+
 /* The first byte chooses the kind of network. */
 void fuzz_network(const uint8_t *data, size_t size) {
-    static void (*const readers[])(const char *path) = {read_network, read_slot_network, read_schedules,
-                                                        read_interior_net, read_state};
+    static void (*const readers[])(const char *path) = {
+        read_network, read_slot_network, read_schedules, read_interior_net, read_state,
+        read_fit,     read_memory,       read_sain,      read_subspace,     read_gns_net};
     enum { READERS = sizeof readers / sizeof *readers };
     if (size == 0 || data[0] < 'a' || data[0] >= 'a' + READERS) return;
     readers[data[0] - 'a'](fuzz_archive(data + 1, size - 1));

@@ -45,7 +45,8 @@ SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 -
 
 CASES = [
     Case("paper", "paper -o out --quick --scenes small", "small", most=6,
-         times="out/closed_loop.csv out/figures/closed-loop.[ps]* out/findings/summary.csv out/report.*"),
+         times="out/closed_loop.csv out/system*.csv out/figures/closed-loop.[ps]* out/figures/system-* "
+               "out/findings/summary.csv out/findings/systems.csv out/report.*"),
     Case("chart-study", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", most=16,
          times="out/*.csv out/*.png out/*.svg out/*.pdf"),
     Case("chart-draw", "chart charts/chart.csv -o out", "charts", most=16),
@@ -62,6 +63,12 @@ CASES = [
          most=10, early="net.npz"),
     Case("train-scene-net", SCENE_NET, most=12, early="net.npz"),
     Case("train-interior-net", "train --kind interior-net -o net.npz --scenes 7 --rounds 2 --epochs 2", most=20),
+    Case("train-sain", "train --kind sain SCENES/single.yaml -o net.npz --launches 4 --rounds 2 --steps 120", most=20),
+    Case("train-hybrid", "train --kind hybrid SCENES/single.yaml -o net.npz --launches 60 --steps 3", most=20),
+    Case("train-gns", "train --kind gns -o net.npz --scenes SCENES/single.yaml --launches 2 --steps 600 --rounds 1",
+         most=20),
+    Case("train-subspace", "train --kind subspace SCENES/single.yaml -o net.npz --launches 2 --epochs 2 --width 16",
+         most=12),
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
     Case("approve", "approve report --expected expected", "report expected actual", most=20),
     Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz",

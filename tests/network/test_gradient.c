@@ -82,6 +82,34 @@ static void check_gradient(int layers, const int *widths, const Activation *acti
     free_case(&made);
 }
 
+/* Each input is shifted in one row. */
+static void slopes_of_the_inputs_are_the_finite_difference(void **state) {
+    (void)state;
+    const int widths[] = {3, 5, 2};
+    const Activation activations[] = {ACTIVATION_TANH, ACTIVATION_LINEAR};
+    const double step = 1e-5;
+    Case made = make_case(2, widths, activations);
+    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    static double slopes[3 * BLOCK_ROWS];
+    assert_non_null(gradient);
+    add_gradient(&made, gradient);
+    network_backward_to_inputs(made.block, made.parameters, slopes);
+    for (int i = 0; i < 3; i++)
+        for (int r = 0; r < BLOCK_ROWS; r += 7) {
+            double *input = &made.block->values[0][i * BLOCK_ROWS + r];
+            const double kept = *input;
+            *input = kept + step;
+            const double above = loss(&made);
+            *input = kept - step;
+            const double slope = (above - loss(&made)) / (2 * step);
+            *input = kept;
+            assert_near(slopes[i * BLOCK_ROWS + r], slope, 1e-8);
+            assert_true((fabs(slope) > 1e-6) == (r < USED_ROWS));
+        }
+    free(gradient);
+    free_case(&made);
+}
+
 static void backward_is_the_finite_difference(void **state) {
     (void)state;
     const Activation linear = ACTIVATION_LINEAR, sigmoid = ACTIVATION_SIGMOID, tangent = ACTIVATION_TANH;
@@ -220,6 +248,7 @@ static void all_instruction_sets_give_the_same_bits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(backward_is_the_finite_difference),
+        cmocka_unit_test(slopes_of_the_inputs_are_the_finite_difference),
         cmocka_unit_test(backward_of_the_rectifier_is_the_finite_difference),
         cmocka_unit_test(the_rectifiers_slope_at_its_kink_is_zero),
         cmocka_unit_test(gradients_add_up),

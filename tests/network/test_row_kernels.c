@@ -104,6 +104,25 @@ static void check_add(const RowKernels *kernels, int width, const int32_t *index
     drop_rows(&rows), drop(numbers), drop(found), drop(expected);
 }
 
+/* As `add`, of floats: in four sums. */
+static void combine(float *sums, const float *rows, int width, const float *numbers, int count) {
+    for (int c = 0; c < width; c++) {
+        float held[4] = {sums[c]};
+        for (int i = 0; i < count; i++) held[i % 4] += numbers[i] * rows[i * width + c];
+        sums[c] = (held[0] + held[1]) + (held[2] + held[3]);
+    }
+}
+
+static void check_combine(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
+    (void)index;
+    float *rows = numbers_of(count * width, seed), *numbers = numbers_of(count, seed), *found = numbers_of(width, seed),
+          *expected = copy_of(found, width);
+    kernels->combine(found, rows, width, numbers, count);
+    combine(expected, rows, width, numbers, count);
+    assert_bits(found, expected, width, kernels, "combine", width);
+    drop(rows), drop(numbers), drop(found), drop(expected);
+}
+
 static void check_multiply(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     if (index == NULL && count > PAIRS) count = PAIRS;
     PackedRows rows = rows_of(ROWS, width, seed);
@@ -140,6 +159,11 @@ static void rows_are_added_in_four_sums(void **state) {
     (void)state;
     for_all(check_add, some);
     for_all(check_add, NULL);
+}
+
+static void floats_are_added_in_four_sums(void **state) {
+    (void)state;
+    for_all(check_combine, NULL);
 }
 
 static void rows_are_multiplied_in_lanes_and_halves(void **state) {
@@ -182,8 +206,11 @@ static void the_best_is_the_first(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_added_in_four_sums),  cmocka_unit_test(rows_are_multiplied_in_lanes_and_halves),
-        cmocka_unit_test(a_vector_is_spread_over_rows), cmocka_unit_test(every_number_is_bent),
+        cmocka_unit_test(rows_are_added_in_four_sums),
+        cmocka_unit_test(floats_are_added_in_four_sums),
+        cmocka_unit_test(rows_are_multiplied_in_lanes_and_halves),
+        cmocka_unit_test(a_vector_is_spread_over_rows),
+        cmocka_unit_test(every_number_is_bent),
         cmocka_unit_test(the_best_is_the_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,7 +6,8 @@
 static void write_file(const char *name, const char *text) { write_bytes(temporary_path(name), text, strlen(text)); }
 
 static void write_tables(void) {
-    write_file("values.csv", "key,value\nruns,12\nshare,0.125\nnone,\nbig,123456\nscene,stack\n");
+    write_file("values.csv", "key,value\nruns,12\nshare,0.125\nnone,\nbig,123456\nscene,stack\n"
+                             "long,\"A text that is certainly longer than a name may be, *\xc3\xa4*\"\n");
     write_file("runs.csv", "network,scene,frames,time\nbaseline,single,600,2\nbaseline,stack,5,4\nother,stack,,0\n");
     write_file("scenes.csv", "scene,boxes\nsingle,1\nstack,10\n");
     write_file("empty.csv", "scene,boxes\n");
@@ -32,6 +33,8 @@ static void values_are_filled_in(void **state) {
     expect_filled("{{share number}} {{share percent}} {{share score}} {{big number}} {{big score}}",
                   "0.125 12.5% 0.125000 123456 123456");
     expect_filled("{{runs/share number}} {{runs/5 number}} {{5/runs percent}}", "96 2.4 41.7%");
+    expect_filled("{{long}} {{long text}} {{none text}}", "A text that is certainly longer than a name ... A text that "
+                                                          "is certainly longer than a name may be, \\*\xc3\xa4\\* –");
     /* Not numbers; a division by 0. */
     expect_filled("{{none number}} {{scene percent}} {{runs/none number}} {{runs/0 number}}", "– – – –");
 }

@@ -165,8 +165,9 @@ static const Refused networks[] = {
     {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network must be the path of a file (got nothing)"},
     {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network must be the path of a file (got b?c)"},
     {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is given twice"},
-    {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, i: b}\n",
-     "7:60: error: a scene must have at most 8 networks"},
+    {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, "
+                 "i: b, j: b, k: b, l: b, m: b, n: b, o: b, p: b, q: b}\n",
+     "7:108: error: a scene must have at most 16 networks"},
     {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
      "7:15: error: the path of a network must have at most 511 bytes"},
     {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",

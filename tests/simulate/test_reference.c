@@ -2,6 +2,7 @@
 /* The bits of Box2D-Lite: golden/grid_hash.csv and golden/run_hash.csv hold the hashes of its own runs, with sine
    and cosine as the double function rounded to float (commit 227b71b; g++ 12.2). */
 #include "testing.h"
+#include "sanitized.h"
 
 #include "common/hash.h"
 #include "simulate/simulate.h"
@@ -45,6 +46,7 @@ static void every_launch_has_the_bits_of_box2d_lite(void **state) {
     const int frames[3] = {60, 120, 300};
     int launches = 0;
     for (; fgets(line, sizeof line, file) != NULL; launches++) {
+        if (launches % sampled(9) != 0) continue;
         assert_int_equal(sscanf(line, "%31[^,],%15[^,],%llx,%llx,%llx", name, x, &hashes[0], &hashes[1], &hashes[2]),
                          5);
         Scene *scene = read_scene(name);

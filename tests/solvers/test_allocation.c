@@ -2,8 +2,10 @@
 /* A step allocates nothing once the world has warmed up. */
 #include "allocations.h"
 #include "pair_networks.h"
+#include "relation/relation_networks.h"
 #include "slot_problems.h"
 
+#include "solvers/sain.h"
 #include "solvers/scene_net.h"
 #include "solvers/scene_view.h"
 
@@ -46,6 +48,7 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
     steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
     steps_allocate_nothing_by(&solver_relu_net, "");
     steps_allocate_nothing_by(&solver_interior, "");
+    steps_allocate_nothing_by(&solver_hybrid, "");
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */
@@ -119,10 +122,35 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     slot_network_destroy(network);
 }
 
+static void corrected_steps_allocate_nothing(void **state) {
+    (void)state;
+    Error error = {0};
+    uint32_t seed = 1;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.1f);
+    World *world = make_pyramid();
+    ContactSolver engine = make_engine(""), solver;
+    run(world, &engine, 10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution solution = *world_solution(world);
+    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        assert_ok(sain_make(&solver, &network, form, &error), error);
+        assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
+        allocations = 0;
+        assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations, 0);
+        free_solver(&solver);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+    relation_network_destroy(&network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
                                        cmocka_unit_test(pair_networks_solve_without_allocating),
                                        cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing),
-                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating)};
+                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating),
+                                       cmocka_unit_test(corrected_steps_allocate_nothing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

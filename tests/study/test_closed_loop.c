@@ -4,6 +4,8 @@
 #include "scene/launch.h"
 #include "study/closed_loop.h"
 
+#include <math.h>
+
 static Scene *read_scene(const char *name) {
     Error error = {0};
     char path[512];
@@ -54,6 +56,31 @@ static void energy_counts_from_the_bomb_on(void **state) {
     scene_destroy(scene);
 }
 
+/* The interior method is close to the converged run of the stack for longer than to the engine's. */
+static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    scene->frames = 60;
+    Method method;
+    RunLog engine = {0}, converged = {0};
+    Rollout rollout = {0};
+    LaunchLoop loop;
+    assert_ok(method_parse(&method, "interior", &error), error);
+    assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
+    assert_ok(closed_loop_log(&converged, "reference", scene, &error), error);
+    assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, &converged, &loop, &error), error);
+    assert_true(loop.frames_engine < loop.frames_converged && loop.frames_converged <= 60);
+    assert_int_equal(loop.steps, 60);
+    assert_true(loop.energy_most >= loop.energy_put_in && loop.penetration > 0);
+    assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, NULL, &loop, &error), error);
+    assert_true(isnan(loop.frames_converged));
+    rollout_free(&rollout);
+    run_log_free(&engine);
+    run_log_free(&converged);
+    scene_destroy(scene);
+}
+
 static void both_methods_are_timed(void **state) {
     (void)state;
     Error error = {0};
@@ -74,6 +101,7 @@ static void both_methods_are_timed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_engine_equals_itself), cmocka_unit_test(a_poor_method_diverges_from_the_engine),
-        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(both_methods_are_timed)};
+        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(both_methods_are_timed),
+        cmocka_unit_test(runs_are_compared_with_the_engine_and_with_the_converged_run)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

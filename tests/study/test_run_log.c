@@ -23,11 +23,13 @@ typedef struct Handmade {
     Vec2 position[(FRAMES + 1) * BODIES];
     double energy[FRAMES + 1], penetration[FRAMES + 1];
     Phase phase[FRAMES + 1];
+    Vec2 bomb[FRAMES + 1];
 } Handmade;
 
 static RunLog log_by_hand(Handmade *made) {
     for (int frame = 0; frame <= FRAMES; frame++) {
         for (int body = 0; body < BODIES; body++) made->position[frame * BODIES + body] = vec2((float)body, 0);
+        made->bomb[frame] = vec2(0, 0);
         made->energy[frame] = 100;
         made->penetration[frame] = 0.01;
         made->phase[frame] = frame < 5 ? PHASE_REST : frame < 7 ? PHASE_IMPACT : PHASE_AFTER;
@@ -40,7 +42,8 @@ static RunLog log_by_hand(Handmade *made) {
                     .position = made->position,
                     .energy = made->energy,
                     .penetration = made->penetration,
-                    .phase = made->phase};
+                    .phase = made->phase,
+                    .bomb = made->bomb};
 }
 
 static void equal_runs_have_no_differences(void **state) {
@@ -103,6 +106,51 @@ static void in_a_run_that_ended_early_all_boxes_moved(void **state) {
     assert_true(isnan(measures.drift));
 }
 
+static void runs_part_where_a_body_or_the_bomb_is_away(void **state) {
+    (void)state;
+    Handmade a, b;
+    RunLog log = log_by_hand(&a), other = log_by_hand(&b);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), FRAMES); /* never */
+    a.bomb[9] = vec2(0, 0.2f);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 9);
+    a.position[7 * BODIES + 2] = vec2(2.05f, 0); /* near enough */
+    b.position[8 * BODIES + 1] = vec2(1, -0.2f);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 8);
+    log.frames = 3; /* NaN in step 4 */
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 4);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, 2), 2);
+}
+
+/* Two steps: one creates 0.5 N s and falls back, the other clamps an impulse to its cone, which is no fallback. */
+static void momentum_and_fallbacks_are_added(void **state) {
+    (void)state;
+    Error error = {0};
+    BodyDef box = {.size = {1, 1}, .mass = 1};
+    const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
+    World *world = scene_world(&scene, &error);
+    assert_ok(world != NULL, error);
+    RunLog log = {0};
+    assert_true(run_log_begin(&log, &scene, world));
+    for (int frame = 1; frame <= 2; frame++) {
+        ContactProblem problem;
+        ContactSolution *solution;
+        assert_ok(world_begin_step(world, scene.dt, &problem, &solution, &error), error);
+        solution->velocities[0] = (BodyVelocity){vec2(1, 0), 0};
+        solution->momentum_error = frame == 1 ? 0.5f : 0;
+        solution->fallbacks = (NetworkFallbacks){.beyond_training = frame == 1, .outside_cone = frame == 2};
+        assert_ok(world_end_step(world, &error), error);
+        run_log_step(&log, &scene, world, frame, PHASE_REST);
+    }
+    assert_near(log.momentum_error, 0.5, 0);
+    assert_int_equal(log.fallen_back, 1);
+    assert_near(log.bomb[2].x, 0, 0); /* a scene without a bomb */
+    assert_true(run_log_begin(&log, &scene, world));
+    assert_near(log.momentum_error, 0, 0);
+    assert_int_equal(log.fallen_back, 0);
+    run_log_free(&log);
+    world_destroy(world);
+}
+
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
 static void energy_is_kinetic_and_potential(void **state) {
     (void)state;
@@ -134,6 +182,8 @@ int main(void) {
                                        cmocka_unit_test(differences_are_assigned_to_their_phase),
                                        cmocka_unit_test(motion_before_the_launch_is_not_counted),
                                        cmocka_unit_test(in_a_run_that_ended_early_all_boxes_moved),
+                                       cmocka_unit_test(runs_part_where_a_body_or_the_bomb_is_away),
+                                       cmocka_unit_test(momentum_and_fallbacks_are_added),
                                        cmocka_unit_test(energy_is_kinetic_and_potential),
                                        cmocka_unit_test(quantiles_are_interpolated)};
     return cmocka_run_group_tests(tests, NULL, NULL);

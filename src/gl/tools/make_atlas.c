@@ -51,7 +51,7 @@ static void print_bitmap(const FT_Bitmap *bitmap) {
     for (unsigned y = 0; y < bitmap->rows; y++) {
         for (unsigned x = 0; x < bitmap->width; x++) {
             int coverage = bitmap->buffer[(int)y * bitmap->pitch + (int)x];
-            fprintf(output, "\\%03o", (unsigned)(coverage * 51 + 127) / 255 * 5);
+            fprintf(output, "\\%o", (unsigned)(coverage * 51 + 127) / 255 * 5);
         }
     }
     bitmap_size += bitmap->rows * bitmap->width;
@@ -77,15 +77,22 @@ static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
     return glyph;
 }
 
+/* Nested braces: with a designator for each glyph, [1][2][3] = {...}, gcc takes seconds. */
 static void print_glyphs(FontGlyph glyphs[FONT_FACES][FONT_SIZES][FONT_GLYPHS]) {
     fputs("const FontGlyph font_glyphs[FONT_FACES][FONT_SIZES][FONT_GLYPHS] = {\n", output);
-    for (int face = 0; face < FONT_FACES; face++)
-        for (int size = 0; size < FONT_SIZES; size++)
+    for (int face = 0; face < FONT_FACES; face++) {
+        fputs("{", output);
+        for (int size = 0; size < FONT_SIZES; size++) {
+            fputs("{\n", output);
             for (int i = 0; i < FONT_GLYPHS; i++) {
                 const FontGlyph *g = &glyphs[face][size][i];
-                fprintf(output, "[%d][%d][%d] = {%u,%u,%d,%d,%d,%d,%d},\n", face, size, i, g->code, g->offset, g->width,
-                        g->height, g->left, g->top, g->advance);
+                fprintf(output, "{%u,%u,%d,%d,%d,%d,%d},\n", g->code, g->offset, g->width, g->height, g->left, g->top,
+                        g->advance);
             }
+            fputs("},", output);
+        }
+        fputs("},\n", output);
+    }
     fputs("};\nconst int font_sizes[FONT_SIZES] = {", output);
     for (int size = 0; size < FONT_SIZES; size++) fprintf(output, "%d,", sizes[size]);
     fprintf(output, "};\nconst unsigned font_bitmaps_size = %u;\n", bitmap_size);

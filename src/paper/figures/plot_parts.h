@@ -10,3 +10,9 @@ bool plot_rates(const char *folder, GnuplotPage *page, Error *error);
 bool plot_closed_loop(const char *folder, GnuplotPage *page, Error *error);
 bool plot_laws(const char *folder, GnuplotPage *page, Error *error);
 bool plot_transfer(const char *folder, GnuplotPage *page, Error *error);
+
+/* Of the systems that the paper cites (paper/systems/system.h). */
+bool plot_sain(const char *folder, GnuplotPage *page, Error *error);
+bool plot_hybrid(const char *folder, GnuplotPage *page, Error *error);
+bool plot_gns(const char *folder, GnuplotPage *page, Error *error);
+bool plot_subspace(const char *folder, GnuplotPage *page, Error *error);

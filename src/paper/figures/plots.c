@@ -5,36 +5,73 @@
 #include "chart/gnuplot_sheet.h"
 #include "common/file.h"
 #include "paper/figures/plot_parts.h"
+#include "paper/systems/system.h"
 
 #include <limits.h>
+#include <stdlib.h>
+#include <string.h>
 
-static const struct {
+typedef struct Plot {
     const char *name;
     bool (*write)(const char *folder, GnuplotPage *page, Error *error);
-} plots[] = {
-    {"loss", plot_loss}, {"factors", plot_factors},   {"rates", plot_rates}, {"closed-loop", plot_closed_loop},
-    {"laws", plot_laws}, {"transfer", plot_transfer},
+    GnuplotSheet sheet;
+} Plot;
+
+static const Plot results[] = {
+    {.name = "loss", .write = plot_loss},   {.name = "factors", .write = plot_factors},
+    {.name = "rates", .write = plot_rates}, {.name = "closed-loop", .write = plot_closed_loop},
+    {.name = "laws", .write = plot_laws},   {.name = "transfer", .write = plot_transfer},
 };
 
-enum { PLOTS = sizeof plots / sizeof *plots };
+enum { RESULTS = sizeof results / sizeof *results, NAME_SIZE = 64 };
 
-static bool write_page(int i, const char *folder, GnuplotSheet *sheet, Error *error) {
-    bool done = gnuplot_sheet_open(sheet, folder, error) && plots[i].write(folder, &sheet->page, error);
+/* The plots in progress: of the results, then of the systems. */
+typedef struct Plots {
+    int count;
+    Plot *items;              /* [count] */
+    char (*names)[NAME_SIZE]; /* [count] of the systems' */
+} Plots;
+
+static bool plots_begin(Plots *plots, Error *error) {
+    int systems = 0;
+    while (paper_systems[systems] != NULL) systems++;
+    plots->items = calloc(RESULTS + (size_t)systems, sizeof *plots->items);
+    plots->names = calloc(RESULTS + (size_t)systems, sizeof *plots->names);
+    if (plots->items == NULL || plots->names == NULL) return error_memory(error, "figures");
+    plots->count = RESULTS + systems;
+    memcpy(plots->items, results, sizeof results);
+    for (int i = 0; i < systems; i++) {
+        char *name = plots->names[i];
+        snprintf(name, NAME_SIZE, "system-%s", paper_systems[i]->name);
+        plots->items[RESULTS + i] = (Plot){.name = name, .write = paper_systems[i]->plot};
+    }
+    return true;
+}
+
+static void plots_end(Plots *plots) {
+    for (int i = 0; i < plots->count; i++) gnuplot_sheet_free(&plots->items[i].sheet);
+    free(plots->items);
+    free(plots->names);
+}
+
+static bool write_page(Plot *plot, const char *folder, Error *error) {
+    GnuplotSheet *sheet = &plot->sheet;
+    bool done = gnuplot_sheet_open(sheet, folder, error) && plot->write(folder, &sheet->page, error);
     return done && gnuplot_sheet_close(sheet, folder, error);
 }
 
 bool plots_draw(const char *folder, const Progress *progress, Error *error) {
-    GnuplotSheet sheets[PLOTS] = {0};
+    Plots plots = {0};
     char path[PATH_MAX];
-    if (!file_path(path, sizeof path, error, "%s/figures", folder)) return false;
-    bool done = true;
-    for (int i = 0; done && i < PLOTS; i++) done = write_page(i, folder, &sheets[i], error);
+    bool done = file_path(path, sizeof path, error, "%s/figures", folder) && plots_begin(&plots, error);
+    for (int i = 0; done && i < plots.count; i++) done = write_page(&plots.items[i], folder, error);
     done = done && file_make_directory(path, error);
-    for (int i = 0; done && i < PLOTS; i++) {
-        done =
-            progress_report(progress, i, PLOTS) || error_interrupted(error, path, "stopped; the tables are finished");
-        done = done && gnuplot_sheet_draw(&sheets[i], path, "", plots[i].name, error);
+    for (int i = 0; done && i < plots.count; i++) {
+        const Plot *plot = &plots.items[i];
+        done = progress_report(progress, i, plots.count) ||
+               error_interrupted(error, path, "stopped; the tables are finished");
+        done = done && gnuplot_sheet_draw(&plot->sheet, path, "", plot->name, error);
     }
-    for (int i = 0; i < PLOTS; i++) gnuplot_sheet_free(&sheets[i]);
+    plots_end(&plots);
     return done;
 }

@@ -11,10 +11,11 @@
      closed-loop  closed_loop.csv  frames until divergence, and cost, with a network in place of the solver
      laws         laws.csv         error and violations over the weight of the laws in the loss
      transfer     transfer.csv     error over launches, from scratch and after smaller scenes
+     system-NAME  system_NAME.csv  what the claims of a cited system are judged by (paper/systems/system.h)
    Plots are as wide as a page or a column (sketch/page_width.h). Colour-blind readers can tell their lines apart, and
    so can readers of a grey print.
 
-   ERROR_INPUT, with path:line:column, if one of the six tables is missing or damaged; then nothing is drawn. A plot
+   ERROR_INPUT, with path:line:column, if one of the tables is missing or damaged; then nothing is drawn. A plot
    whose table has no rows to show is left out; its files from an earlier run stay. ERROR_SYSTEM if gnuplot is missing
    or fails, ERROR_INTERRUPTED if progress, which may be NULL, requests a stop; plots already drawn stay. */
 bool plots_draw(const char *folder, const Progress *progress, Error *error);

@@ -28,9 +28,9 @@ static bool write_table(const FindingsTable *table, const StudyTables *study, co
 }
 
 bool findings_write(const char *folder, Error *error) {
-    static const FindingsTable *const tables[] = {&findings_summary,  &findings_targets,     &findings_paper_table1,
-                                                  &findings_factors,  &findings_definitions, &findings_laws,
-                                                  &findings_transfer, &findings_aims,        &findings_claims};
+    static const FindingsTable *const tables[] = {
+        &findings_summary, &findings_targets,  &findings_paper_table1, &findings_factors, &findings_definitions,
+        &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims,  &findings_systems};
     StudyTables study;
     char path[PATH_MAX];
     if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))

@@ -11,6 +11,7 @@
      transfer.csv      each number of launches: medians over the seeds, and how many launches transfer needs
      aims.csv          the study's aims: whether they are reached
      claims.csv        the paper's claims about factors: the lowest error with and without
+     systems.csv       each system that the paper cites: how many of its claims hold
 
    An empty field is a number that is not applicable. */
 #pragma once

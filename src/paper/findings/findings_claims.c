@@ -37,13 +37,13 @@ static const struct {
 } claims[] = {
     {"inputs", by_inputs}, {"scaling", by_output}, {"data", by_data}, {"layers", by_layers}, {"labels", by_labels}};
 
-typedef struct ClaimRow {
+typedef struct FactorClaim {
     const char *factor, *verdict;
     double with, without; /* lowest ratio to the constant predictor, of the baseline and the factor's networks */
-} ClaimRow;
+} FactorClaim;
 
 /* False if there is no network on one of the sides. */
-static bool compare(const StudyTables *study, int claim, ClaimRow *row) {
+static bool compare(const StudyTables *study, int claim, FactorClaim *row) {
     double lowest[SIDES] = {NAN, NAN};
     for (int i = 0; i < study->network_count; i++) {
         const TrainedRow *network = &study->networks[i];
@@ -51,7 +51,7 @@ static bool compare(const StudyTables *study, int claim, ClaimRow *row) {
         const Side side = claims[claim].side(network);
         if (side != NEITHER) lowest[side] = fmin(lowest[side], network->ratio); /* of a number and NAN, the number */
     }
-    *row = (ClaimRow){.factor = claims[claim].factor, .with = lowest[WITH], .without = lowest[WITHOUT]};
+    *row = (FactorClaim){.factor = claims[claim].factor, .with = lowest[WITH], .without = lowest[WITHOUT]};
     row->verdict = row->with >= 1 && row->without >= 1 ? "Neither beats the constant predictor"
                    : row->with < row->without          ? "The claim holds here"
                                                        : "The claim does not hold here";
@@ -60,12 +60,12 @@ static bool compare(const StudyTables *study, int claim, ClaimRow *row) {
 
 static bool write_claims(const FindingsFile *file, const StudyTables *study) {
     for (int claim = 0; claim < (int)(sizeof claims / sizeof *claims); claim++) {
-        ClaimRow row;
+        FactorClaim row;
         if (compare(study, claim, &row) && !findings_add(file, &row)) return false;
     }
     return true;
 }
 
-static const CsvColumn columns[] = {FINDINGS_TEXT(ClaimRow, factor), FINDINGS_NUMBER(ClaimRow, with),
-                                    FINDINGS_NUMBER(ClaimRow, without), FINDINGS_TEXT(ClaimRow, verdict)};
-const FindingsTable findings_claims = FINDINGS_TABLE("claims", columns, ClaimRow, write_claims);
+static const CsvColumn columns[] = {FINDINGS_TEXT(FactorClaim, factor), FINDINGS_NUMBER(FactorClaim, with),
+                                    FINDINGS_NUMBER(FactorClaim, without), FINDINGS_TEXT(FactorClaim, verdict)};
+const FindingsTable findings_claims = FINDINGS_TABLE("claims", columns, FactorClaim, write_claims);

@@ -104,13 +104,22 @@ static bool add_transfer(const FindingsFile *file, const StudyTables *study) {
            add_text(file, "transfer_is", transfer.transfer < transfer.constant ? "below" : "not below");
 }
 
+static bool add_claims(const FindingsFile *file, const StudyTables *study) {
+    int held[CLAIM_HOLDS] = {0};
+    for (int i = 0; i < study->claim_count; i++) held[study->claims[i].holds]++;
+    return add_number(file, "system_claims", study->claim_count) &&
+           add_number(file, "system_claims_yes", held[CLAIM_YES]) &&
+           add_number(file, "system_claims_partly", held[CLAIM_PARTLY]) &&
+           add_number(file, "system_claims_no", held[CLAIM_NO]);
+}
+
 static bool write_summary(const FindingsFile *file, const StudyTables *study) {
     return add_number(file, "paper_rows", PUBLISHED_SCORES) && add_number(file, "small_network", SMALL_NETWORK) &&
            add_number(file, "last_frame", CLOSED_LOOP_FRAMES) && add_number(file, "after_frames", AFTER_FRAMES) &&
            add_gate(file, study) && add_rates(file, study) && add_runs(file, study) && add_costs(file, study) &&
            add_number(file, "momentum_error_contact_net", largest_momentum_error(study, "contact-net")) &&
            add_number(file, "momentum_error_baseline", largest_momentum_error(study, "baseline")) &&
-           add_laws(file, study) && add_transfer(file, study);
+           add_laws(file, study) && add_transfer(file, study) && add_claims(file, study);
 }
 
 static const CsvColumn columns[] = {FINDINGS_TEXT(SummaryRow, key), FINDINGS_TEXT(SummaryRow, value)};

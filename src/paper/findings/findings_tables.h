@@ -22,7 +22,7 @@ typedef struct FindingsTable {
 } FindingsTable;
 
 extern const FindingsTable findings_summary, findings_targets, findings_paper_table1, findings_factors,
-    findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims;
+    findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims, findings_systems;
 
 /* Columns of a row with members of these names; a text, a count, a number that may be NAN. */
 #define FINDINGS_TEXT(Row, member) \

@@ -2,8 +2,9 @@
 /* The tables that the study wrote into its folder, read again, and look-ups in them. */
 #pragma once
 #include "paper/study/paper_tables.h"
+#include "paper/systems/system_claims.h"
 
-enum { STUDY_TABLES = 6 };
+enum { STUDY_TABLES = 8 };
 
 typedef struct StudyTables {
     const ScoreRow *scores;
@@ -12,7 +13,9 @@ typedef struct StudyTables {
     const ClosedLoopRow *runs;
     const LawRow *laws;
     const TransferRow *transfers;
-    int score_count, network_count, rate_count, run_count, law_count, transfer_count;
+    const SystemScoreRow *system_scores;
+    const ClaimRow *claims;
+    int score_count, network_count, rate_count, run_count, law_count, transfer_count, system_score_count, claim_count;
     CsvTable tables[STUDY_TABLES]; /* owns the rows */
 } StudyTables;
 

@@ -98,9 +98,11 @@ static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scop
     char path[PATH_MAX];
     if (strcmp(tag->words[0], "caption") == 0 && tag->words[1] != NULL)
         return make_path(filling, tag->words[1], path) && template_write_caption(filling->out, path, filling->error);
-    if (tag->words[1] != NULL) return fill_number(filling, tag->words[0], tag->words[1], scope);
+    const bool whole = tag->words[1] != NULL && strcmp(tag->words[1], "text") == 0;
+    if (tag->words[1] != NULL && !whole) return fill_number(filling, tag->words[0], tag->words[1], scope);
     const char *value = find_value(scope, tag->words[0]);
     if (value == NULL) return fail(filling, "no value has this name", tag->words[0]);
+    if (whole) return template_write_line(filling->out, value, tag->words[0], filling->error);
     template_write_text(filling->out, value);
     return true;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fills a Markdown template with values from CSV files. Its tags:
 
-     {{NAME}}            the value NAME, as text
+     {{NAME}}            the value NAME, as text, cut to the length of a name
+     {{NAME text}}       the same, not cut: a text of one line of UTF-8
      {{NAME FORMAT}}     as a number: number (three significant digits), percent (0.25 is 25.0%), score (six decimals);
                          NAME may be a ratio: test/constant, frames/60
      {{caption FILE}}    the text of a file of one line

@@ -55,14 +55,24 @@ static size_t character_length(const char *text, size_t size) {
     return length > 0 && character >= 0x20 && character != 0x7f ? length : 0;
 }
 
+static bool check_line(const char *text, size_t size, const char *what, const char *path, Error *error) {
+    for (size_t at = 0, length; at < size; at += length) {
+        length = character_length(text + at, size - at);
+        if (length == 0) return error_input(error, path, "byte %zu: %s must be one line of UTF-8 text", at + 1, what);
+    }
+    return true;
+}
+
+bool template_write_line(FILE *out, const char *text, const char *where, Error *error) {
+    if (!check_line(text, strlen(text), "a text", where, error)) return false;
+    escape(out, *text == '\0' ? "–" : text);
+    return true;
+}
+
 static bool check_caption(char *caption, size_t size, const char *path, Error *error) {
     if (size > 0 && caption[size - 1] == '\n') caption[--size] = '\0';
     if (size == 0) return error_input(error, path, "the caption is empty");
-    for (size_t at = 0, length; at < size; at += length) {
-        length = character_length(caption + at, size - at);
-        if (length == 0) return error_input(error, path, "byte %zu: a caption must be one line of UTF-8 text", at + 1);
-    }
-    return true;
+    return check_line(caption, size, "a caption", path, error);
 }
 
 bool template_write_caption(FILE *out, const char *path, Error *error) {

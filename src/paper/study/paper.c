@@ -8,6 +8,7 @@
 #include "paper/study/paper_size.h"
 #include "paper/study/paper_tables.h"
 #include "paper/study/paper_training.h"
+#include "paper/systems/system.h"
 #include "study/study_key.h"
 #include "study/study_parts.h"
 
@@ -127,9 +128,46 @@ static bool study_transfer(Run *run, Error *error) {
     return true;
 }
 
+/* About the seconds on two cores. */
+static double scoring_weight(const PaperSize *size, int scene) {
+    const double run = scene < PAPER_TRAINING_SCENES ? 1 : 8, whole_frames = 300;
+    return size->system_launches * run * (size->system_frames > 0 ? size->system_frames / whole_frames : 1);
+}
+
+static bool score_systems(Run *run, Error *error) {
+    const PaperSize *size = run->size;
+    for (int i = 0; i < PAPER_SCENES; i++) {
+        char name[PART_NAME_SIZE];
+        SystemScoring scoring = {.systems = paper_systems,
+                                 .scene = i,
+                                 .path = run->datasets.scenes[i],
+                                 .launches = size->system_launches,
+                                 .frames = size->system_frames,
+                                 .timed_frames = size->system_timed_frames,
+                                 .repetitions = size->system_repetitions};
+        snprintf(name, sizeof name, "systems-%s", paper_scene_names[i]);
+        const StudyPart part = {name, scoring_weight(size, i), system_scores_write, &scoring};
+        if (!do_part(run, &part, error)) return false;
+    }
+    return true;
+}
+
+static bool study_systems(Run *run, Error *error) {
+    const SystemStudy study = {run->options->scenes, run->options->quick, run->options->seed};
+    for (int i = 0; paper_systems[i] != NULL; i++)
+        for (const SystemPart *own = paper_systems[i]->parts; own->name != NULL; own++) {
+            char name[PART_NAME_SIZE];
+            SystemWork work = {&study, own};
+            snprintf(name, sizeof name, "system-%s-%s", paper_systems[i]->name, own->name);
+            const StudyPart part = {name, study.quick ? own->quick_weight : own->weight, system_part_write, &work};
+            if (!do_part(run, &part, error)) return false;
+        }
+    return score_systems(run, error);
+}
+
 static bool all_parts(Run *run, Error *error) {
     return train_networks(run, error) && score_networks(run, error) && study_laws(run, error) &&
-           study_transfer(run, error);
+           study_transfer(run, error) && study_systems(run, error);
 }
 
 /* The study's parameters, for the report. */
@@ -156,12 +194,14 @@ static bool write_facts(const Run *run, Error *error) {
 }
 
 static bool write_tables(const Run *run, Error *error) {
-    static const CsvLayout *const layouts[] = {&paper_score_layout, &paper_trained_layout,
-                                               &paper_rate_layout,  &paper_closed_loop_layout,
-                                               &paper_law_layout,   &paper_transfer_layout};
+    static const CsvLayout *const layouts[] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
+                                               &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
+                                               &system_score_layout};
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         if (!study_parts_table(&run->parts, run->options->folder, layouts[i], error)) return false;
-    return write_facts(run, error);
+    for (int i = 0; paper_systems[i] != NULL; i++)
+        if (!study_parts_table(&run->parts, run->options->folder, paper_systems[i]->table, error)) return false;
+    return system_claims_write(paper_systems, run->options->folder, error) && write_facts(run, error);
 }
 
 /* A hash of all that decides the result: the program, the options, the scenes. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The whole study of Avatavului, Ifrim, Voncila (2023), from seed to tables: networks trained in every reading of the
    paper, one factor at a time; their rates of right predictions; their runs in place of the solver; laws of physics in
-   the loss; transfer learning. */
+   the loss; transfer learning; the systems that the paper cites (paper/systems/system.h). */
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
@@ -18,8 +18,8 @@ typedef struct PaperOptions {
     bool (*draw)(const struct PaperOptions *study, Error *error);
 } PaperOptions;
 
-/* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, study.csv and
-   folder/networks/NAME.npz, then draws. Finished parts are kept in folder/parts-KEY until that is done: the same study, by the
+/* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, system_scores.csv,
+   system_NAME.csv of each system, systems.csv, study.csv and folder/networks/NAME.npz, then draws. Finished parts are kept in folder/parts-KEY until that is done: the same study, by the
    same program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, ERROR_INTERRUPTED
    if progress_report() stops it. */
 bool paper_run(const PaperOptions *options, const Progress *progress, Error *error);

@@ -22,6 +22,9 @@ const PaperSize paper_whole_size = {
     .weights = {0.01, 0.1, 1, 10},
     .launches = {1, 2, 4, 8, 16},
     .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
+    .system_launches = 10,
+    .system_timed_frames = 90,
+    .system_repetitions = 3,
 };
 
 const PaperSize paper_quick_size = {
@@ -45,4 +48,8 @@ const PaperSize paper_quick_size = {
     .weights = {1},
     .launches = {1, 4},
     .transfer_x = {"-5:5:2", "-5:5:2", "-5:5:2"},
+    .system_launches = 1,
+    .system_frames = 60,
+    .system_timed_frames = 20,
+    .system_repetitions = 1,
 };

@@ -16,6 +16,8 @@ typedef struct PaperSize {
     double weights[PAPER_WEIGHTS];                  /* of laws, ended by 0 */
     int launches[PAPER_LAUNCHES];                   /* of transfer, ended by 0 */
     const char *transfer_x[3];                      /* single, stack, pyramid */
+    /* Of the scores of systems (paper/systems/system_scores.h). */
+    int system_launches, system_frames, system_timed_frames, system_repetitions;
 } PaperSize;
 
 extern const PaperSize paper_whole_size, paper_quick_size;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/interrupt.h"
 #include "cli/progress_bar.h"
-#include "cli/train.h"
+#include "cli/train/train.h"
 #include "impact_training/scene_training.h"
 
 #include <stdio.h>

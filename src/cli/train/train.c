@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/train.h"
+#include "cli/train/train.h"
 
 #include "cli/commands.h"
 #include "cli/notes.h"

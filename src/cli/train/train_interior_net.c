@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/progress_bar.h"
-#include "cli/train.h"
+#include "cli/train/train.h"
 #include "common/standard_io.h"
 #include "common/file.h"
 #include "interior_training/net_training.h"

@@ -9,7 +9,11 @@
     KIND(pair_net)          \
     KIND(momentum_schedule) \
     KIND(scene_net)         \
-    KIND(interior_net)
+    KIND(interior_net)      \
+    KIND(sain)              \
+    KIND(hybrid)            \
+    KIND(gns)               \
+    KIND(subspace)
 
 /* What to train, as on the command line. */
 typedef struct TrainRequest {

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The quick learning of the single box, and claims from tables made by hand. */
+#include "testing.h"
+
+#include "paper/systems/hybrid_study.h"
+
+#include "common/file.h"
+#include "tabulation_training/tabulation_training.h"
+
+#include <math.h>
+#include <sys/stat.h>
+
+/* A table from a part's lines, "system_hybrid:...". */
+static CsvTable table_of(FILE *lines) {
+    Error error = {0};
+    CsvTable table;
+    char line[1024];
+    const char *path = temporary_path("system_hybrid.csv");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    csv_header_print(file, &hybrid_layout);
+    rewind(lines);
+    while (fgets(line, sizeof line, lines) != NULL) {
+        assert_memory_equal(line, "system_hybrid:", 14);
+        fputs(line + 14, file);
+    }
+    fclose(file);
+    assert_ok(csv_table_read(&table, path, &hybrid_layout, &error), error);
+    return table;
+}
+
+/* No limit on times, only on what is true of any. */
+static void a_learning_has_rows_that_fit_together(void **state) {
+    (void)state;
+    Error error = {0};
+    const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
+    FILE *lines = tmpfile();
+    assert_non_null(lines);
+    assert_ok(hybrid_parts[0].write(&study, hybrid_parts[0].index, lines, NULL, &error), error);
+    CsvTable table = table_of(lines);
+    fclose(lines);
+    const HybridRow *rows = table.rows;
+    assert_int_equal(table.count, 3);
+    assert_near(rows[0].launches, TABULATION_FIRST, 0);
+    assert_near(rows[0].share, 0, 0);
+    for (int i = 0; i < table.count; i++) {
+        assert_int_equal(rows[i].scene, 0);
+        assert_int_equal(rows[i].changes, 0);
+        assert_true(rows[i].share_all <= rows[i].share);
+        assert_true(rows[i].us_step > 0 && rows[i].us_step_solve > 0);
+        assert_true(isnan(rows[i].error) || rows[i].error <= rows[i].error_95);
+        assert_true(i == 0 || (rows[i].entries > rows[i - 1].entries && rows[i].kib > rows[i - 1].kib &&
+                               rows[i].learning_ms > rows[i - 1].learning_ms));
+        assert_true(isnan(rows[i].paid) == (rows[i].saved_ms < 0));
+    }
+    csv_table_free(&table);
+}
+
+/* Of the three scenes, before and after a change; the claims' verdicts in order. */
+static void expect_verdicts(const HybridRow *like, double share_after, const char *const verdicts[5]) {
+    Error error = {0};
+    HybridRow rows[9];
+    static const int scenes[] = {0, 1, 3};
+    for (int i = 0; i < 9; i++) {
+        rows[i] = *like;
+        rows[i].scene = scenes[i % 3];
+        rows[i].changes = i >= 3;
+        rows[i].turned = i >= 6;
+        if (i >= 6) rows[i].share = share_after;
+    }
+    const char *path = temporary_path("system_hybrid.csv");
+    assert_ok(csv_table_write(path, &hybrid_layout, rows, 9, &error), error);
+    char *text = NULL, line[1024];
+    size_t size;
+    FILE *lines = open_memstream(&text, &size);
+    assert_non_null(lines);
+    const Claims claims = {.system = "hybrid", .folder = temporary_folder, .lines = lines};
+    assert_ok(hybrid_claim(&claims, &error), error);
+    fclose(lines);
+    const char *at = text;
+    for (int i = 0; i < 5; i++) {
+        const size_t length = strcspn(at, "\n");
+        snprintf(line, sizeof line, "%.*s", (int)length, at);
+        assert_string_equal(strrchr(line, ',') + 1, verdicts[i]);
+        at += length + 1;
+    }
+    assert_int_equal(*at, 0);
+    free(text);
+}
+
+static void verdicts_follow_from_the_table(void **state) {
+    (void)state;
+    HybridRow row = {.tolerance = 0.1,
+                     .launches = 1000,
+                     .share = 0.6,
+                     .share_all = 0.1,
+                     .error = 0.02,
+                     .error_95 = 0.08,
+                     .us_answer = 1,
+                     .us_solve = 10,
+                     .us_question = 1,
+                     .us_step = 4,
+                     .us_step_solve = 10,
+                     .online_error = NAN,
+                     .online_us = NAN,
+                     .entries = 5,
+                     .kib = 6,
+                     .learning_ms = 7,
+                     .saved_ms = 8,
+                     .paid = 300};
+    expect_verdicts(&row, 0.4, (const char *const[]){"yes", "yes", "yes", "yes", "yes"});
+    row.share = 0.4;
+    row.error_95 = 0.2;
+    row.us_step = 8;
+    row.paid = NAN;
+    expect_verdicts(&row, 0.1, (const char *const[]){"no", "no", "no", "no", "no"});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_learning_has_rows_that_fit_together),
+                                       cmocka_unit_test(verdicts_follow_from_the_table)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* paper/systems: the study of sain, and its claims on made-up tables. */
+#include "testing.h"
+
+#include "paper/systems/sain_study.h"
+#include "study/study_parts.h"
+
+#include <math.h>
+#include <unistd.h>
+
+/* The same part twice: the same rows, one for each form and scene. */
+static void a_part_is_repeatable(void **state) {
+    (void)state;
+    static char texts[2][2048];
+    const SystemStudy study = {SOURCE_DIR "/scenes", true, 1};
+    for (int run = 0; run < 2; run++) {
+        Error error = {0};
+        FILE *lines = tmpfile();
+        assert_non_null(lines);
+        assert_ok(system_sain.parts[0].write(&study, system_sain.parts[0].index, lines, NULL, &error), error);
+        rewind(lines);
+        assert_true(fread(texts[run], 1, sizeof texts[run] - 1, lines) > 0);
+        fclose(lines);
+    }
+    assert_string_equal(texts[0], texts[1]);
+    int rows = 0;
+    for (const char *at = texts[0]; (at = strchr(at, '\n')) != NULL; at++) rows++;
+    assert_int_equal(rows, RELATION_FORMS * SAIN_SCENES);
+}
+
+/* Errors of the forms: proportional to `on` and so on, in each scene and for each number of launches. */
+static void write_table(const char *path, double on, double off, double shuffled) {
+    const double errors[RELATION_FORMS] = {on, off, shuffled};
+    SainRow rows[RELATION_FORMS * SAIN_SCENES * 2];
+    int count = 0;
+    Error error = {0};
+    for (int launches = 1; launches <= 16; launches *= 16)
+        for (int form = 0; form < RELATION_FORMS; form++)
+            for (int scene = 0; scene < SAIN_SCENES; scene++)
+                rows[count++] = (SainRow){scene, form, launches, 1, errors[form], 2, 3};
+    assert_ok(csv_table_write(path, &sain_layout, rows, count, &error), error);
+}
+
+static void assert_verdicts(const char *expected) {
+    char path[600], text[4096] = "", found[64] = "";
+    Error error = {0};
+    FILE *lines = tmpfile();
+    snprintf(path, sizeof path, "%s", temporary_path("system_sain.csv"));
+    *strrchr(path, '/') = '\0';
+    const Claims claims = {"sain", path, NULL, 0, lines};
+    assert_ok(sain_claims_state(&claims, &error), error);
+    rewind(lines);
+    assert_true(fread(text, 1, sizeof text - 1, lines) > 0);
+    fclose(lines);
+    for (char *line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        strncat(found, strrchr(line, ',') + 1, 8);
+        strcat(found, " ");
+    }
+    assert_string_equal(found, expected);
+}
+
+static void verdicts_follow_from_the_table(void **state) {
+    (void)state;
+    const char *path = temporary_path("system_sain.csv");
+    write_table(path, 1, 2, 3);
+    assert_verdicts("yes yes yes yes ");
+    write_table(path, 1.99, 1, 3);
+    assert_verdicts("no yes partly partly ");
+    write_table(path, 5, 4, 4);
+    assert_verdicts("no no no no ");
+}
+
+static void medians_leave_out_other_rows(void **state) {
+    (void)state;
+    SainRow rows[] = {{SAIN_STACK, RELATION_ENGINE, 4, 1, 3, 0, 0},
+                      {SAIN_STACK, RELATION_ENGINE, 4, 2, 1, 0, 0},
+                      {SAIN_STACK, RELATION_ENGINE, 4, 3, 2, 0, 0},
+                      {SAIN_PYRAMID, RELATION_ENGINE, 4, 1, 9, 0, 0},
+                      {SAIN_STACK, RELATION_ALONE, 4, 1, 9, 0, 0}};
+    const CsvTable table = {.rows = rows, .count = 5};
+    assert_near(sain_median(&table, SAIN_STACK, RELATION_ENGINE, 4, sain_error), 2, 0);
+    assert_true(isnan(sain_median(&table, SAIN_STACK, RELATION_SHUFFLED, 4, sain_error)));
+    assert_int_equal(sain_most_launches(&table), 4);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_part_is_repeatable),
+                                       cmocka_unit_test(verdicts_follow_from_the_table),
+                                       cmocka_unit_test(medians_leave_out_other_rows)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
+#include "testing.h"
+
+#include "common/file.h"
+#include "paper/systems/system.h"
+#include "paper/systems/system_strips.h"
+#include "study/study_parts.h"
+
+#include <math.h>
+
+typedef struct DoubleRow {
+    double launches, error;
+} DoubleRow;
+
+static const CsvColumn columns[] = {
+    {"launches", CSV_NUMBER, .offset = offsetof(DoubleRow, launches), .minimum = 1, .maximum = 100},
+    {"error", CSV_NUMBER, .offset = offsetof(DoubleRow, error), .maximum = 100},
+};
+static const CsvLayout double_table = CSV_LAYOUT("system_double", columns, DoubleRow, .min_rows = 1, .max_rows = 10);
+
+static int parts_written;
+
+static bool write_part(const SystemStudy *study, int index, FILE *lines, const Progress *progress, Error *error) {
+    (void)progress;
+    parts_written++;
+    const DoubleRow row = {index, study->quick ? 4 : 0.5 * index};
+    return study_parts_print(lines, &double_table, &row, error);
+}
+
+static const SystemPart parts[] = {{"one", 1, 1, 1, write_part}, {"ten", 1, 1, 10, write_part}, {0}};
+
+/* From the table and from the scores. */
+static bool claim(const Claims *claims, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, claims->folder, &double_table, error)) return false;
+    const DoubleRow *rows = table.rows;
+    const SystemScoreRow *score = system_score_find(claims->scores, claims->score_count, "interior:near=0.01", 1);
+    const Claim error_falls = {"The error falls, \"always\"", "A paper, section 1", "error",
+                               claim_at_most(rows[1].error, 5, 10)},
+                quick = {"It is quick", "A paper, section 2", "time", claim_at_most(score->us_step, 1e9, 1e9)};
+    const bool stated = claim_state(claims, &error_falls, error, "%.3g m/s", rows[1].error) &&
+                        claim_state(claims, &quick, error, "below %g s, %.1f s, %g s", 1e3, (double)NAN, -(double)NAN);
+    csv_table_free(&table);
+    return stated;
+}
+
+static bool plot(const char *folder, GnuplotPage *page, Error *error) {
+    (void)folder, (void)page, (void)error;
+    return true;
+}
+
+static const PaperSystem system_double = {.name = "double",
+                                          .methods = SYSTEM_METHODS("interior:near=0.01", "interior:near=0.5"),
+                                          .table = &double_table,
+                                          .parts = parts,
+                                          .claim = claim,
+                                          .plot = plot};
+static const PaperSystem *const systems[] = {&system_double, NULL};
+
+static const char *folder(void) {
+    temporary_path(""); /* makes it */
+    return temporary_folder;
+}
+
+/* Does the study's parts in the folder; those that are there are not done again. */
+static void do_parts(StudyParts *done) {
+    Error error = {0};
+    *done = (StudyParts){.total = 1};
+    assert_ok(study_parts_open(done, folder(), 1, &error), error);
+    const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .seed = 1};
+    for (const SystemPart *own = parts; own->name != NULL; own++) {
+        SystemWork work = {&study, own};
+        const StudyPart part = {own->name, own->weight, system_part_write, &work};
+        assert_ok(study_parts_do(done, &part, &error), error);
+    }
+    SystemScoring scoring = {.systems = systems,
+                             .scene = 1,
+                             .path = SOURCE_DIR "/scenes/stack.yaml",
+                             .launches = 2,
+                             .frames = 50,
+                             .timed_frames = 5,
+                             .repetitions = 1};
+    const StudyPart scores = {"scores", 1, system_scores_write, &scoring};
+    assert_ok(study_parts_do(done, &scores, &error), error);
+    assert_ok(study_parts_table(done, folder(), &double_table, &error), error);
+    assert_ok(study_parts_table(done, folder(), &system_score_layout, &error), error);
+}
+
+static void write_study(void) {
+    StudyParts done;
+    do_parts(&done);
+    study_parts_close(&done);
+}
+
+static void parts_and_scores_are_done_once(void **state) {
+    (void)state;
+    remove_temporary_folder();
+    temporary_folder[0] = '\0';
+    parts_written = 0;
+    StudyParts done;
+    do_parts(&done);
+    assert_int_equal(parts_written, 2);
+    study_parts_close(&done);
+    Error error = {0};
+    CsvTable first, again;
+    assert_ok(csv_table_read_from(&first, folder(), &system_score_layout, &error), error);
+    do_parts(&done); /* as after an interruption */
+    assert_int_equal(parts_written, 2);
+    assert_ok(csv_table_read_from(&again, folder(), &system_score_layout, &error), error);
+    assert_int_equal(first.count, again.count);
+    for (int i = 0; i < first.count; i++) {
+        const SystemScoreRow *a = first.rows, *b = again.rows;
+        assert_near(b[i].us_step, a[i].us_step, 0); /* the same measurement, not another */
+    }
+    assert_ok(study_parts_remove(&done, &error), error);
+    study_parts_close(&done);
+    csv_table_free(&first);
+    csv_table_free(&again);
+}
+
+static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
+    const SystemScoreRow *row = system_score_find(scores->rows, scores->count, method, 1);
+    assert_non_null(row);
+    return row;
+}
+
+static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
+    (void)state;
+    Error error = {0};
+    CsvTable scores;
+    write_study();
+    assert_ok(csv_table_read_from(&scores, folder(), &system_score_layout, &error), error);
+    assert_int_equal(scores.count, 5); /* engine, momentum, interior, the system, its ablation */
+    const SystemScoreRow *engine = score(&scores, "engine"), *net = score(&scores, "interior:near=0.01");
+    assert_string_equal(engine->system, SYSTEM_RIVAL);
+    assert_string_equal(net->system, "double");
+    assert_near(engine->frames_engine, 50, 0); /* never apart from itself */
+    assert_true(engine->frames_converged < 50 && net->frames_engine < 50);
+    assert_near(net->launches, 2, 0);
+    assert_near(engine->momentum_error, 0, 0);
+    assert_near(engine->fallback_share, 0, 0);
+    assert_true(net->fallback_share >= 0 && net->fallback_share <= 1);
+    assert_true(net->us_step > 0 && net->us_step_engine > 0);
+    csv_table_free(&scores);
+}
+
+static void claims_follow_from_tables_and_scores(void **state) {
+    (void)state;
+    Error error = {0};
+    CsvTable claims;
+    write_study();
+    assert_ok(system_claims_write(systems, folder(), &error), error);
+    assert_ok(csv_table_read_from(&claims, folder(), &claim_layout, &error), error);
+    assert_int_equal(claims.count, 2);
+    const ClaimRow *rows = claims.rows;
+    assert_string_equal(rows[0].system, "double");
+    assert_string_equal(rows[0].claim, "The error falls, \"always\"");
+    assert_string_equal(rows[0].figure, "5 m/s"); /* half of ten launches */
+    assert_int_equal(rows[0].holds, CLAIM_YES);
+    assert_string_equal(rows[1].figure, "below 1000 s, – s, – s");
+    csv_table_free(&claims);
+}
+
+static void rules_have_two_limits(void **state) {
+    (void)state;
+    assert_int_equal(claim_at_least(3, 3, 2), CLAIM_YES);
+    assert_int_equal(claim_at_least(2.9, 3, 2), CLAIM_PARTLY);
+    assert_int_equal(claim_at_least(1.9, 3, 2), CLAIM_NO);
+    assert_int_equal(claim_at_most(3, 3, 4), CLAIM_YES);
+    assert_int_equal(claim_at_most(4, 3, 4), CLAIM_PARTLY);
+    assert_int_equal(claim_at_most(4.1, 3, 4), CLAIM_NO);
+    assert_int_equal(claim_at_least((double)NAN, 3, 2), CLAIM_NO);
+    assert_int_equal(claim_at_most((double)NAN, 3, 4), CLAIM_NO);
+    assert_int_equal(claim_in_cases(0, 3), CLAIM_NO);
+    assert_int_equal(claim_in_cases(1, 3), CLAIM_PARTLY);
+    assert_int_equal(claim_in_cases(3, 3), CLAIM_YES);
+    assert_int_equal(claim_in_cases(0, 0), CLAIM_NO);
+}
+
+static void write_text(const char *name, const char *text) {
+    Error error = {0};
+    assert_ok(file_write(temporary_path(name), text, strlen(text), &error), error);
+}
+
+static void refuse(const char *message) {
+    Error error = {0};
+    assert_false(system_claims_write(systems, folder(), &error));
+    assert_error(error, ERROR_INPUT, message);
+}
+
+static void damaged_tables_are_refused(void **state) {
+    (void)state;
+    write_study();
+    write_text("system_double.csv", "launches,error\n1,0.5\n10,-5\n");
+    refuse("system_double.csv:3:4: error: ");
+    write_text("system_double.csv", "launches,error\n");
+    refuse("system_double.csv");
+    write_text("system_scores.csv", "system,method\nrival,engine\n");
+    refuse("system_scores.csv:1:1: error: ");
+    assert_int_equal(unlink(temporary_path("system_scores.csv")), 0);
+    refuse("system_scores.csv");
+}
+
+/* What the table could not hold is refused when it is written. */
+static void a_text_that_cannot_be_read_back_is_refused(void **state) {
+    (void)state;
+    char text[CLAIM_TEXT_SIZE + 2];
+    memset(text, 'x', sizeof text - 1);
+    text[sizeof text - 1] = '\0';
+    FILE *lines = fopen("/dev/null", "w");
+    assert_non_null(lines);
+    const Claims claims = {.system = "double", .lines = lines};
+    const Claim fits = {text + 1, "source", "measured", CLAIM_NO}, beyond = {text, "source", "measured", CLAIM_NO},
+                empty = {"", "source", "measured", CLAIM_NO};
+    Error error = {0};
+    assert_ok(claim_state(&claims, &fits, &error, "%d", 1), error);
+    assert_false(claim_state(&claims, &beyond, &error, "%d", 1));
+    assert_error(error, ERROR_INPUT, "double: error: ");
+    error = (Error){0};
+    assert_false(claim_state(&claims, &empty, &error, "%d", 1));
+    error = (Error){0};
+    assert_false(claim_state(&claims, &fits, &error, "%s", text));
+    assert_int_equal(fclose(lines), 0);
+}
+
+static bool stop(void *context, double done, double total) {
+    (void)context, (void)done, (void)total;
+    return false;
+}
+
+static void strips_are_refused_or_stopped(void **state) {
+    (void)state;
+    Error error = {0};
+    const Progress progress = {stop, NULL};
+    assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
+    error = (Error){0};
+    assert_false(system_strips_draw(systems, "/nowhere", true, folder(), NULL, &error));
+    assert_error(error, ERROR_INPUT, "/nowhere/stack.yaml");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_and_scores_are_done_once),
+        cmocka_unit_test(scores_are_those_of_runs_beside_the_engine_s),
+        cmocka_unit_test(claims_follow_from_tables_and_scores),
+        cmocka_unit_test(rules_have_two_limits),
+        cmocka_unit_test(damaged_tables_are_refused),
+        cmocka_unit_test(a_text_that_cannot_be_read_back_is_refused),
+        cmocka_unit_test(strips_are_refused_or_stopped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
