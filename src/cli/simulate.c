@@ -105,6 +105,12 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
                             .progress = progress_bar_begin(scene->name)};
     bool ok = simulate_watched(scene, method, &watch, error);
     progress_bar_end();
+    result->judged = simulate_verdict_end(&result->verdict, error);
+    if (ok) {
+        char words[TRAJECTORY_VERDICT_SIZE];
+        simulate_verdict_words(&result->verdict, words);
+        recorder_judge(recorder, words, result->verdict.reading.frame, result->verdict.reading.body);
+    }
     ok = ok && recorder_finish(recorder, error);
     if (ok) {
         result->bodies = recorder_bodies(recorder);
@@ -116,8 +122,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
-    if (error->kind != ERROR_NONE && error->kind != ERROR_INPUT) return false;
-    if (!simulate_verdict_end(&result->verdict, error)) return false;
+    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_non_finite(error))) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }

@@ -10,6 +10,7 @@ typedef struct SimulateResult {
     uint64_t state; /* hash of the last frame */
     NetworkFallbacks fallbacks;
     SimulateVerdict verdict;
+    bool judged; /* there is a verdict */
 } SimulateResult;
 
 /* Prints all but the verdict. */

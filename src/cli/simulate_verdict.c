@@ -2,6 +2,8 @@
 #include "cli/simulate_verdict.h"
 
 #include "common/file.h"
+#include "common/text_add.h"
+#include "simulate/recorder.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -76,7 +78,7 @@ static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE
     }
 }
 
-void simulate_verdict_print(const SimulateVerdict *verdict) {
+void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
     const VerdictReading *reading = &verdict->reading;
     const double time = reading->frame * (double)verdict->scene->dt;
     char figure[FIGURE_SIZE];
@@ -84,9 +86,34 @@ void simulate_verdict_print(const SimulateVerdict *verdict) {
     const int count = count_bodies(verdict, &fallen);
     write_figure(verdict, figure);
     const char *when = reading->verdict != VERDICT_SWAYS ? "at" : runs_to_the_end(verdict) ? "to the end," : "until";
-    printf("    verdict: %s %s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
-    if (!verdict->watch.run.stands && fallen > 0) printf("; %d of %d bodies have fallen", fallen, count);
-    printf("\n");
+    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s %s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
+    if (!verdict->watch.run.stands && fallen > 0)
+        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d bodies have fallen", fallen, count);
+}
+
+void simulate_verdict_print(const SimulateVerdict *verdict) {
+    char words[TRAJECTORY_VERDICT_SIZE];
+    simulate_verdict_words(verdict, words);
+    printf("    verdict: %s\n", words);
+}
+
+Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
+    SimulateVerdict verdict;
+    char words[TRAJECTORY_VERDICT_SIZE];
+    Recorder *recorder = recorder_create(scene, method, error);
+    if (recorder == NULL) return NULL;
+    const StepObserver observer = simulate_verdict_observer(&verdict);
+    const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
+    Trajectory *run = NULL;
+    if (simulate_verdict_begin(&verdict, scene, method->text, error) &&
+        simulate_watched(scene, method, &watch, error) && simulate_verdict_end(&verdict, error)) {
+        run = recorder_take(recorder);
+        simulate_verdict_words(&verdict, words);
+        trajectory_judge(run, words, verdict.reading.frame, verdict.reading.body);
+    }
+    simulate_verdict_free(&verdict);
+    recorder_destroy(recorder);
+    return run;
 }
 
 /* What the value is. */

@@ -25,8 +25,14 @@ StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
 void simulate_verdict_free(SimulateVerdict *verdict);
 
-/* Prints "    verdict: falls at 4.22 s (body 7, 0.53 m lower)". */
+/* "falls at 4.22 s (body 7, 0.53 m lower)" */
+void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
+
+/* Prints "    verdict: " and these words. */
 void simulate_verdict_print(const SimulateVerdict *verdict);
+
+/* simulate() with the verdict in the run. */
+Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 
 /* Puts it with all figures as an object into JSON (src/study/README.md, The verdict on one run). */
 void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key);

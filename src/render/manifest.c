@@ -3,7 +3,6 @@
 #include "render/manifest_print.h"
 
 #include "common/file.h"
-#include "common/hash.h"
 #include "common/json_write.h"
 #include "render/frame_texts.h"
 #include "render/manifest_view.h"
@@ -12,26 +11,6 @@
 #include <stdlib.h>
 
 enum { FORMAT = 1 };
-
-static uint64_t add(uint64_t hash, const void *data, size_t size) {
-    uint64_t parts[] = {hash, hash_xxh3(data, size)};
-    return hash_xxh3(parts, sizeof parts);
-}
-
-/* Hashes everything of a run that a picture can show. */
-static uint64_t hash_run(const Trajectory *run) {
-    size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
-    uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
-    hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
-    hash = add(hash, &run->camera_center, sizeof run->camera_center);
-    hash = add(hash, &run->camera_size, sizeof run->camera_size);
-    hash = add(hash, run->position, poses * sizeof *run->position);
-    hash = add(hash, run->angle, poses * sizeof *run->angle);
-    hash = add(hash, run->velocity, poses * sizeof *run->velocity);
-    hash = add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
-    hash = add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
-    return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
-}
 
 static void write_runs(JsonWriter *json, const Manifest *manifest) {
     json_begin_array(json, "runs", JSON_LINES);
@@ -46,7 +25,7 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_text(json, "cost", manifest->options->look.costs[i]);
         json_put_int(json, "frames", run->frames);
         json_put_int(json, "bomb", run->bomb);
-        json_put_hash(json, "hash", hash_run(run));
+        json_put_hash(json, "hash", trajectory_hash(run));
         json_end(json);
     }
     json_end(json);

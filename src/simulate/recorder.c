@@ -181,6 +181,11 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
     return frame == 0 || part->no_contacts || record_contacts(part, row, world, error);
 }
 
+void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {
+    trajectory_judge(recorder->parts[0], words, frame, body);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_judge(recorder->streams[i], words, frame, body);
+}
+
 bool recorder_finish(Recorder *recorder, Error *error) {
     if (recorder->background == NULL) return true;
     Trajectory *part = recorder->parts[recorder->current];

@@ -28,6 +28,9 @@ void recorder_destroy(Recorder *recorder);
 /* Records a frame; 0: before the first step. Frames in rising order, without gaps. RunWatch does it. */
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error);
 
+/* After the run, before recorder_finish() or recorder_take(): the verdict on it (trajectory_judge). */
+void recorder_judge(Recorder *recorder, const char *words, int frame, int body);
+
 /* After the run: the files are written. */
 bool recorder_finish(Recorder *recorder, Error *error);
 

@@ -23,5 +23,5 @@ typedef struct CsvRunNotes {
    times that are not equidistant, or a file above 1 GiB. */
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error);
 
-/* Writes what csv_run_read() gives back bit by bit: all but the contacts. */
+/* Writes what csv_run_read() gives back bit by bit: all but contacts and verdict. */
 bool csv_run_write(const Trajectory *run, const char *path, Error *error);

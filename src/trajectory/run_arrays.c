@@ -6,7 +6,10 @@
 #include <string.h>
 
 /* Arrays that come together or not at all. */
-enum { ALONE, VELOCITIES, CONTACTS, GROUPS };
+enum { ALONE, VELOCITIES, CONTACTS, VERDICT, GROUPS };
+
+static const char *const group_words[GROUPS] = {
+    [VELOCITIES] = "the two", [CONTACTS] = "the six contact arrays", [VERDICT] = "the three of the verdict"};
 
 static const struct {
     const char *name;
@@ -33,6 +36,9 @@ static const struct {
     {"contact_point", CONTACTS, {NULL}},
     {"contact_normal", CONTACTS, {NULL}},
     {"contact_impulse", CONTACTS, {NULL}},
+    {"verdict", VERDICT, {NULL}},
+    {"verdict_frame", VERDICT, {NULL}},
+    {"verdict_body", VERDICT, {NULL}},
 };
 enum { COUNT = sizeof arrays / sizeof *arrays, OTHERS = sizeof arrays[0].others / sizeof *arrays[0].others };
 
@@ -89,8 +95,7 @@ static bool check_groups(const NpzFile *file, Error *error) {
         for (int k = 0; k < COUNT && arrays[i].group != ALONE; k++)
             if (arrays[i].group == arrays[k].group && npz_has(file, arrays[i].name) && !npz_has(file, arrays[k].name))
                 return error_input(error, npz_path(file), "has '%s' but not '%s'; give both, or none of %s",
-                                   arrays[i].name, arrays[k].name,
-                                   arrays[i].group == CONTACTS ? "the six contact arrays" : "the two");
+                                   arrays[i].name, arrays[k].name, group_words[arrays[i].group]);
     return true;
 }
 

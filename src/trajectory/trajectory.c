@@ -4,13 +4,14 @@
 
 #include "common/array.h"
 #include "common/hash.h"
+#include "common/utf8.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
 static double measure(double frames, double bodies, double contacts) {
-    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 1024;
+    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 4096;
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
 
@@ -37,7 +38,8 @@ Trajectory *trajectory_create(int frames, int bodies, Error *error) {
         return NULL;
     }
     Trajectory *t = calloc(1, sizeof *t);
-    if (t != NULL) *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1};
+    if (t != NULL)
+        *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
     if (t == NULL || !allocate(t)) {
         trajectory_destroy(t);
         error_memory(error, "trajectory");
@@ -61,6 +63,12 @@ void trajectory_destroy(Trajectory *t) {
     free(t->contact_start);
     free(t->contacts);
     free(t);
+}
+
+void trajectory_judge(Trajectory *t, const char *words, int frame, int body) {
+    snprintf(t->verdict, sizeof t->verdict, "%.*s", (int)utf8_cut(words, sizeof t->verdict - 1), words);
+    t->verdict_frame = frame;
+    t->verdict_body = body;
 }
 
 bool trajectory_has(const Trajectory *t, int frame, int body) {

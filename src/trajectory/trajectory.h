@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { TRAJECTORY_VERSION = 1, TRAJECTORY_NAME_SIZE = 128 };
+enum { TRAJECTORY_VERSION = 1, TRAJECTORY_NAME_SIZE = 128, TRAJECTORY_VERDICT_SIZE = 256 };
 
 /* Readers accept files of at most 2 GiB, so no larger trajectory is made. */
 #define TRAJECTORY_MAX_BYTES 2147483648.0
@@ -44,6 +44,9 @@ typedef struct Trajectory {
     bool no_contacts;                  /* contacts were not recorded: none are here, nor in files */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
+    char verdict
+        [TRAJECTORY_VERDICT_SIZE];   /* how the run ended: "falls at 4.22 s (body 7, 0.53 m lower)"; empty: unknown */
+    int verdict_frame, verdict_body; /* where that was decided; -1: nowhere, or unknown */
     size_t contact_capacity;
     int last_step; /* while contacts are added: contact_start is valid up to the end of this step */
 } Trajectory;
@@ -52,6 +55,9 @@ typedef struct Trajectory {
    the 2 GiB limit of files; trajectory_add_contact() fails for the same reasons. */
 Trajectory *trajectory_create(int frames, int bodies, Error *error);
 void trajectory_destroy(Trajectory *trajectory);
+
+/* Sets the verdict; longer words are cut. It is no part of hashes and comparisons. */
+void trajectory_judge(Trajectory *trajectory, const char *words, int frame, int body);
 
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
@@ -78,14 +84,17 @@ int trajectory_impact(const Trajectory *trajectory);
    index: the hash of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
+/* XXH3 over all that a picture can show: bodies, view, states and contacts of all frames; names do not count. */
+uint64_t trajectory_hash(const Trajectory *trajectory);
+
 /* A copy with every step'th frame from frame 0 on, dt multiplied by step, and the contacts of the steps that end in
-   these frames. The caller destroys it. step >= 1. */
+   these frames; its verdict is in the first of them from the verdict's frame on. The caller destroys it. step >= 1. */
 Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
-   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2]. Without the velocities or the
-   contacts where they are unknown. */
+   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], verdict, verdict_frame, verdict_body.
+   Without the velocities, the contacts or the verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others
@@ -93,7 +102,8 @@ bool trajectory_write(const Trajectory *trajectory, const char *path, Error *err
    NULL with error set (ERROR_INPUT, naming the file) for a file that is damaged, of another version or inconsistent:
    an array whose name looks like a mistyped one,
    shapes that do not match, contacts out of range or of bodies that did not exist before the step, infinite poses, a
-   body that reappears after it was removed, a static body that is removed, dt or a size not positive. */
+   body that reappears after it was removed, a static body that is removed, dt or a size not positive, a verdict on a frame
+   or body that the run does not have. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
 /* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */

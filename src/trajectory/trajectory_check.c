@@ -6,6 +6,16 @@
 
 static bool finite(Vec2 v) { return isfinite(v.x) && isfinite(v.y); }
 
+static bool check_verdict(const Trajectory *t, const char *path, Error *error) {
+    for (const char *c = t->verdict; *c != '\0'; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            return error_input(error, path, "the verdict holds control characters");
+    if (t->verdict_frame < -1 || t->verdict_frame >= t->frames)
+        return error_input(error, path, "the verdict is on frame %d of %d", t->verdict_frame, t->frames);
+    return (t->verdict_body >= -1 && t->verdict_body < t->bodies) ||
+           error_input(error, path, "the verdict is on body %d of %d", t->verdict_body, t->bodies);
+}
+
 static bool check_head(const Trajectory *t, const char *path, Error *error) {
     if (!isfinite(t->dt) || !(t->dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)t->dt);
@@ -73,7 +83,7 @@ static bool check_contact(const Trajectory *t, int step, int64_t index, const ch
 }
 
 bool trajectory_check(const Trajectory *t, const char *path, Error *error) {
-    if (!check_head(t, path, error)) return false;
+    if (!check_head(t, path, error) || !check_verdict(t, path, error)) return false;
     for (int frame = 0; frame < t->frames; frame++) {
         for (int body = 0; body < t->bodies; body++)
             if (!check_pose(t, frame, body, path, error)) return false;

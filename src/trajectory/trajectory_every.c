@@ -12,6 +12,12 @@ static void copy_frame(Trajectory *to, int to_frame, const Trajectory *from, int
     memcpy(to->angular_velocity + to_at, from->angular_velocity + at, bodies * sizeof *to->angular_velocity);
 }
 
+/* The verdict's frame may have been left out; what it saw is there in the next one. */
+static int kept_frame(const Trajectory *to, int frame, int step) {
+    const int kept = frame / step + (frame % step != 0);
+    return frame >= 0 && kept < to->frames ? kept : -1;
+}
+
 static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     memcpy(to->scene, from->scene, sizeof to->scene);
     memcpy(to->method, from->method, sizeof to->method);
@@ -19,6 +25,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     to->iterations = from->iterations;
     to->dt = from->dt * (float)step;
     to->bomb = from->bomb;
+    trajectory_judge(to, from->verdict, kept_frame(to, from->verdict_frame, step), from->verdict_body);
     to->no_velocities = from->no_velocities;
     to->no_contacts = from->no_contacts;
     to->camera_center = from->camera_center;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory/trajectory_npz.h"
 
+#include "common/utf8.h"
 #include "npz/npz_stream.h"
 
 #include <stdio.h>
@@ -11,7 +12,7 @@
 enum { POSITION, ANGLE, VELOCITY, ANGULAR_VELOCITY, CONTACT_START, BODIES, FEATURE, POINT, NORMAL, IMPULSE, GROWING };
 
 /* Those that do not. */
-enum { KNOWN = 10 };
+enum { KNOWN = 10, VERDICT = 3 };
 
 /* Contacts that are split at a time; their arrays stay in the cache. */
 enum { BLOCK = 1024 };
@@ -37,6 +38,8 @@ struct TrajectoryNpz {
     uint64_t scene_hash;
     float dt;
     int32_t version, iterations, bomb;
+    char verdict[TRAJECTORY_VERDICT_SIZE];
+    int32_t verdict_frame, verdict_body;
     Vec2 camera[2];
     Vec2 *size;
     uint8_t *fixed;
@@ -49,6 +52,12 @@ void trajectory_npz_destroy(TrajectoryNpz *npz) {
     free(npz->size);
     free(npz->fixed);
     free(npz);
+}
+
+void trajectory_npz_judge(TrajectoryNpz *npz, const char *words, int frame, int body) {
+    snprintf(npz->verdict, sizeof npz->verdict, "%.*s", (int)utf8_cut(words, sizeof npz->verdict - 1), words);
+    npz->verdict_frame = frame;
+    npz->verdict_body = body;
 }
 
 static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
@@ -65,6 +74,7 @@ static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
     npz->dt = head->dt;
     npz->version = TRAJECTORY_VERSION;
     npz->bomb = head->bomb;
+    trajectory_npz_judge(npz, head->verdict, head->verdict_frame, head->verdict_body);
     npz->camera[0] = head->camera_center;
     npz->camera[1] = head->camera_size;
     npz->bodies = head->bodies;
@@ -118,7 +128,8 @@ TrajectoryNpz *trajectory_npz_create(const Trajectory *head, const char *path, E
     TrajectoryNpz *npz = calloc(1, sizeof *npz);
     bool done = (npz != NULL && copy_head(npz, head)) || error_memory(error, path);
     if (done) snprintf(npz->path, sizeof npz->path, "%s", path);
-    done = done && (npz->stream = npz_stream_create(path, KNOWN + GROWING, error)) != NULL && add_arrays(npz, error);
+    done = done && (npz->stream = npz_stream_create(path, KNOWN + GROWING + VERDICT, error)) != NULL &&
+           add_arrays(npz, error);
     if (done) return npz;
     trajectory_npz_destroy(npz);
     return NULL;
@@ -167,4 +178,18 @@ bool trajectory_npz_add(TrajectoryNpz *npz, const Trajectory *part, Error *error
            (npz->no_contacts || add_contacts(npz, part, error));
 }
 
-bool trajectory_npz_finish(TrajectoryNpz *npz, Error *error) { return npz_stream_finish(npz->stream, error); }
+/* The last arrays of the file: a verdict is known after the run. */
+static bool add_verdict(TrajectoryNpz *npz, Error *error) {
+    const NpzArray arrays[VERDICT] = {
+        {"verdict", NPZ_TEXT, 0, {0}, npz->verdict},
+        {"verdict_frame", NPZ_INT32, 0, {0}, &npz->verdict_frame},
+        {"verdict_body", NPZ_INT32, 0, {0}, &npz->verdict_body},
+    };
+    for (int i = 0; i < VERDICT && npz->verdict[0] != '\0'; i++)
+        if (npz_stream_add(npz->stream, &arrays[i], error) < 0) return false;
+    return true;
+}
+
+bool trajectory_npz_finish(TrajectoryNpz *npz, Error *error) {
+    return add_verdict(npz, error) && npz_stream_finish(npz->stream, error);
+}

@@ -44,6 +44,8 @@ static bool check_shapes(const Trajectory *t, const NpzFile *file, int64_t conta
     const NpzArray all[] = {
         {"scene_hash", NPZ_UINT64, 0, {0}, NULL},
         {"iterations", NPZ_INT32, 0, {0}, NULL},
+        {"verdict_frame", NPZ_INT32, 0, {0}, NULL},
+        {"verdict_body", NPZ_INT32, 0, {0}, NULL},
         {"dt", NPZ_FLOAT32, 0, {0}, NULL},
         {"bomb", NPZ_INT32, 0, {0}, NULL},
         {"camera", NPZ_FLOAT32, 2, {2, 2}, NULL},
@@ -72,10 +74,21 @@ static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *er
            (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error));
 }
 
+static bool read_verdict(Trajectory *t, NpzFile *file, Error *error) {
+    int32_t frame = -1, body = -1;
+    if (npz_has(file, "verdict") && (!npz_read_text(file, "verdict", t->verdict, sizeof t->verdict, error) ||
+                                     !npz_read_scalar(file, "verdict_frame", NPZ_INT32, &frame, sizeof frame, error) ||
+                                     !npz_read_scalar(file, "verdict_body", NPZ_INT32, &body, sizeof body, error)))
+        return false;
+    t->verdict_frame = frame;
+    t->verdict_body = body;
+    return true;
+}
+
 static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     int32_t bomb = -1, iterations = 0;
     const int64_t two_by_two[] = {2, 2};
-    if (!read_names(t, file, path, error) ||
+    if (!read_names(t, file, path, error) || !read_verdict(t, file, error) ||
         (npz_has(file, "scene_hash") &&
          !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error)) ||
         (npz_has(file, "iterations") &&

@@ -103,6 +103,10 @@ bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Err
     return done;
 }
 
+void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int frame, int body) {
+    if (stream->npz != NULL) trajectory_npz_judge(stream->npz, words, frame, body);
+}
+
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     assert(stream->added == stream->frames);
     if (stream->npz != NULL) return trajectory_npz_finish(stream->npz, error);

@@ -15,6 +15,9 @@ TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, T
                                            const char *path, Error *error);
 bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error);
 
+/* Sets the verdict on the run, which is known when all frames have been added (trajectory_judge). Only .npz has it. */
+void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int frame, int body);
+
 /* Writes the file, atomically, when all frames have been added. */
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error);
 

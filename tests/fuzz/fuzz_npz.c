@@ -56,7 +56,7 @@ static void check_states(const Trajectory *run) {
             fuzz_fail("contact %lld of bodies %d and %d", (long long)i, run->contacts[i].a, run->contacts[i].b);
 }
 
-/* What was read can be written, and gives the same states. */
+/* What was read can be written, and gives the same states and verdict. */
 static void check_run(const Trajectory *run) {
     Error error = {0};
     const char *path = fuzz_file("again.npz", "", 0);
@@ -68,6 +68,9 @@ static void check_run(const Trajectory *run) {
     for (int frame = 0; frame < run->frames; frame++)
         if (trajectory_frame_hash(again, frame) != trajectory_frame_hash(run, frame))
             fuzz_fail("frame %d changes", frame);
+    if (strcmp(again->verdict, run->verdict) != 0 || again->verdict_frame >= run->frames ||
+        again->verdict_body >= run->bodies)
+        fuzz_fail("the verdict '%s' is lost", run->verdict);
     trajectory_destroy(again);
 }
 

@@ -16,7 +16,7 @@ static inline void example_pose(Trajectory *t, int frame, int body, const float 
     t->angular_velocity[i] = state[5];
 }
 
-/* A floor, a box at rest on it with two contacts in step 2, and a bomb that comes in frame 2. */
+/* A floor, a box at rest on it with two contacts in step 2, and a bomb that comes in frame 2. The box falls. */
 static inline Trajectory *example_trajectory(void) {
     Error error = {0};
     Trajectory *t = trajectory_create(EXAMPLE_FRAMES, EXAMPLE_BODIES, &error);
@@ -46,5 +46,6 @@ static inline Trajectory *example_trajectory(void) {
         if (!trajectory_add_contact(t, 2, &contact, &error)) abort();
     }
     trajectory_end_contacts(t);
+    trajectory_judge(t, "falls at 0.05 s (body 1, ex\xc3\xa4mple)", 3, 1);
     return t;
 }

@@ -35,6 +35,8 @@ static void written_is_read(void **state) {
     assert_memory_equal(r->contact_start, t->contact_start, (EXAMPLE_FRAMES + 1) * sizeof *t->contact_start);
     assert_int_equal(t->contact_start[EXAMPLE_FRAMES], 2);
     assert_memory_equal(r->contacts, t->contacts, 2 * sizeof *t->contacts);
+    assert_string_equal(r->verdict, "falls at 0.05 s (body 1, ex\xc3\xa4mple)");
+    assert_true(r->verdict_frame == 3 && r->verdict_body == 1);
     trajectory_destroy(r);
     trajectory_destroy(t);
 }
@@ -50,6 +52,7 @@ static void the_smallest_trajectory(void **state) {
     Trajectory *r = trajectory_read(path, &error);
     assert_ok(r != NULL, error);
     assert_true(r->frames == 1 && r->bodies == 0 && r->scene[0] == '\0');
+    assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
     trajectory_destroy(t);
 }
@@ -88,6 +91,12 @@ static void bad_heads_are_refused(void **state) {
     REFUSE(fixed[1], 2, "body 1: 'fixed' must be 0 or 1 (got 2)");
     REFUSE(scene[1], '\n', "the name of the scene holds control characters");
     REFUSE(method[0], '\33', "the name of the method holds control characters");
+    REFUSE(verdict[1], '\33', "the verdict holds control characters");
+    REFUSE(verdict[1], 0x7f, "the verdict holds control characters");
+    REFUSE(verdict_frame, 4, "the verdict is on frame 4 of 4");
+    REFUSE(verdict_frame, -2, "the verdict is on frame -2 of 4");
+    REFUSE(verdict_body, 3, "the verdict is on body 3 of 3");
+    REFUSE(verdict_body, -2, "the verdict is on body -2 of 3");
 }
 
 static void bad_poses_are_refused(void **state) {
@@ -101,6 +110,28 @@ static void bad_poses_are_refused(void **state) {
     REFUSE(angular_velocity[box], NAN, "frame 2, body 1: pose");
     REFUSE(angle[bomb], 0, "frame 1, body 2: pose");
     REFUSE(velocity[bomb].y, INFINITY, "frame 1, body 2: pose");
+}
+
+/* A verdict without a body, and no verdict. */
+static void a_verdict_may_be_unknown(void **state) {
+    (void)state;
+    const char *path = temporary_path("calm.npz");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    trajectory_judge(t, "settles", 0, -1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_string_equal(r->verdict, "settles");
+    assert_true(r->verdict_frame == 0 && r->verdict_body == -1);
+    trajectory_destroy(r);
+    trajectory_judge(t, "", 2, 1);
+    write_file(t, path);
+    r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
+    trajectory_destroy(r);
+    trajectory_destroy(t);
 }
 
 static void leave(Trajectory *t, int frame, int body) {
@@ -300,6 +331,7 @@ int main(void) {
         cmocka_unit_test(the_smallest_trajectory),
         cmocka_unit_test(bad_heads_are_refused),
         cmocka_unit_test(bad_poses_are_refused),
+        cmocka_unit_test(a_verdict_may_be_unknown),
         cmocka_unit_test(a_body_is_there_over_one_interval_of_frames),
         cmocka_unit_test(contacts_are_of_the_bodies_before_the_step),
         cmocka_unit_test(bad_contacts_are_refused),

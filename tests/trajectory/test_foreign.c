@@ -167,6 +167,10 @@ static void what_is_needed_is_told(void **state) {
                    "has 'velocity' but not 'angular_velocity'; give both, or none of the two");
     expect_refused("a['contact_start'] = np.zeros(4)", "has 'contact_start' but not 'contact_bodies'");
     expect_refused("a['contact_point'] = np.zeros((0, 2))", "give both, or none of the six contact arrays");
+    expect_refused("a['verdict'] = 'falls'",
+                   "has 'verdict' but not 'verdict_frame'; give both, or none of the three of the verdict");
+    expect_refused("a.update(verdict='x' * 256, verdict_frame=0, verdict_body=0)", "text 'verdict' is");
+    expect_refused("a.update(verdict='falls', verdict_frame=3, verdict_body=0)", "the verdict is on frame 3 of 3");
     expect_refused("a['version'] = 2", "trajectory of version 2; expected version 1");
 }
 

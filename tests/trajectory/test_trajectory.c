@@ -89,6 +89,41 @@ static void the_hash_is_fnv_of_dynamic_bodies_that_are_there(void **state) {
     trajectory_destroy(t);
 }
 
+/* In every third of 8 frames, what frame 4 saw is there in frame 6, the last but one; frame 7 is beyond. */
+static void a_verdict_keeps_its_place(void **state) {
+    (void)state;
+    Error error = {0};
+    const int kept[8] = {0, 1, 1, 1, 2, 2, 2, -1};
+    Trajectory *t = trajectory_create(8, 2, &error);
+    t->dt = 1;
+    for (int frame = 0; frame < 8; frame++) {
+        trajectory_judge(t, "falls", frame, 1);
+        Trajectory *third = trajectory_every(t, 3, &error);
+        assert_ok(third != NULL, error);
+        assert_string_equal(third->verdict, "falls");
+        assert_int_equal(third->verdict_frame, kept[frame]);
+        assert_int_equal(third->verdict_body, 1);
+        trajectory_destroy(third);
+    }
+    trajectory_judge(t, "", -1, -1);
+    Trajectory *third = trajectory_every(t, 3, &error);
+    assert_ok(third != NULL, error);
+    assert_true(third->verdict[0] == '\0' && third->verdict_frame == -1);
+    trajectory_destroy(third);
+    trajectory_destroy(t);
+}
+
+/* Cut between characters. */
+static void a_long_verdict_is_cut(void **state) {
+    (void)state;
+    char words[2 * TRAJECTORY_VERDICT_SIZE + 1] = "";
+    for (int i = 0; i < TRAJECTORY_VERDICT_SIZE; i++) strcat(words, "\xc3\xa4");
+    Trajectory *t = example_trajectory();
+    trajectory_judge(t, words, 0, 0);
+    assert_int_equal(strlen(t->verdict), TRAJECTORY_VERDICT_SIZE - 2);
+    trajectory_destroy(t);
+}
+
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
 static void every_third_frame_is_the_same_frame(void **state) {
     (void)state;
@@ -133,6 +168,8 @@ int main(void) {
         cmocka_unit_test(contacts_are_found_by_step),
         cmocka_unit_test(the_hash_is_fnv_of_dynamic_bodies_that_are_there),
         cmocka_unit_test(every_third_frame_is_the_same_frame),
+        cmocka_unit_test(a_verdict_keeps_its_place),
+        cmocka_unit_test(a_long_verdict_is_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
