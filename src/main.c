@@ -16,7 +16,7 @@
 
 static void print_help(FILE *file) {
     fputs("Usage: twinbox COMMAND [OPTION...]\n"
-          "A rigid-box physics engine and a neural network, side by side. Help: twinbox help COMMAND\n\n",
+          "A rigid-box physics engine and a neural network, side by side. Help: twinbox help COMMAND\n",
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);

@@ -10,6 +10,7 @@
     COMMAND(check, "validate a scene and draw its first frame")                    \
     COMMAND(simulate, "run a scene with one method and store the trajectory")      \
     COMMAND(render, "draw runs side by side as PNG frames and videos")             \
+    COMMAND(page, "write a page that plays runs side by side in a browser")        \
     COMMAND(compare, "compare two trajectories or two PNG sequences")              \
     COMMAND(approve, "accept the changes that a report of compare shows")          \
     COMMAND(diverge, "find why two trajectories diverge, and how fast")            \

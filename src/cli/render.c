@@ -2,6 +2,7 @@
 #include "cli/camera_option.h"
 #include "cli/commands.h"
 #include "cli/draw_panels.h"
+#include "cli/frames_option.h"
 #include "cli/options.h"
 #include "cli/panel_costs.h"
 #include "cli/picture_notes.h"
@@ -10,7 +11,6 @@
 #include "picture/picture.h"
 #include "render/moments.h"
 
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,20 +18,21 @@ typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count, caption_count;
     RenderOptions render;
+    FrameRange frames;
     DrawVideos videos;
     SceneSettings set;
     const char *costs;     /* FILE.csv, or NULL */
     const char *view_from; /* RUN.npz, or NULL */
 } Options;
 
-static OptionRead read_size, read_frames, read_png, read_context, read_camera;
+static OptionRead read_size, read_png, read_context, read_camera;
 
 static const Option option_table[] = {
     {"--output", 'o', "DIR", "Folder for frame_000000.png ..., manifest.json and the runs (.npz)",
      OPTION_TEXT(Options, render.directory), .needed = "-o DIR is needed"},
     {"--size", 0, "WxH", "Size of a frame in pixels (default: 1920x1080)", OPTION_READ(read_size, Options, render)},
     {"--frames", 0, "A:B", "Draw only these frames of the run (default: all)",
-     OPTION_READ(read_frames, Options, render)},
+     OPTION_READ(frames_option_read, Options, frames)},
     {"--slow", 0, "K", "K times slower around the bomb's impact, 2 to 16, with poses interpolated between frames",
      OPTION_INT(Options, render.slow, 2, RENDER_SLOW_MAX)},
     {"--fps", 0, "N",
@@ -92,38 +93,15 @@ static const CommandSpec spec = {
         "is simulated with the engine and with the pair-net that it names.\v"
         "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4"};
 
-/* Splits text at the first `separator` into two whole numbers. An empty part leaves its number unchanged. */
-static bool parse_two(const char *text, char separator, int minimum, int maximum, int64_t numbers[2]) {
-    const char *middle = strchr(text, separator);
-    char first[24] = "";
-    if (middle == NULL || middle - text >= (int)sizeof first) return false;
-    memcpy(first, text, (size_t)(middle - text));
-    return (first[0] == '\0' || parse_int(first, minimum, maximum, &numbers[0])) &&
-           (middle[1] == '\0' || parse_int(middle + 1, minimum, maximum, &numbers[1]));
-}
-
 /* "1920x1080" */
 static bool read_size(const Option *option, const char *text, void *value, Error *error) {
     RenderOptions *render = value;
     int64_t size[2] = {0, 0};
-    if (!parse_two(text, 'x', RENDER_SIDE_MIN, RENDER_SIDE_MAX, size) || size[0] == 0 || size[1] == 0)
+    if (!frames_option_split(text, 'x', RENDER_SIDE_MIN, RENDER_SIDE_MAX, size) || size[0] == 0 || size[1] == 0)
         return error_input(error, option->name, "'%s' is not WIDTHxHEIGHT, each from %d to %d", text, RENDER_SIDE_MIN,
                            RENDER_SIDE_MAX);
     render->width = (int)size[0];
     render->height = (int)size[1];
-    return true;
-}
-
-/* "A:B", ":B", "A:" or "A" */
-static bool read_frames(const Option *option, const char *text, void *value, Error *error) {
-    RenderOptions *render = value;
-    int64_t frames[2] = {0, -1};
-    bool ok = strchr(text, ':') != NULL ? strcmp(text, ":") != 0 && parse_two(text, ':', 0, INT_MAX, frames)
-                                        : parse_int(text, 0, INT_MAX, &frames[0]) && ((frames[1] = frames[0]), true);
-    if (!ok || (frames[1] != -1 && frames[1] < frames[0]))
-        return error_input(error, option->name, "'%s' is not A:B with frame numbers 0 <= A <= B", text);
-    render->first = (int)frames[0];
-    render->last = (int)frames[1];
     return true;
 }
 
@@ -199,9 +177,11 @@ static bool check_texts(const Options *options, Error *error) {
 }
 
 bool command_render(int argc, char **argv, Error *error) {
-    Options options = {.render = draw_panels_defaults(NULL)};
+    Options options = {.render = draw_panels_defaults(NULL), .frames = {0, -1}};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!check_texts(&options, error)) return false;
+    options.render.first = options.frames.first;
+    options.render.last = options.frames.last;
     options.render.title_card = options.render.title != NULL;
     options.render.end_card = options.render.look.end != NULL;
     Panels panels = {0};

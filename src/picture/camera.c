@@ -43,22 +43,34 @@ static Extent add_margin(const Extent *b) {
     return (Extent){b->left - margin, b->right + margin, b->bottom - margin / 3, b->top + margin};
 }
 
+CameraFrame camera_frame(const Trajectory *run) {
+    CameraView set;
+    if (camera_view_of(run, &set))
+        return (CameraFrame){.set = true,
+                             .left = set.x - set.width / 2,
+                             .right = set.x + set.width / 2,
+                             .bottom = set.y - set.height / 2,
+                             .top = set.y + set.height / 2,
+                             .middle = set.x};
+    const Framing framing = framing_of(run);
+    const Extent b = add_margin(&framing.extent);
+    return (CameraFrame){.left = b.left, .right = b.right, .bottom = b.bottom, .top = b.top, .middle = framing.middle};
+}
+
 Vec2 camera_needs(const Trajectory *run) {
     CameraView set;
     if (camera_view_of(run, &set)) return vec2((float)set.width, (float)set.height);
-    const Framing framing = framing_of(run);
-    const Extent b = add_margin(&framing.extent);
+    const CameraFrame b = camera_frame(run);
     return vec2((float)(b.right - b.left), (float)(b.top - b.bottom));
 }
 
 Camera camera_fit(const Trajectory *run, int width, int height) {
     CameraView set;
     if (camera_view_of(run, &set)) return camera_show(&set, width, height);
-    const Framing framing = framing_of(run);
-    const Extent b = add_margin(&framing.extent);
+    const CameraFrame b = camera_frame(run);
     double scale = nice_scale(fmin(width / (b.right - b.left), height / (b.top - b.bottom)));
     /* Spare width goes to both sides of what stands, spare height above: sky distracts less than ground. */
-    double half = width / scale / 2, x = fmin(fmax(framing.middle, b.right - half), b.left + half);
+    double half = width / scale / 2, x = fmin(fmax(b.middle, b.right - half), b.left + half);
     double spare = height / scale - (b.top - b.bottom);
     double below = fmin(spare / 2, GROUND_SHARE * height / scale);
     return look_at(x, b.bottom - below + height / scale / 2, scale, width, height);

@@ -27,5 +27,14 @@ Camera camera_show(const CameraView *view, int width, int height);
 /* Width and height in metres of what camera_fit() shows, with its margin. */
 Vec2 camera_needs(const Trajectory *run);
 
+/* What camera_fit() shows. */
+typedef struct CameraFrame {
+    bool set;                        /* by the scene: shown in the middle of a panel */
+    double left, right, bottom, top; /* m, with the margin */
+    double middle;                   /* m, x of the middle of what stands */
+} CameraFrame;
+
+CameraFrame camera_frame(const Trajectory *run);
+
 /* Shows the view that the run's scene sets, otherwise what stands and what strikes it (framing.h). */
 Camera camera_fit(const Trajectory *run, int width, int height);

@@ -56,6 +56,11 @@ static bool common_impulse(const Trajectory *run, double *impulse, Error *error)
     return true;
 }
 
+bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error) {
+    measures->speed = fastest(run);
+    return common_impulse(run, &measures->impulse, error) && median_box(run, &measures->box, error);
+}
+
 /* The largest 1, 2 or 5 times a power of ten that is at most `most`. */
 static double round_number(double most) {
     double power = 1;
@@ -73,13 +78,14 @@ static void choose(double *scale, double *legend, double value, double pixels, d
 bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double scale, double largest_distance,
                    Error *error) {
     Rect panel = layout->panels[0];
-    double side = fmin(panel.right - panel.left, panel.bottom - panel.top), impulse = 0, metres = 1;
-    if (!common_impulse(run, &impulse, error) || !median_box(run, &metres, error)) return false;
-    const double box = scales->box = scale * metres, legend = fmin(LEGEND_ARROW * side, LEGEND_ARROW_BOXES * box);
+    double side = fmin(panel.right - panel.left, panel.bottom - panel.top);
+    ScaleMeasures measures;
+    if (!scales_measure(run, &measures, error)) return false;
+    const double box = scales->box = scale * measures.box, legend = fmin(LEGEND_ARROW * side, LEGEND_ARROW_BOXES * box);
     scales->max_arrow = fmin(MAX_ARROW * side, MAX_ARROW_BOXES * box);
-    choose(&scales->impulse, &scales->legend_impulse, impulse, fmin(COMMON_ARROW * side, COMMON_ARROW_BOXES * box),
-           legend);
-    choose(&scales->velocity, &scales->legend_velocity, fastest(run),
+    choose(&scales->impulse, &scales->legend_impulse, measures.impulse,
+           fmin(COMMON_ARROW * side, COMMON_ARROW_BOXES * box), legend);
+    choose(&scales->velocity, &scales->legend_velocity, measures.speed,
            fmin(FASTEST_ARROW * side, FASTEST_ARROW_BOXES * box), legend);
     double power = 1;
     for (scales->last_decade = 0; power < largest_distance && scales->last_decade < MAX_DECADE; power *= 10)

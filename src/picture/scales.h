@@ -14,6 +14,16 @@ typedef struct Scales {
     bool exceeded;                          /* some distances exceed the end */
 } Scales;
 
+/* What the scales follow from. */
+typedef struct ScaleMeasures {
+    double impulse; /* N s, 90th percentile of the positive impulses; 0: no contacts */
+    double speed;   /* m/s, of the fastest body */
+    double box;     /* m, shorter side of the median box */
+} ScaleMeasures;
+
+/* False with error set if out of memory. */
+bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error);
+
 enum { SCALE_FIRST_DECADE = -3 }; /* the colour scale begins at 1 mm */
 
 /* From the first run; `scale` in pixels per metre, `largest_distance` in m. Arrows are in proportion to the panel, but to

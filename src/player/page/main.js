@@ -1,0 +1,65 @@
+/* Draws what changed; begins. */
+let planned_for = "";
+const looks = new Map(); /* the control of each */
+const again = () => change({});
+const undecoded = () => say("The states cannot be decoded.");
+
+function show_look() {
+  const reasons = {}, {compare, show} = view;
+  for (const [look, input] of looks) {
+    const why = refused(look) || (PARTS[compare].includes(look) ? "part of " + compare : "");
+    input.checked = compare === look || show.has(look);
+    input.disabled = why !== "";
+    input.parentNode.className = why && "off";
+    if (why) (reasons[why] ??= []).push(look);
+  }
+  tell(ui.reasons, Object.keys(reasons).map(why => `${reasons[why].join(", ")}: ${why}`).join("; "));
+}
+
+/* The header takes what its texts need; the rest of the window is the player's. */
+function draw_stage(decoded) {
+  style.setProperty("--head", ui.player.offsetTop + "px");
+  const {clientWidth: width, clientHeight: height} = stage, scale = devicePixelRatio, context = stage.getContext("2d");
+  const wanted = [width, height, scale, view.compare, ...view.show].join();
+  if (wanted !== planned_for) {
+    stage.width = round(width * scale);
+    stage.height = round(height * scale);
+    planned = plan(width, height);
+    planned_for = wanted;
+    place_moments();
+  }
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  if (decoded) draw_picture(context, planned, view.frame); else load(view.frame).then(again, undecoded);
+}
+
+function draw() {
+  const decoded = ready(view.frame);
+  stale = false;
+  apply_theme();
+  show_time();
+  show_look();
+  draw_stage(decoded);
+  draw_plot();
+  if (!decoded) return;
+  show_body();
+  if (view.playing) again(); else settle();
+}
+
+for (const look of [...COMPARES, ...SHOWS]) {
+  const kind = COMPARES.includes(look) ? "compare" : "show", type = kind === "compare" ? "radio" : "checkbox";
+  const input = make("input", {id: kind + "-" + look, name: kind, type, onchange: () => {
+    if (type === "radio") view.compare = look; else view.show[input.checked ? "add" : "delete"](look);
+    again();
+  }});
+  looks.set(look, input);
+  ui[kind].append(make("label", input, look));
+}
+on_checked.push(show_check, again);
+dark_wanted.onchange = onresize = again;
+new ResizeObserver(again).observe(ui.frame);
+apply_theme();
+onhashchange();
+load(view.frame).then(check_all).catch(undecoded);
+window.player = {
+  view, change, plan, camera, corners, body_at, to_pixel, state_hash, load, ready, checked, runs, data, draw,
+};

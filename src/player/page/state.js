@@ -1,0 +1,84 @@
+/* The state of the page, its elements and its colours. */
+const COMPARES = ["split", "overlay", "difference"], THEMES = ["auto", "light", "dark"], FIT = {kind: "fit"};
+const SHOWS = ["ghosts", "distance", "trails", "contacts", "impulses", "velocities"];
+const PARTS = {split: "", overlay: "ghosts", difference: "ghosts distance"}; /* which are no choice there */
+const view = {
+  frame: 0, playing: false, speed: 1, slow: false, compare: "split", show: new Set(), body: -1, run: 0, camera: FIT,
+  theme: "auto",
+};
+const last = data.frames - 1, most_bodies = max(...runs.map(run => run.bodies));
+const others = [...runs.keys()].filter(run => run > 0 && runs[run].compared);
+const dark_wanted = matchMedia("(prefers-color-scheme: dark)"), {style} = document.documentElement;
+const ui = {}; /* the elements that have names */
+for (const named of document.querySelectorAll("body :not(script)[id]")) ui[named.id] = named;
+let scheduled = 0, stale = false, themed = "";
+
+const tell = (node, text) => { if (node.textContent !== text) node.textContent = text; };
+const six_digits = value => Number(value.toPrecision(6));
+
+/* An element of its attributes, handlers of events and children. */
+function make(name, ...parts) {
+  const space = /svg|path|text|circle|^g$/.test(name) ? "2000/svg" : "1999/xhtml";
+  const made = document.createElementNS("http://www.w3.org/" + space, name);
+  for (const part of parts.flat())
+    if (part.constructor !== Object) made.append(part);
+    else for (const key in part) part[key].call ? made[key] = part[key] : made.setAttribute(key, part[key]);
+  return made;
+}
+
+const path = (d, style) => make("path", {d, style});
+const drawing = part => make("svg", {"aria-hidden": true}, part);
+
+/* Long names keep their beginning and end. */
+function cut(text, most = 40) {
+  const all = [...text], half = most / 2;
+  return all.length > most ? [...all.slice(0, half), "\u2026", ...all.slice(-half)].join("") : text;
+}
+
+/* Runs of the same name are numbered. */
+const names = runs.map(({name}, i) => {
+  const before = runs.slice(0, i).filter(run => run.name === name).length;
+  return cut(name) + (before > 0 ? ` (${before + 1})` : "");
+});
+
+const theme_name = () => view.theme !== "auto" ? view.theme : dark_wanted.matches ? "dark" : "light";
+const theme = () => data.themes[theme_name()];
+
+function apply_theme() {
+  const name = theme_name();
+  tell(ui.theme, "Colours: " + view.theme);
+  if (themed === name) return;
+  themed = style.colorScheme = name;
+  for (const key in theme()) style.setProperty("--" + key, theme()[key]);
+  [...runs.map(run => run.colours[name]), theme().bomb].forEach(({fill, line}, run) => {
+    style.setProperty("--fill" + run, fill);
+    style.setProperty("--line" + run, line);
+  });
+}
+
+/* Why a look cannot be had; "" if it can. */
+function refused(look) {
+  const need = look === "impulses" ? "contacts" : look, lacking = runs.findIndex(run => run[need] === false);
+  if (lacking >= 0) return `${names[lacking]} has no ${need}`;
+  return others.length > 0 || /split|trails|contacts|velocities/.test(need) ? "" : "no run compares with the first";
+}
+
+/* Shows what the pointer is at, and all that changed, with the next picture of the screen. */
+function measure() {
+  scheduled ||= requestAnimationFrame(now => {
+    scheduled = 0;
+    if (view.playing) tick(now);
+    if (stale) draw(); else show_body();
+  });
+}
+
+function change(patch) {
+  Object.assign(view, patch);
+  view.frame = min(max(view.frame || 0, 0), last);
+  view.slow &&= data.impact >= 0;
+  if (view.body < 0) view.run = 0;
+  if (refused(view.compare)) view.compare = "split";
+  view.show = new Set(SHOWS.filter(name => view.show.has(name) && !refused(name)));
+  stale = true;
+  measure();
+}

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keys, time, mouse, fingers, links and measured values, on a page of three runs of the stack."""
+import json
+import re
+import shutil
+
+import numpy
+
+import runs
+from checks import Checks
+from chromium import Chromium
+from keys import Keys, view
+from links import SHARP, check_command, check_link, check_malformed, check_saved
+from measure import Measured
+from pointer import check_mouse, check_touch
+
+METHODS = "engine", "pair-net", "momentum"
+FRAMES = 75
+
+
+def moments(loaded):
+    """Frames of the impact, and of where each run first has another bit than run 0 and is first 1 mm away."""
+    first, found = loaded[0], []
+    bomb, fixed = int(first["bomb"]), first["fixed"]
+    for step in range(1, len(first["angle"])):
+        pairs = first["contact_bodies"][slice(*first["contact_start"][step:step + 2])]
+        if any(bomb in pair and not fixed[pair].any() for pair in pairs):
+            found.append(step)
+            break
+    for other in loaded[1:]:
+        found += parting(first, other)
+    return sorted(found)
+
+
+def parting(first, other):
+    """The first frames with a different bit, and with a body a millimetre away."""
+    bits = runs.states(other).view(numpy.uint32) != runs.states(first).view(numpy.uint32)
+    apart = numpy.linalg.norm(other["position"].astype(float) - first["position"], axis=2)
+    return [int(bits.any(axis=(1, 2)).argmax()), int((numpy.nanmax(apart, axis=1) >= 0.001).argmax())]
+
+
+def check_marks(checks, page, loaded):
+    """The frames of the page's moments in their order. Those of verdicts are as the runs state them."""
+    stored = page.run("player.runs.flatMap(run => [run.differs, run.apart]).filter(Boolean).map(mark => mark.frame)"
+                      ".concat(player.data.impact)")
+    checks.equal("frames of impact, first different bits and first millimetres", sorted(stored), moments(loaded))
+    verdicts = page.run("player.runs.map(run => run.verdict?.frame ?? -1).filter(frame => frame >= 0)")
+    return sorted({*stored, *verdicts})
+
+
+def check_words(checks, page, loaded):
+    """Where each run comes from, and where they part: in the table and in the summary."""
+    checks.twinbox("render", *(f"{method}.npz" for method in METHODS), "-o", "drawn", "--size", "320x180", "--frames",
+                   0)
+    with open("drawn/manifest.json") as file:
+        manifest = json.load(file)
+    shutil.rmtree("drawn")
+    table, summary = (page.run(f"document.getElementById('{part}').innerText") for part in ("runs", "summary"))
+    for run, method in zip(manifest["runs"], METHODS):
+        for word in run["hash"], run["scene_hash"], method:
+            checks.true(f"'{word}' in the table of runs", word in table, table)
+    checks.true("the version", manifest["twinbox"] in table, table)
+    checks.true("no date", not re.search(r"20\d\d-\d\d|GMT|UTC", page.run("document.body.innerText")))
+    for i, other in enumerate(loaded[1:], 1):
+        for frame in parting(loaded[0], other):
+            checks.true(f"{METHODS[i]} parts at frame {frame}", f"{frame / 60:.3f} s" in summary, summary)
+
+
+def check_time(checks, browser):
+    """A second of the page's clock at each speed, and in slow motion, moves on as many frames as it should."""
+    page = browser.open("three.html", clock=True)
+    impact = page.run("player.data.impact")
+    page.wait("player.ready(player.data.frames - 1)")
+    for speed in 1 / 16, 1 / 4, 1, 2, 4:
+        page.run("player.change({frame: 0, speed: $0, slow: false, playing: false})", speed)
+        page.settle()
+        page.press("Space")
+        page.tick(0.3, 30)
+        checks.near(f"frames in 0.3 s at speed {speed}", view(page)["frame"], 0.3 * 60 * speed, 0.3 * speed)
+        page.press("Space")
+        before = view(page)["frame"]
+        page.tick(0.3, 10)
+        checks.equal("frames after a pause", view(page)["frame"], before)
+    # From 0.15 s before the impact to 0.6 s after it: frames from there, and how much slower it is.
+    for first, times in (-11, 1), (-8, 4), (0, 4), (34, 4), (37, 1):
+        page.run("player.change({frame: $0, speed: 1, slow: true, playing: false})", impact + first)
+        page.press("Space")
+        page.tick(0.025, 10)
+        checks.near(f"frames in 0.025 s at {first} frames from the impact", view(page)["frame"] - impact - first,
+                    0.025 * 60 / times, 0.02)
+        page.press("Space")
+    page.run("player.change({frame: player.data.frames - 2, slow: false})")
+    page.press("Space")
+    page.tick(1, 60)
+    checks.equal("plays to the end and stops", [view(page)[name] for name in ("frame", "playing")], [FRAMES, False])
+    checks.quiet("playing", page)
+    page.close()
+
+
+def check_moments(checks, page, frames):
+    """The marks on the time axis and the rows of the list lead to their frames."""
+    for part in "marks", "moments":
+        count = page.run(f"document.querySelectorAll('#{part} :is(button, tr)').length")
+        checks.equal(f"#{part}", count, len(frames))
+        for i, frame in enumerate(frames):
+            page.click(*page.middle(f"#{part} :is(button, tr):nth-of-type({i + 1})"))
+            checks.equal(f"a click on number {i + 1} of #{part}", view(page)["frame"], frame)
+
+
+def check_buttons(checks, page):
+    """Each control changes the view, and shows it when a key has changed it."""
+    page.run("player.change({frame: 10, body: -1, compare: 'split', show: new Set(), playing: false})")
+    page.settle()
+    for name in "overlay", "difference", "split":
+        page.click(*page.middle(f"#compare-{name}"))
+        checks.equal(f"radio button {name}", view(page)["compare"], name)
+    for name in "ghosts", "distance", "trails", "contacts", "impulses", "velocities":
+        page.click(*page.middle(f"#show-{name}"))
+        checks.equal(f"check box {name}", view(page)["show"], [name])
+        page.click(*page.middle(f"#show-{name}"))
+        checks.equal(f"check box {name} again", view(page)["show"], [])
+    page.run("document.getElementById('scrubber').focus()")
+    page.press("End")
+    checks.equal("End on the scrubber", view(page)["frame"], FRAMES)
+    page.run("document.getElementById('play').focus()")
+    page.press("Space")
+    checks.equal("Space on the button plays once", view(page)["playing"], True)
+    page.press("Space")
+    checks.equal("and pauses", view(page)["playing"], False)
+    page.run("player.change({compare: 'overlay', show: new Set(['trails']), speed: 0.25})")
+    page.settle()
+    checks.equal("controls show the view",
+                 page.run("[document.getElementById('compare-overlay').checked, document.getElementById('show-trails')"
+                                                    ".checked, Number(document.getElementById('speed').value)]"),
+                                                    [True, True, 0.25])
+
+
+def check_sizes(checks, page):
+    """Windows of all shapes, and screens with more pixels, one after the other in one page."""
+    for size in (700, 600, 2), (320, 480, 1), (2200, 700, 1.5), (1440, 900, 1):
+        page.resize(*size)
+        page.settle()
+        page.wait(SHARP, limit=20)
+    checks.quiet("other windows", page)
+
+
+def main():
+    with Checks() as checks, Chromium("!!window.player?.data") as browser:
+        browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
+        files = [f"{method}.npz" for method in METHODS]
+        for method, file in zip(METHODS, files):
+            checks.twinbox("simulate", f"{checks.scenes}/stack.yaml", "--frames", FRAMES, "--method", method, "-o",
+                           file)
+        checks.twinbox("page", *files, "-o", "three.html")
+        loaded = [runs.load(file) for file in files]
+        page = browser.open("three.html")
+        page.wait("player.ready(player.data.frames - 1)")
+        frames = check_marks(checks, page, loaded)
+        Keys(checks, page, frames).all()
+        check_moments(checks, page, frames)
+        check_words(checks, page, loaded)
+        check_mouse(checks, page, FRAMES)
+        check_buttons(checks, page)
+        measured = Measured(checks, page, loaded, METHODS)
+        for run, frame, body in (0, 16, 3), (1, 20.5, 10), (2, 75, 11), (1, 0, 1), measured.most_friction():
+            measured.check(run, frame, body)
+        for frame, body in (16, -1), (60, -1), (60, 4):
+            measured.curves(frame, body)
+        check_link(checks, browser, page)
+        check_command(checks, page)
+        check_saved(checks, browser, page)
+        check_malformed(checks, browser, page)
+        check_sizes(checks, page)
+        checks.quiet("the page", page)
+        page.close()
+        check_time(checks, browser)
+        check_touch(checks, browser)
+
+
+main()
