@@ -103,7 +103,11 @@ static bool is_shipped(const ChartRow *row) {
 }
 
 static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
-    ChartMark mark = {.us = row->us_solver, .us_q1 = row->us_solver_q1, .us_q3 = row->us_solver_q3};
+    ChartMark mark = {.us = row->us_solver,
+                      .us_q1 = row->us_solver_q1,
+                      .us_q3 = row->us_solver_q3,
+                      .method = row->method,
+                      .setting = row->setting};
     char key[CHART_KEY_SIZE];
     name_row(row, key, mark.label);
     mark.line = find_line(chart, key);

@@ -33,8 +33,9 @@ typedef struct ChartMark {
     double error;            /* mean velocity error, m/s; at least PARETO_RESOLUTION */
     bool floored;            /* it was less */
     bool on_front;
-    bool shipped;                /* the setting that the method's description calls shipped */
-    char label[CHART_TEXT_SIZE]; /* numeric settings ("k=20"); or empty */
+    bool shipped;                 /* the setting that the method's description calls shipped */
+    char label[CHART_TEXT_SIZE];  /* numeric settings ("k=20"); or empty */
+    const char *method, *setting; /* as in the table, which outlives them */
 } ChartMark;
 
 typedef struct ChartPanel {

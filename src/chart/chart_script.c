@@ -11,7 +11,7 @@
 /* mm */
 static const double gap = 8, top_margin = 5.5, axis_room = 9;
 
-static const char *const panel_titles[CHART_PANELS] = {"Impact frames", "The 60 frames after"};
+const char *const chart_panel_titles[CHART_PANELS] = {"Impact frames", "The 60 frames after"};
 
 static ChartLayout lay_out(const Chart *chart, const char *title, FILE *script) {
     ChartLayout layout = {.chart = chart, .title = title, .script = script};
@@ -112,7 +112,7 @@ static void write_axes(const ChartLayout *layout, int p) {
     fprintf(script, "set xlabel 'Solver time per step (µs)' offset 0,0.6\n");
     fprintf(script, "set ylabel '%s' offset 0.6,0\n", p == 0 ? "Mean velocity error (m/s)" : "");
     double top = (CHART_HEIGHT - top_margin / 2) / CHART_HEIGHT;
-    fprintf(script, "set label '%s' at screen %.5f,%.5f left\n", panel_titles[p], x->from / CHART_WIDTH, top);
+    fprintf(script, "set label '%s' at screen %.5f,%.5f left\n", chart_panel_titles[p], x->from / CHART_WIDTH, top);
     if (p + 1 == CHART_PANELS)
         fprintf(script, "set label '%s' at screen %.5f,%.5f right font ',7.5' tc rgb '#505050'\n", layout->title,
                 x->to / CHART_WIDTH, top);
@@ -131,6 +131,12 @@ static bool write_panel(const ChartLayout *layout, int p) {
     bool labelled = chart_write_labels(panel, layout->chart, &layout->x[p], &layout->y, layout->script);
     write_plot_command(layout, p, corners, bars);
     return labelled;
+}
+
+void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top) {
+    const ChartLayout layout = lay_out(chart, "", NULL);
+    *left = log_axis_place(&layout.x[panel], mark->us) / CHART_WIDTH;
+    *top = 1 - log_axis_place(&layout.y, mark->error) / CHART_HEIGHT;
 }
 
 bool chart_script(const Chart *chart, const char *title, FILE *script) {

@@ -12,3 +12,8 @@
 
 /* Writes the script of a chart; `title` must be safe (chart_plain). False if out of memory. */
 bool chart_script(const Chart *chart, const char *title, FILE *script);
+
+/* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
+void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
+
+extern const char *const chart_panel_titles[CHART_PANELS];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
 #include "chart/equal_time_plot.h"
+#include "cli/chart_pages.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/options.h"
@@ -45,6 +46,9 @@ static const Option option_table[] = {
     {"--bomb-x", 0, "A:B:STEP", "Launches to score on: x from A to B in steps of STEP, m",
      OPTION_RANGE(Options, study.launches.bomb_x)},
     {"--quick", 0, NULL, "Fewer launches, settings and repetitions: under a minute", OPTION_FLAG(Options, study.quick)},
+    {"--pages", 0, NULL,
+     "Also write chart.html, whose points link to pages that play the launch that was worst for them",
+     OPTION_FLAG(Options, study.pages)},
     {0}};
 
 static const CommandSpec spec = {
@@ -56,7 +60,10 @@ static const CommandSpec spec = {
     .help =
         "Measure speed against accuracy: every method in every scene, on held-out launches. Writes chart.csv and a "
         "chart for each scene (PNG, SVG, PDF). An interrupted run continues where it stopped. With the chart.csv of an "
-        "earlier run, only draws its charts again.\v"
+        "earlier run, only draws its charts again.\n"
+        "With --pages, every launch is run once more. A page has the worst launch of a method and setting beside the "
+        "converged run, opened at the step with the largest error: at most two pages of each, from before the impact "
+        "to the end of what the chart measures, and at most 256 MB of pages.\v"
         "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
         "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick\n"
         "         twinbox chart out/chart/chart.csv -o out/drawn"};
@@ -100,8 +107,8 @@ static bool draw_scenes(const ChartTable *table, const char *csv, const char *fo
 /* The charts of a finished table. */
 static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Error *error) {
     ChartTable table;
-    if (options->scene_count > 1 || options->methods != NULL || options->quick || options->launches.count > 0 ||
-        options->launches.table != NULL || options->launches.bomb_x.count > 0)
+    if (options->scene_count > 1 || options->methods != NULL || options->quick || options->pages ||
+        options->launches.count > 0 || options->launches.table != NULL || options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!chart_csv_read(&table, csv, error)) return false;
     const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
@@ -111,7 +118,7 @@ static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Err
     return drawn;
 }
 
-static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
+static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key, Error *error) {
     char csv[CSV_PATH_SIZE];
     if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < options->scene_count; i++) {
@@ -130,7 +137,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
-    return true;
+    return !options->pages || chart_pages_write(options, scenes, key, error);
 }
 
 bool command_chart(int argc, char **argv, Error *error) {

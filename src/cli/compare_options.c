@@ -44,9 +44,11 @@ static const Option option_table[] = {
      "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
      "orientation) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
-    {"--report", 0, "DIR", "Folder for report.html, junit.xml, results.tap and results.json",
+    {"--report", 0, "DIR",
+     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs",
      OPTION_TEXT(CompareOptions, report)},
-    {"--report-size", 0, "MB", "Most that the pictures in the report may take (default: 64)",
+    {"--report-size", 0, "MB",
+     "Most that the pictures in the report may take, and as much for its pages of runs (default: 64)",
      OPTION_INT(CompareOptions, megabytes, 1, 1000)},
     {"--annotations", 0, "KIND",
      "none, or github: print failures as annotations of GitHub Actions (at most ten) and append a summary to the file "

@@ -3,6 +3,7 @@
 
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
+#include "cli/simulate_verdict.h"
 #include "common/standard_io.h"
 #include "common/file.h"
 #include "scene/launch.h"
@@ -29,11 +30,17 @@ static bool add(Panels *panels, Trajectory *run, const char *input, Error *error
 }
 
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
+    return panels_add_watched(panels, scene, method_name, input, NULL, error);
+}
+
+bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_name, const char *input,
+                        const Progress *progress, Error *error) {
     Method method;
     if (!method_parse(&method, method_name, error)) return false;
+    if (progress != NULL) return add(panels, simulate_judged(scene, &method, progress, error), input, error);
     char what[2 * SCENE_NAME_SIZE + 8];
     snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
-    Trajectory *run = simulate(scene, &method, progress_bar_begin(what), error);
+    Trajectory *run = simulate_judged(scene, &method, progress_bar_begin(what), error);
     progress_bar_end();
     return add(panels, run, input, error);
 }

@@ -20,5 +20,9 @@ void panels_free(Panels *panels);
 /* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
 
+/* The same with another progress; NULL: the bar. */
+bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_name, const char *input,
+                        const Progress *progress, Error *error);
+
 /* Writes each run into the directory, under its trajectory_file_name(). */
 bool panels_store(const Panels *panels, const char *directory, Error *error);

@@ -31,8 +31,8 @@ static const CommandSpec spec = {
         "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every "
         "reading, one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future "
         "work. Score the systems that it cites, and judge their claims. Writes report.md, report.html, every table as "
-        "CSV, and every figure as PNG and SVG. Takes less than twenty minutes on two cores. An interrupted run "
-        "continues where it stopped.\v"
+        "CSV, every figure as PNG and SVG, and pages that play the runs of the strips. Takes less than twenty minutes "
+        "on two cores. An interrupted run continues where it stopped.\v"
         "Example: twinbox paper -o out/paper\n"
         "         twinbox paper -o out/paper-quick --quick"};
 

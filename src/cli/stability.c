@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/stability_clip.h"
+#include "cli/stability_pages.h"
 #include "cli/stability_print.h"
 #include "npz/output_check.h"
 #include "stability/stability_case.h"
@@ -20,6 +21,7 @@ enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, VARY_TEXTS = STABILITY_MAX_VARY + 1
 
 typedef struct Options {
     StabilityOptions study;
+    bool pages;
     const char *clip;  /* or NULL */
     const char *scene; /* or NULL */
     int vary_count;
@@ -54,6 +56,9 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.scenes)},
     {"--quick", 0, NULL, "Few studies, small maps: under two minutes; of SCENE: few values",
      OPTION_FLAG(Options, study.quick)},
+    {"--pages", 0, NULL,
+     "Also write stability.html: maps whose cells at a border link to pages that play what happened there",
+     OPTION_FLAG(Options, pages)},
     {"--clip", 0, "CELL",
      "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map",
      OPTION_TEXT(Options, clip)},
@@ -69,34 +74,66 @@ static const CommandSpec spec = {
         "it settles, sways or creeps. Takes up to twenty minutes on two cores. An interrupted run continues where it "
         "stopped.\n"
         "With SCENE: the same along one or two of the parameters of that scene. A parameter takes 13 runs of every "
-        "method and about ten more for each border, a map 100, each as long as the scene's frames.\v"
+        "method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
+        "With --pages, up to 8 failing cells of each method in each map get a page, which shows at most nine seconds "
+        "of "
+        "the run beside the first method that holds there; all pages together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
         "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
         "         twinbox stability -o out/stability --clip height_iterations:engine:15,5"};
 
-static bool make_clip(const Options *options, Error *error) {
+/* Frees with free_maps(), also after a failure. */
+typedef struct ClipMaps {
+    ClipMap *items; /* [count] */
+    int count;
+    char (*paths)[STABILITY_PATH_SIZE];
+} ClipMaps;
+
+static void free_maps(ClipMaps *maps) {
+    free(maps->paths);
+    free(maps->items);
+}
+
+static bool list_maps(ClipMaps *maps, const Options *options, Error *error) {
     const StabilityOwn *own = options->study.own;
     const StabilityMap *table = own != NULL ? own->maps : stability_maps;
-    const int count = own != NULL ? own->map_count : stability_map_count;
-    char(*paths)[STABILITY_PATH_SIZE] = malloc(((size_t)count + 1) * sizeof *paths);
-    ClipMap *maps = malloc(((size_t)count + 1) * sizeof *maps);
-    bool ok = (paths != NULL && maps != NULL) || error_memory(error, options->clip);
-    for (int i = 0; ok && i < count; i++) {
+    maps->count = own != NULL ? own->map_count : stability_map_count;
+    maps->paths = malloc(((size_t)maps->count + 1) * sizeof *maps->paths);
+    maps->items = malloc(((size_t)maps->count + 1) * sizeof *maps->items);
+    if (maps->paths == NULL || maps->items == NULL) return error_memory(error, "maps");
+    for (int i = 0; i < maps->count; i++) {
         const StabilityMap *map = &table[i];
         const StabilityPlace place = {options->study.scenes, map->scene, map->file};
-        ok = stability_path(paths[i], &place, error);
-        maps[i] = (ClipMap){map->name, paths[i], map->x.parameter, map->y.parameter};
+        if (!stability_path(maps->paths[i], &place, error)) return false;
+        maps->items[i] = (ClipMap){map->name, maps->paths[i], map->x.parameter, map->y.parameter};
     }
-    const ClipOptions clip = {options->study.folder, options->clip, maps, count, CLIP_WIDTH, CLIP_HEIGHT};
-    if (ok) ok = stability_clip(&clip, error);
-    free(paths);
-    free(maps);
+    return true;
+}
+
+static bool make_clip(const Options *options, Error *error) {
+    ClipMaps maps = {0};
+    bool ok = list_maps(&maps, options, error);
+    const ClipOptions clip = {options->study.folder, options->clip, maps.items, maps.count, CLIP_WIDTH, CLIP_HEIGHT};
+    ok = ok && stability_clip(&clip, error);
+    free_maps(&maps);
     return ok;
 }
 
-static bool draw(const char *folder, Error *error) {
-    return stability_figures_write(folder, progress_bar_begin("maps"), error);
+static bool write_pages(const Options *options, uint64_t key, Error *error) {
+    ClipMaps maps = {0};
+    bool ok = list_maps(&maps, options, error);
+    const StabilityPages pages = {options->study.folder, maps.items, maps.count};
+    ok = ok && stability_pages_write(&pages, key, error);
+    free_maps(&maps);
+    return ok;
+}
+
+static bool draw(void *context, uint64_t key, Error *error) {
+    const Options *options = context;
+    const bool drawn = stability_figures_write(options->study.folder, progress_bar_begin("maps"), error);
+    progress_bar_end();
+    return drawn && (!options->pages || write_pages(options, key, error));
 }
 
 static bool study(const StabilityOptions *options, Error *error) {
@@ -111,6 +148,7 @@ static bool study(const StabilityOptions *options, Error *error) {
 
 /* SCENE and --vary go together, and neither with what chooses studies of the table. */
 static bool check_options(const Options *options, Error *error) {
+    if (options->pages && options->clip != NULL) return error_input(error, "--pages", "cannot be combined with --clip");
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
@@ -129,6 +167,7 @@ bool command_stability(int argc, char **argv, Error *error) {
             return false;
         options.study.own = &own;
     }
+    options.study.draw_context = &options;
     if (options.clip != NULL) return make_clip(&options, error);
     return output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The video of one cell of a stability map. */
 #pragma once
-#include "common/error.h"
-
-/* The origin of a map's runs. */
-typedef struct ClipMap {
-    const char *name;                      /* as in maps.csv */
-    const char *scene;                     /* path of the scene file */
-    const char *x_parameter, *y_parameter; /* of the scene */
-} ClipMap;
+#include "cli/stability_runs.h"
 
 typedef struct ClipOptions {
     const char *folder;  /* of maps.csv */

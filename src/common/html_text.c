@@ -3,7 +3,9 @@
 
 #include "common/utf8.h"
 
+#include <ctype.h>
 #include <stdbool.h>
+#include <string.h>
 
 /* XML 1.0, section 2.2. */
 static bool is_xml(uint32_t character) {
@@ -29,4 +31,10 @@ void html_put(FILE *file, const char *text) {
                 fputs("\xef\xbf\xbd", file);
         }
     }
+}
+
+void html_put_address(FILE *file, const char *name) {
+    for (; *name != '\0'; name++)
+        fprintf(file, isalnum((unsigned char)*name) || strchr("-._~", *name) != NULL ? "%c" : "%%%02X",
+                (unsigned char)*name);
 }

@@ -21,15 +21,20 @@ static bool is_right(const ReferenceVelocity *found, const ReferenceVelocity *re
 
 SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *velocities,
                              const ReferenceVelocity *reference) {
-    SolutionError error = {0};
-    double sum = 0;
+    SolutionError error = {.worst = -1};
+    double sum = 0, most = -1;
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
         if (body->inv_mass == 0.0f) continue;
         ReferenceVelocity freely = {(double)body->velocity.x, (double)body->velocity.y, (double)body->angular_velocity};
         ReferenceVelocity found = {(double)velocities[i].linear.x, (double)velocities[i].linear.y,
                                    (double)velocities[i].angular};
-        sum += squared_distance(&found, &reference[i], 1.0 / 6.0);
+        const double square = squared_distance(&found, &reference[i], 1.0 / 6.0);
+        sum += square;
+        if (!(square <= most)) { /* NaN is worst */
+            most = square;
+            error.worst = i;
+        }
         error.right += is_right(&found, &reference[i], &freely);
         error.counted++;
     }

@@ -9,6 +9,7 @@ typedef struct SolutionError {
     double rms;  /* m/s: root of the mean over the bodies of |dv|^2 + dspin^2 / 6; 0 without bodies */
     int right;   /* bodies with a right velocity */
     int counted; /* dynamic bodies */
+    int worst;   /* the body with the largest |dv|^2 + dspin^2 / 6; -1: none */
 } SolutionError;
 
 /* velocities, reference: [problem->body_count]. A body's velocity is right if |v - v*| <= max(0.05 m/s, 5% of |v* -

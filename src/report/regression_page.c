@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html: the fixed parts of page/, and pictures and results as data for its script. */
 #include "common/base64.h"
+#include "common/house_page.h"
 #include "common/html_text.h"
 #include "report/approve_place.h"
 #include "report/page.h"
@@ -69,7 +70,7 @@ static void write_head(FILE *file, const Regression *regression) {
           "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>twinbox compare: ",
           file);
     html_put(file, regression_verdict(regression).text);
-    fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n", report_page_css);
+    fprintf(file, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n", house_css, report_page_css);
     fputs("<a class=\"skip\" id=\"skip\" href=\"#stage\">Skip to the pictures</a>\n<main>\n", file);
 }
 
@@ -81,6 +82,18 @@ static void write_notes(FILE *file, const Regression *regression) {
     fputs("</p>\n", file);
 }
 
+/* The text of the link tells where it leads, for those who hear the links only. */
+static void write_run_link(FILE *file, const Report *report, int index) {
+    const TrajectoryDifference *difference = &report->regression->runs[index].difference;
+    const char *link = report->runs->links[index];
+    if (link[0] == '\0') return;
+    fputs("<a href=\"", file);
+    html_put(file, link);
+    fputs("\">play both runs", file);
+    if (difference->frame >= 0) fprintf(file, " from frame %d, body %d", difference->frame, difference->body);
+    fputs("</a>", file);
+}
+
 static void write_summary(FILE *file, const Report *report) {
     const Regression *regression = report->regression;
     fputs("<header><h1>twinbox compare</h1>\n", file);
@@ -90,6 +103,10 @@ static void write_summary(FILE *file, const Report *report) {
     write_counts(file, regression);
     fputs("<p class=\"begin\">", file);
     html_put(file, regression_begin(regression).text);
+    if (regression->first_run >= 0) {
+        fputs("\n", file);
+        write_run_link(file, report, regression->first_run);
+    }
     fputs("</p>\n<ul id=\"causes\" aria-label=\"Causes\"></ul>\n", file);
     write_notes(file, regression);
     if (report->pictures->left_out > 0)
@@ -103,10 +120,11 @@ static void write_summary(FILE *file, const Report *report) {
           file);
 }
 
-static void write_runs(FILE *file, const Regression *regression) {
+static void write_runs(FILE *file, const Report *report) {
+    const Regression *regression = report->regression;
     if (regression->run_count == 0) return;
     fputs("<section class=\"panel scroll\" tabindex=\"0\" aria-labelledby=\"runs\"><h2 id=\"runs\">Trajectories</h2>\n"
-          "<table><thead><tr><th>Name</th><th>Verdict</th><th>Difference</th></tr></thead><tbody>\n",
+          "<table><thead><tr><th>Name</th><th>Verdict</th><th>Difference</th><th>Page</th></tr></thead><tbody>\n",
           file);
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
@@ -116,9 +134,18 @@ static void write_runs(FILE *file, const Regression *regression) {
                                     : "</td><td class=\"bad\">physics changed</td><td>",
               file);
         html_put(file, run_words(run).text);
+        fputs("</td><td>", file);
+        write_run_link(file, report, i);
         fputs("</td></tr>\n", file);
     }
-    fputs("</tbody></table></section>\n", file);
+    fputs("</tbody></table>\n", file);
+    if (report->runs->left_out > 0)
+        fprintf(
+            file,
+            "<p class=\"odd\">Without a page, as these exceed the report's size limit: %d. Compare again with a larger "
+            "<code>--report-size</code>.</p>\n",
+            report->runs->left_out);
+    fputs("</section>\n", file);
 }
 
 static void write_approval(FILE *file, const Report *report) {
@@ -159,7 +186,7 @@ void report_write_page(FILE *file, const void *context) {
         fputs("</section>\n", file);
     }
     fputs(report_page_html, file);
-    write_runs(file, regression);
+    write_runs(file, report);
     write_approval(file, report);
     fputs(report_help_html, file);
     write_pictures(file, report->pictures);

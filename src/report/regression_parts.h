@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of a comparison's report. Only regression_report.c and the writers of parts include this. */
 #pragma once
+#include "player/player.h"
 #include "regression/regression.h"
 
 #include <stdio.h>
@@ -24,9 +25,24 @@ bool report_pictures_gather(ReportPictures *pictures, Regression *regression, si
                             const Progress *progress, Error *error);
 void report_pictures_free(ReportPictures *pictures);
 
+/* The pages of runs that differ. */
+enum { REPORT_RUN_SIZE = 256 };
+typedef struct ReportRuns {
+    char (*links)[REPORT_RUN_SIZE +
+                  PLAYER_LINK_SIZE]; /* [runs of the comparison] "run-NAME.html#t=0.55&body=7", or empty */
+    int left_out;                    /* runs whose page did not fit */
+} ReportRuns;
+
+/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
+   ERROR_INPUT if a run has changed since the comparison. On failure nothing needs to be freed. */
+bool report_runs_write(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
+                       const Progress *progress, Error *error);
+void report_runs_free(ReportRuns *runs);
+
 typedef struct Report {
     const Regression *regression;
     const ReportPictures *pictures;
+    const ReportRuns *runs;
     const char *folder; /* of the report, as given */
 } Report;
 

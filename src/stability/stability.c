@@ -143,8 +143,8 @@ bool stability_run(const StabilityOptions *options, const Progress *progress, Er
     bool ok = find_key(&run, &key, error) && folder_reserve(options->folder, error) &&
               study_parts_open(&run.parts, options->folder, key, error) && do_parts(&run, error) &&
               write_tables(&run, error);
-    ok =
-        ok && (options->draw == NULL || options->draw(options->folder, error)) && study_parts_remove(&run.parts, error);
+    ok = ok && (options->draw == NULL || options->draw(options->draw_context, key, error)) &&
+         study_parts_remove(&run.parts, error);
     study_parts_close(&run.parts);
     contenders_free(&run.methods);
     return ok;

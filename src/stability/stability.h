@@ -8,6 +8,7 @@
 #include "stability/stability_own.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { STABILITY_MAX_NAMES = 64 };
 
@@ -19,8 +20,9 @@ typedef struct StabilityOptions {
     int name_count;      /* of studies and maps to run; 0: all */
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
-    /* Draws the tables in the folder; NULL: nothing is drawn. */
-    bool (*draw)(const char *folder, Error *error);
+    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables (study_key.h). */
+    bool (*draw)(void *context, uint64_t key, Error *error);
+    void *draw_context;
 } StabilityOptions;
 
 /* Runs the studies and maps, writes the tables and draws. An interrupted run is resumed at the unfinished study or map. The

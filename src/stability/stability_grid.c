@@ -81,21 +81,27 @@ static bool write_cells(const Run *run, int method, FILE *lines, Error *error) {
     return true;
 }
 
-/* Tests the first and the last cell. */
-static bool applies(const Run *run, const Method *method) {
-    bool ok = true;
-    for (int i = 0; ok && i < 2; i++) {
-        Error reason = {0};
+/* Tests the first and the last cell. False with error set if the system fails. */
+static bool find_whether_it_applies(const Run *run, const Method *method, bool *applies, Error *error) {
+    Error reason = {0};
+    *applies = true;
+    for (int i = 0; *applies && i < 2; i++) {
         Scene *scene = scene_at(run->grid, run->x[i * (run->x_count - 1)], run->y[i * (run->y_count - 1)], &reason);
-        ok = scene != NULL && stability_applies(method, scene, &reason);
+        *applies = scene != NULL && stability_applies(method, scene, &reason);
         scene_destroy(scene);
     }
-    return ok;
+    if (reason.kind == ERROR_SYSTEM) *error = reason;
+    return reason.kind != ERROR_SYSTEM;
 }
 
-static bool is_drawn(const Run *run, const Method *method) {
-    if (method->kind->description->role == METHOD_REFERENCE) return false;
-    return (!run->grid->map->iterations || stability_takes_iterations(method)) && applies(run, method);
+static bool add_method(Run *run, const Contender *contender, Error *error) {
+    const Method *method = &contender->method;
+    bool applies;
+    if (method->kind->description->role == METHOD_REFERENCE) return true;
+    if (run->grid->map->iterations && !stability_takes_iterations(method)) return true;
+    if (!find_whether_it_applies(run, method, &applies, error)) return false;
+    if (applies) run->methods[run->method_count++] = contender;
+    return true;
 }
 
 static bool begin(Run *run, Error *error) {
@@ -112,8 +118,7 @@ static bool begin(Run *run, Error *error) {
     run->readings = malloc(methods * cells * sizeof *run->readings);
     if (run->methods == NULL || run->readings == NULL) return error_memory(error, grid->map->name);
     for (int i = 0; i < grid->methods->count; i++)
-        if (is_drawn(run, &grid->methods->items[i].method))
-            run->methods[run->method_count++] = &grid->methods->items[i];
+        if (!add_method(run, &grid->methods->items[i], error)) return false;
     run->counter.expected = (double)cells * run->method_count;
     return true;
 }

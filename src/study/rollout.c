@@ -11,17 +11,20 @@
 void step_scores_free(StepScores *scores) {
     free(scores->error);
     free(scores->share);
+    free(scores->place);
     *scores = (StepScores){0};
 }
 
-bool step_scores_add(StepScores *scores, const ContactProblem *problem, const BodyVelocity *velocities,
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
                      const ReferenceVelocity *reference) {
     size_t wanted = (size_t)scores->count + 1;
     if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
-        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share))
+        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share) ||
+        !array_reserve((void **)&scores->place, &scores->place_capacity, wanted, sizeof *scores->place))
         return false;
     SolutionError found = solution_error(problem, velocities, reference);
     scores->error[scores->count] = found.rms;
+    scores->place[scores->count] = (StepPlace){frame, found.worst};
     scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
     return true;
 }
@@ -39,13 +42,13 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
-static bool score(Rollout *rollout, bool push_out, StepScores *scores, Error *error) {
+static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     const Reference *reference = &rollout->converged.reference;
     if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
     rollout->solves++;
     rollout->unconverged += reference->residual > SOLVE_CONVERGED;
-    if (step_scores_add(scores, problem, world_solution(rollout->world)->velocities, reference->velocities))
+    if (step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities, reference->velocities))
         return true;
     return error_memory(error, "study");
 }
@@ -74,7 +77,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
         if (scores != NULL && sampled(sampling, phase, &tracker, frame) &&
-            !score(rollout, push_out, &scores[phase], error))
+            !score(rollout, frame, push_out, &scores[phase], error))
             return false;
     }
     return true;

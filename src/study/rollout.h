@@ -5,16 +5,22 @@
 #include "study/converged_step.h"
 #include "study/run_log.h"
 
+/* Where the error of a scored step is largest. */
+typedef struct StepPlace {
+    int frame, body; /* body -1: none */
+} StepPlace;
+
 /* Errors of the scored steps. Zero-initialise; free with step_scores_free(). */
 typedef struct StepScores {
     int count;
-    double *error; /* [count] m/s, RMS over the dynamic bodies */
-    double *share; /* [count] share of bodies that are right (solution_error.h) */
-    size_t error_capacity, share_capacity;
+    double *error;    /* [count] m/s, RMS over the dynamic bodies */
+    double *share;    /* [count] share of bodies that are right (solution_error.h) */
+    StepPlace *place; /* [count] */
+    size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
 
-/* Adds one step, given its final velocities. False if out of memory. */
-bool step_scores_add(StepScores *scores, const ContactProblem *problem, const BodyVelocity *velocities,
+/* Adds the step to `frame`, given its final velocities. False if out of memory. */
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
                      const ReferenceVelocity *reference);
 void step_scores_free(StepScores *scores);
 

@@ -24,6 +24,8 @@ static const StudySize quick_size = {.launches = 5,
                                      .timed_launches = 1,
                                      .repetitions = 3};
 
+const StudySize *speed_accuracy_size(bool quick) { return quick ? &quick_size : &full_size; }
+
 typedef struct Run {
     const SpeedAccuracyOptions *options;
     const StageProgress *progress;
@@ -98,7 +100,7 @@ static bool measure_scene(Run *run, Error *error) {
 }
 
 static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, Error *error) {
-    const StudySize *size = run->options->quick ? &quick_size : &full_size;
+    const StudySize *size = speed_accuracy_size(run->options->quick);
     if (!scene_study_begin(&run->study, path, &run->contenders, &run->options->launches, size, error)) return false;
     for (int i = 0; i < run->row_count; i++)
         if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
@@ -173,7 +175,7 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress
         return false;
     bool ok = study_key(options, &key, error) && folder_reserve(options->folder, error) &&
               part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error) &&
-              options->draw(options, scenes, error) && part_file_remove(&run.part, error);
+              options->draw(options, scenes, key, error) && part_file_remove(&run.part, error);
     part_file_close(&run.part);
     contenders_free(&run.contenders);
     free(run.rows);

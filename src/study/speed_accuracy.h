@@ -8,6 +8,7 @@
 #include "common/progress.h"
 #include "study/contenders.h"
 #include "study/launch_choice.h"
+#include "study/scene_study.h"
 
 enum { STUDY_MAX_SCENES = 32 };
 
@@ -26,8 +27,10 @@ typedef struct SpeedAccuracyOptions {
     LaunchChoice launches;
     bool quick;         /* fewer launches, settings, steps and repetitions */
     const char *folder; /* created if missing */
-    /* Draws folder/chart.csv; scenes[scene_count]. */
-    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, Error *error);
+    bool pages;         /* for draw() */
+    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (study_key.h). */
+    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
+                 Error *error);
 } SpeedAccuracyOptions;
 
 struct SpeedAccuracyScene {
@@ -38,6 +41,9 @@ struct SpeedAccuracyScene {
     int solves, unconverged;  /* reference solves in closed loop since the study was started or resumed; those
                                  with a residual above SOLVE_CONVERGED (rollout.h) */
 };
+
+/* Of the studies. */
+const StudySize *speed_accuracy_size(bool quick);
 
 /* Writes folder/chart.csv, fills scenes[scene_count] and draws. Finished rows are saved in folder/chart-KEY.part.csv: an
    interrupted study is resumed if options, files and program are the same. ERROR_INPUT for an invalid option, scene or

@@ -36,6 +36,8 @@ table() {
 2 | the camera cannot follow the bomb: the first run has none | render theirs.npz --camera bomb -o x
 0 | strip | figure strip ours.npz theirs.npz --moments 3 --dpi 60 -o strip.png
 0 | strobe | figure strobe theirs.npz --moments 4 --dpi 60 -o strobe.png
+0 | 2 runs of 61 frames | page ours.npz theirs.npz -o pair.html
+0 | 1 run of 61 frames | page theirs.npz -o one.html
 0 | divergence | figure divergence ours.npz other.npz -o divergence.svg
 2 | theirs.npz: error: the run has no contacts, which the kind annotated shows | figure annotated theirs.npz -o x.png
 2 | theirs.npz: error: the run has no contacts, which the kind narrow-phase shows | figure narrow-phase theirs.npz -o x.png

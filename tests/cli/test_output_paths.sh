@@ -39,6 +39,9 @@ refused 2 "run.npz: error: holds a file of kind 'run', which a file of kind 'dat
 refused 2 "pair.npz: error: holds a file of kind 'network', which a file of kind 'run'" simulate stack.yaml -o pair.npz
 refused 3 "nowhere/x.npz: error: cannot write" simulate stack.yaml -o nowhere/x.npz
 refused 3 "nowhere/x.csv: error: cannot write" simulate stack.yaml -o nowhere/x.csv
+refused 3 "nowhere/x.html: error: cannot write" page stack.yaml -o nowhere/x.html
+refused 2 "x.txt: error: the name must end in .html" page run.npz -o x.txt
+refused 2 "run.npz: error: the name must end in .html" page run.npz -o run.npz
 refused 3 "nowhere/hash: error: cannot write" simulate stack.yaml --hash nowhere/hash
 refused 3 "nowhere/v.json: error: cannot write" simulate stack.yaml --verdict nowhere/v.json
 refused 2 "pair.npz: error: holds a file of kind 'network'" problem stack.yaml --frame 41 -o pair.npz

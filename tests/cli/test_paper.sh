@@ -65,7 +65,7 @@ equal "files hashed" "$(wc -l <"$hashes")" 8
 [ -s quick/networks/baseline.npz ] || fail "no network"
 equal "what was done in parts is gone" "$(ls -d quick/parts-* 2>/dev/null | wc -l)" 0
 /usr/bin/python3 - <<'PYTHON' || fail "tables or report are not in order"
-import csv, re
+import csv, os, re
 rows = {name: list(csv.DictReader(open(f"quick/{name}.csv"))) for name in
         "closed_loop laws networks rates system_scores systems table1 transfer".split()}
 for row in rows["rates"]:
@@ -98,7 +98,10 @@ findings = dict(csv.reader(open("quick/findings/summary.csv")))
 assert int(findings["runs"]) == len(rows["closed_loop"]) and int(findings["gate_networks"]) == len(rows["networks"])
 assert int(findings["rates"]) == sum(row["rate"] != "" and row["constant"] != "" for row in rows["rates"])
 html = open("quick/report.html").read()
-assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/)', html)
+pages = set(re.findall(r'href="(figures/strip-[a-z]+\.html)#t=0\.5"', html))
+assert pages == {"figures/strip-stack.html", "figures/strip-pyramid.html"}, pages
+assert all(os.path.getsize(f"quick/{page}") < 4 << 20 for page in pages)
+assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/|figures/strip-)', html)
 PYTHON
 
 # A study continues from the parts that are done, to the same tables; also when it could not be drawn.

@@ -16,6 +16,7 @@ lines="new 0 out_of_new.yaml --like wall
 check 0 scenes/single.yaml -o out_of_check.png
 simulate 0 scenes/single.yaml -o out_of_simulate.npz
 render 0 engine.npz --frames 0:1 --size 64x64 -o out_of_render
+page 0 engine.npz momentum.npz -o out_of_page.html
 compare 1 expected actual --report out_of_compare
 approve 0 out_of_compare
 diverge 1 engine.npz momentum.npz --scene scenes/single.yaml

@@ -67,6 +67,9 @@ cmp -s frames/frame_000001.png frames_run/frame_000001.png || fail "render - dra
     fail "render --view-from -"
 cmp -s frames/frame_000001.png frames_view/frame_000001.png || fail "--view-from - gives another view"
 
+# A page names the file of its run, so that the command it copies finds it.
+"$twinbox" page - -o - <run.npz 2>err | grep -q "^<title>Stdin: engine" || fail "page - -o -: $(head -c 300 err)"
+
 # Long studies read their scene in the same way: a wrong one is refused with its place.
 for command in "chart - -o study" "stability - -o study --vary height" "check -"; do
     echo "gravity: [0]" | "$twinbox" $command >out 2>err
@@ -89,6 +92,7 @@ dataset stdin.yaml --launches launches.csv -o @|c.npz
 export run.npz -o @|b.csv
 import run.csv -o @|d.npz
 figure strip run.npz --moments 2 -o @|a.svg
+page run.npz other.npz -o @|a.html
 check stdin.yaml -o @|a.png
 new @ --like wall|wall.yaml
 TABLE

@@ -8,7 +8,7 @@ sample=1
 ! nm -D "$twinbox" | grep -q __asan_init || sample=40
 
 cases=""
-for name in new simulate-net export-csv import compare-json approve solve; do
+for name in new simulate-net export-csv import compare-json approve page solve; do
     cases+=" --case $name"
 done
 python3 "$sources/tests/faults/faults.py" "$twinbox" "$sources" --jobs 2 --sample $sample --call malloc --mode fail $cases

@@ -61,12 +61,14 @@ waiting TERM import - -o new.npz
 waiting INT compare a.npz -
 waiting TERM diverge a.npz -
 waiting INT export - -o new.csv
+waiting TERM page - -o new.html
 waiting INT figure strip - -o new.pdf
 waiting TERM train - -o new.npz
 waiting INT train --kind scene-net - -o new.npz
 
 working TERM simulate "$scenes/pyramid.yaml" --frames 500000 -o new.npz --verdict new.json
 complains "stopped after step"
+working INT page "$scenes/pyramid.yaml" -o new.html
 working INT dataset "$scenes/pyramid.yaml" --random 5000 -o new.npz
 working TERM train --kind momentum-schedule "$scenes/stack.yaml" -o new.npz --iterations 100000
 [ -e new.json ] && fail "an interrupted run has a verdict"

@@ -240,6 +240,26 @@ static void strips_are_refused_or_stopped(void **state) {
     assert_error(error, ERROR_INPUT, "/nowhere/stack.yaml");
 }
 
+/* The engine and the system, in this order. */
+static void a_page_plays_the_runs_of_the_strips(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), NULL, &error), error);
+    for (int i = 0; i < STRIP_SCENES; i++) {
+        char name[64];
+        size_t size;
+        snprintf(name, sizeof name, "strip-%s.html", strip_scene_names[i]);
+        char *page = file_read(temporary_path(name), 1 << 22, &size, &error);
+        assert_ok(page != NULL, error);
+        const char *engine = strstr(page, "\"method\": \"engine\""),
+                   *own = strstr(page, "\"method\": \"interior:near=0.01\"");
+        assert_true(engine != NULL && own != NULL && engine < own);
+        free(page);
+        snprintf(name, sizeof name, "strip-double-%s.png", strip_scene_names[i]);
+        assert_int_equal(access(temporary_path(name), R_OK), 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_and_scores_are_done_once),
@@ -249,6 +269,7 @@ int main(void) {
         cmocka_unit_test(damaged_tables_are_refused),
         cmocka_unit_test(a_text_that_cannot_be_read_back_is_refused),
         cmocka_unit_test(strips_are_refused_or_stopped),
+        cmocka_unit_test(a_page_plays_the_runs_of_the_strips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,6 +38,17 @@ static void the_rms_is_over_the_bodies_that_move(void **state) {
     assert_int_equal(error.counted, 2);
 }
 
+/* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number does. */
+static void the_worst_body_has_the_largest_error(void **state) {
+    (void)state;
+    const BodyVelocity spins = {{0, 0}, 6};
+    assert_int_equal(error_of(spins, (BodyVelocity){{sqrtf(7), 0}, 0}).worst, 2);
+    assert_int_equal(error_of(spins, (BodyVelocity){{0, sqrtf(5)}, 0}).worst, 1);
+    assert_int_equal(error_of((BodyVelocity){{1e9f, 0}, 0}, (BodyVelocity){{NAN, 0}, 0}).worst, 2);
+    const ContactProblem ground = {.body_count = 1, .bodies = bodies};
+    assert_int_equal(solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference).worst, -1);
+}
+
 /* 5% of the 10 m/s that the first lost is 0.5 m/s; the 5% of the second are less than the 0.05 m/s that every body may
    have. Half the spin counts. */
 static void a_body_is_right_within_its_allowance(void **state) {
@@ -106,6 +117,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_reference_itself_has_no_error),
         cmocka_unit_test(the_rms_is_over_the_bodies_that_move),
+        cmocka_unit_test(the_worst_body_has_the_largest_error),
         cmocka_unit_test(a_body_is_right_within_its_allowance),
         cmocka_unit_test(what_is_no_number_is_wrong),
         cmocka_unit_test(nothing_that_moves_is_no_error),

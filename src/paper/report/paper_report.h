@@ -6,7 +6,7 @@
 
 /* folder: of a study (paper/study/paper.h) whose figures are drawn (paper/figures). Computes folder/findings
    (paper/findings/findings.h), and writes report.md, which links the figures, and report.html, which needs no other
-   file. The same folder gives the same bytes.
+   file to be read; its links to pages of runs lead to figures/strip-SCENE.html. The same folder gives the same bytes.
 
    ERROR_INPUT where a CSV file or a figure is missing or damaged, with path:line:column for CSV files; then neither
    report is written. */

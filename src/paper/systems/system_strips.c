@@ -5,9 +5,11 @@
 #include "common/parallel.h"
 #include "figure/figure.h"
 #include "paper/systems/system.h"
+#include "player/player.h"
 #include "scene/launch.h"
 #include "simulate/simulate.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <stdlib.h>
 
@@ -101,11 +103,21 @@ static bool draw_strip(const Strips *strips, int system, const char *folder, Err
     return drawn && write_caption(strips, stem, name, error);
 }
 
+/* Few frames and bodies: some hundred kB. */
+static bool write_page(const Strips *strips, const char *folder, Error *error) {
+    char path[PATH_MAX];
+    PlayerResult result;
+    const PlayerOptions options = {.last = -1, .describe = method_describe};
+    return file_path(path, sizeof path, error, "%s/strip-%s.html", folder, strips->name) &&
+           player_write((const Trajectory *const *)strips->runs, strips->count + 1, &options, path, &result, error);
+}
+
 static bool draw_scene(Strips *strips, const char *scenes, const char *folder, Error *error) {
     const ParallelWork running = {run_method, strips};
     bool done = strips_begin(strips, scenes, error) &&
                 parallel_for(&running, strips->count + 1, "runs for strips", NULL, error);
     for (int i = 0; done && i < strips->count; i++) done = draw_strip(strips, i, folder, error);
+    done = done && write_page(strips, folder, error);
     strips_end(strips);
     return done;
 }
@@ -114,6 +126,7 @@ bool system_strips_draw(const PaperSystem *const *systems, const char *scenes, b
                         const Progress *progress, Error *error) {
     int count = 0;
     while (systems[count] != NULL) count++;
+    assert(count <= STRIP_SYSTEMS_MAX);
     for (int i = 0; count > 0 && i < STRIP_SCENES; i++) {
         Strips strips = {.systems = systems,
                          .count = count,

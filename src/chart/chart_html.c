@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "chart/chart_html.h"
+
+#include "chart/chart_script.h"
+#include "common/file.h"
+#include "common/house_page.h"
+#include "common/html_text.h"
+#include "study/launch_page.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct ChartHtml {
+    ChartTable chart;
+    CsvTable table; /* of LaunchPage */
+    const LaunchPage *pages;
+    const char *csv; /* path of the chart's table */
+    Error *error;
+    bool failed;
+} ChartHtml;
+
+static bool same_point(const LaunchPage *page, const char *scene, const char *method, const char *setting,
+                       Phase phase) {
+    return page->phase == phase && strcmp(page->scene, scene) == 0 && strcmp(page->method, method) == 0 &&
+           strcmp(page->setting, setting) == 0;
+}
+
+static const LaunchPage *find_page(const ChartHtml *html, const char *scene, const char *method, const char *setting,
+                                   Phase phase) {
+    for (int i = 0; i < html->table.count; i++)
+        if (same_point(&html->pages[i], scene, method, setting, phase)) return &html->pages[i];
+    return NULL;
+}
+
+static const ChartRow *find_row(const ChartHtml *html, const LaunchPage *page) {
+    for (int i = 0; i < html->chart.count; i++) {
+        const ChartRow *row = &html->chart.rows[i];
+        if (row->protocol == PROTOCOL_CLOSED && same_point(page, row->scene, row->method, row->setting, row->phase))
+            return row;
+    }
+    return NULL;
+}
+
+/* The table is the way for the keyboard and for screen readers. */
+static void put_point(FILE *out, const Chart *chart, int panel, const ChartMark *mark, const LaunchPage *page) {
+    double left, top;
+    if (page == NULL || page->page[0] == '\0') return;
+    chart_mark_place(chart, panel, mark, &left, &top);
+    fprintf(out, "<a class=\"point\" tabindex=\"-1\" aria-hidden=\"true\" style=\"left:%.3f%%;top:%.3f%%\" href=\"",
+            100 * left, 100 * top);
+    html_put(out, page->page);
+    fputs("\" title=\"", out);
+    html_put(out, mark->method);
+    fputs(mark->setting[0] != '\0' ? ":" : "", out);
+    html_put(out, mark->setting);
+    fprintf(out, ": %.3g µs, %.3g m/s\"></a>\n", mark->us, mark->error);
+}
+
+static void put_figure(FILE *out, const ChartHtml *html, const Chart *chart, const char *scene) {
+    fputs("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Chart of ", out);
+    html_put(out, scene);
+    fputs("\">\n<figure>\n<img src=\"chart-", out);
+    html_put_address(out, scene);
+    fprintf(out, ".svg\" width=\"%.0f\" height=\"%.0f\" alt=\"Velocity error over solver time for each method in ",
+            10 * CHART_WIDTH, 10 * CHART_HEIGHT);
+    html_put(out, scene);
+    fputs("; the table below has the points.\">\n", out);
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++) {
+            const ChartMark *mark = &chart->panels[p].marks[i];
+            put_point(out, chart, p, mark, find_page(html, scene, mark->method, mark->setting, (Phase)p));
+        }
+    fputs("</figure>\n</div>\n", out);
+}
+
+static void put_number(FILE *out, double number) {
+    fputs("<td class=\"number\">", out);
+    if (!isnan(number)) fprintf(out, "%.3g", number);
+    fputs("</td>", out);
+}
+
+/* Time and error of the point, and its worst launch. */
+static void put_phase(FILE *out, const ChartHtml *html, const LaunchPage *page) {
+    if (page == NULL) {
+        fputs("<td></td><td></td><td></td>", out);
+        return;
+    }
+    const ChartRow *row = find_row(html, page);
+    const bool linked = page->page[0] != '\0';
+    put_number(out, row != NULL ? row->us_solver : (double)NAN);
+    put_number(out, row != NULL ? row->error_mean : (double)NAN);
+    fputs("<td>", out);
+    if (linked) {
+        fputs("<a href=\"", out);
+        html_put(out, page->page);
+        fputs("\">", out);
+    }
+    fprintf(out, "x = %.3g m: %.3g m/s at %.3g s", (double)page->x, page->error, page->time);
+    if (page->body >= 0) fprintf(out, ", body %d", page->body);
+    fputs(linked ? "</a></td>" : "</td>", out);
+}
+
+static void put_method(FILE *out, const ChartHtml *html, const LaunchPage *page) {
+    fputs("<tr><th scope=\"row\">", out);
+    html_put(out, page->method);
+    fputs("</th><td>", out);
+    html_put(out, page->setting);
+    fputs("</td>", out);
+    for (int p = 0; p < CHART_PANELS; p++)
+        put_phase(out, html, find_page(html, page->scene, page->method, page->setting, (Phase)p));
+    fputs("</tr>\n", out);
+}
+
+/* A row for each method and setting. Rows of both phases follow each other. */
+static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
+    fputs("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Points of ", out);
+    html_put(out, scene);
+    fputs("\">\n<table>\n<thead><tr><th rowspan=\"2\" scope=\"col\">Method</th>"
+          "<th rowspan=\"2\" scope=\"col\">Setting</th>",
+          out);
+    for (int p = 0; p < CHART_PANELS; p++)
+        fprintf(out, "<th colspan=\"3\" scope=\"colgroup\">%s</th>", chart_panel_titles[p]);
+    fputs("</tr>\n<tr>", out);
+    for (int p = 0; p < CHART_PANELS; p++)
+        fputs("<th class=\"number\" scope=\"col\">Time, µs</th><th class=\"number\" scope=\"col\">Error, m/s</th>"
+              "<th scope=\"col\">Worst launch</th>",
+              out);
+    fputs("</tr></thead>\n<tbody>\n", out);
+    for (int i = 0; i < html->table.count; i++) {
+        const LaunchPage *page = &html->pages[i], *before = page - 1;
+        if (strcmp(page->scene, scene) != 0) continue;
+        if (i > 0 && strcmp(before->scene, scene) == 0 && strcmp(before->method, page->method) == 0 &&
+            strcmp(before->setting, page->setting) == 0)
+            continue;
+        put_method(out, html, page);
+    }
+    fputs("</tbody>\n</table>\n</div>\n", out);
+}
+
+static void put_scene(FILE *out, ChartHtml *html, const char *scene) {
+    Chart chart;
+    if (!chart_gather(&chart, &html->chart, scene, html->csv, html->error)) {
+        html->failed = true;
+        return;
+    }
+    fputs("<section class=\"panel\" aria-label=\"", out);
+    html_put(out, scene);
+    fputs("\">\n<h2>", out);
+    html_put(out, scene);
+    fprintf(out, ", %d launches</h2>\n", chart.launches);
+    put_figure(out, html, &chart, scene);
+    put_table(out, html, scene);
+    fputs("</section>\n", out);
+    chart_free(&chart);
+}
+
+static bool is_first(const ChartHtml *html, int row) {
+    int first = 0;
+    while (strcmp(html->chart.rows[first].scene, html->chart.rows[row].scene) != 0) first++;
+    return first == row;
+}
+
+static int count_left_out(const ChartHtml *html) {
+    int count = 0;
+    for (int i = 0; i < html->table.count; i++) count += html->pages[i].page[0] == '\0';
+    return count;
+}
+
+static void put_html(FILE *out, const void *context) {
+    ChartHtml *html = (ChartHtml *)context; /* where it fails is noted */
+    house_page_begin(out, "Speed and accuracy", chart_css);
+    fputs("<header><h1>Speed and accuracy</h1></header>\n"
+          "<p class=\"soft\">Each point opens a page that plays the launch that was worst for it, beside the converged "
+          "run, at "
+          "the step with the largest error. Errors are means over all launches, of velocities against the converged "
+          "solution of the same step; of a step, over its bodies.</p>\n",
+          out);
+    const int left_out = count_left_out(html);
+    if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d points.</p>\n", left_out);
+    for (int i = 0; i < html->chart.count; i++)
+        if (!html->failed && is_first(html, i)) put_scene(out, html, html->chart.rows[i].scene);
+    house_page_end(out);
+}
+
+bool chart_html_write(const char *folder, Error *error) {
+    char csv[CSV_PATH_SIZE], path[CSV_PATH_SIZE];
+    ChartHtml html = {.csv = csv, .error = error};
+    if (!csv_table_path(csv, folder, &chart_layout, error) ||
+        !file_path(path, sizeof path, error, "%s/chart.html", folder) || !chart_csv_read(&html.chart, csv, error))
+        return false;
+    bool done = csv_table_read_from(&html.table, folder, &launch_page_layout, error);
+    html.pages = html.table.rows;
+    size_t size = 0;
+    char *text = done ? file_print(put_html, &html, &size) : NULL;
+    if (done && text == NULL) done = error_memory(error, path);
+    done = done && !html.failed && file_write(path, text, size, error);
+    free(text);
+    csv_table_free(&html.table);
+    chart_csv_free(&html.chart);
+    return done;
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/page_set.h"
+
+#include "cli/progress_bar.h"
+#include "common/file.h"
+#include "common/text_add.h"
+#include "study/study_key.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool page_set_open(PageSet *set, const char *folder, uint64_t key, int total, Error *error) {
+    char pages[PATH_MAX];
+    *set = (PageSet){.folder = folder, .parts = {.progress = progress_bar_begin("pages"), .total = total}};
+    study_key_add(&key, "pages", sizeof "pages"); /* the study's own parts are in another folder */
+    return file_path(pages, sizeof pages, error, "%s/pages", folder) && file_make_directory(pages, error) &&
+           study_parts_open(&set->parts, folder, key, error);
+}
+
+void page_set_close(PageSet *set) {
+    study_parts_close(&set->parts);
+    progress_bar_end();
+}
+
+/* The last two fields of a row, without a moment: "pages/NAME.html" and BYTES. */
+static char *page_of(char *row, int64_t *bytes) {
+    char *comma = strrchr(row, ',');
+    *bytes = atoll(comma + 1);
+    *comma = '\0';
+    char *page = strrchr(row, ',') + 1;
+    page[strcspn(page, "#")] = '\0';
+    return page;
+}
+
+static void count_row(PageSet *set, char *row) {
+    int64_t bytes;
+    const char *page = page_of(row, &bytes);
+    if (page[0] == '\0') {
+        set->left_out++;
+        return;
+    }
+    if (strcmp(page, set->last) == 0) return;
+    snprintf(set->last, sizeof set->last, "%s", page);
+    set->pages++;
+    set->bytes += bytes;
+}
+
+bool page_set_do(PageSet *set, const char *name, bool (*write)(void *context, FILE *lines, const Progress *, Error *),
+                 void *context, Error *error) {
+    const StudyPart part = {name, 1, write, context};
+    const size_t before = set->parts.size;
+    if (!study_parts_do(&set->parts, &part, error)) return false;
+    char *rows = strdup(set->parts.text != NULL ? set->parts.text + before : ""), *rest = rows;
+    if (rows == NULL) return error_memory(error, name);
+    for (char *row; (row = strtok_r(rest, "\n", &rest)) != NULL;) count_row(set, row);
+    free(rows);
+    return true;
+}
+
+bool page_set_table(const PageSet *set, const CsvLayout *layout, Error *error) {
+    return study_parts_table(&set->parts, set->folder, layout, error);
+}
+
+bool page_set_end(const PageSet *set, Error *error) { return study_parts_remove(&set->parts, error); }
+
+static int frames_of(const Trajectory *const *runs, int count, const PlayerOptions *options) {
+    int most = 0;
+    for (int i = 0; i < count; i++) most = runs[i]->frames > most ? runs[i]->frames : most;
+    return (options->last < 0 || options->last >= most ? most : options->last + 1) - options->first;
+}
+
+/* A page of all frames if its states fit, else of every n-th. */
+static int every_that_fits(const Trajectory *const *runs, int count, const PlayerOptions *options) {
+    double bytes = 0;
+    for (int i = 0; i < count; i++) bytes += 6.0 * sizeof(float) * runs[i]->bodies;
+    bytes *= frames_of(runs, count, options);
+    return 1 + (int)(bytes / PAGE_SET_STATE_BYTES);
+}
+
+bool page_set_write(const PageSet *set, const char *name, const Trajectory *const *runs, int count,
+                    const PlayerOptions *options, PageFile *file, Error *error) {
+    char path[PATH_MAX], plain[PAGE_NAME_SIZE - sizeof "pages/.html"];
+    PlayerResult result;
+    *file = (PageFile){0};
+    if (set->bytes >= PAGE_SET_MAX_BYTES) return true;
+    PlayerOptions fitting = *options;
+    fitting.every = every_that_fits(runs, count, options);
+    snprintf(plain, sizeof plain, "%s", name);
+    file_name_clean(plain);
+    if (!file_path(path, sizeof path, error, "%s/pages/%s.html", set->folder, plain) ||
+        !player_write(runs, count, &fitting, path, &result, error))
+        return false;
+    snprintf(file->path, sizeof file->path, "pages/%s.html", plain);
+    file->bytes = (int)result.bytes;
+    return true;
+}
+
+void page_set_link(char link[PAGE_LINK_SIZE], const PageFile *file, double time, int body, int run) {
+    char moment[PLAYER_LINK_SIZE];
+    link[0] = '\0';
+    if (file->path[0] == '\0') return;
+    player_link(moment, time, body);
+    snprintf(link, PAGE_LINK_SIZE, "%s%s", file->path, moment);
+    if (body >= 0 && run > 0) text_add(link, PAGE_LINK_SIZE, "&run=%d", run);
+}
+
+void page_set_print(const PageSet *set, const char *html) {
+    printf("%d page%s of %.3g MB together -> %s/pages; links to them -> %s/%s\n", set->pages, plural(set->pages),
+           (double)set->bytes / 1e6, set->folder, set->folder, html);
+    if (set->left_out > 0)
+        printf("    without a page, as pages take at most %d MB: %d\n", PAGE_SET_MAX_BYTES >> 20, set->left_out);
+}

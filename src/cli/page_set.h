@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pages of a study, folder/pages/NAME.html, and the table that lists them. They are written in parts, so that a study
+   that is interrupted continues with the page that it was at. */
+#pragma once
+#include "player/player.h"
+#include "study/study_parts.h"
+
+/* All pages of a folder together, and the states in one page, which has only every n-th frame if they would take more. */
+#define PAGE_SET_MAX_BYTES (256 << 20)
+#define PAGE_SET_STATE_BYTES (8 << 20)
+
+enum { PAGE_NAME_SIZE = 256 };
+
+typedef struct PageSet {
+    const char *folder;
+    StudyParts parts;
+    int64_t bytes;             /* of the pages so far */
+    int pages, left_out;       /* left out: beyond PAGE_SET_MAX_BYTES */
+    char last[PAGE_NAME_SIZE]; /* the page of the last row that had one */
+} PageSet;
+
+/* key: of the study (study/study_key.h). total: the number of parts. The caller keeps the folder's name. */
+bool page_set_open(PageSet *set, const char *folder, uint64_t key, int total, Error *error);
+void page_set_close(PageSet *set);
+
+/* Does a part of weight 1 (study_parts_do), whose lines are rows of one table; their last columns are a link into a page and
+   the page's bytes. Rows of one page follow each other; where a page was left out, these are empty and 0. */
+bool page_set_do(PageSet *set, const char *name, bool (*write)(void *context, FILE *lines, const Progress *, Error *),
+                 void *context, Error *error);
+
+/* Writes the table; and removes the parts, once all that the caller makes of it is written. */
+bool page_set_table(const PageSet *set, const CsvLayout *layout, Error *error);
+bool page_set_end(const PageSet *set, Error *error);
+
+/* For `write`: makes `name` fit a file, and path "pages/NAME.html" of it; writes that page. path is empty and bytes is 0 if
+   there is no room for it. */
+typedef struct PageFile {
+    char path[PAGE_NAME_SIZE];
+    int bytes;
+} PageFile;
+bool page_set_write(const PageSet *set, const char *name, const Trajectory *const *runs, int count,
+                    const PlayerOptions *options, PageFile *file, Error *error);
+
+/* "pages/NAME.html#t=0.55&body=7&run=1": the moment, and the body in that run of the page. Of a page that was left out,
+   empty. */
+enum { PAGE_LINK_SIZE = PAGE_NAME_SIZE + PLAYER_LINK_SIZE + 16 };
+void page_set_link(char link[PAGE_LINK_SIZE], const PageFile *file, double time, int body, int run);
+
+/* "14 pages of 2.1 MB -> DIR/pages" and what was left out. */
+void page_set_print(const PageSet *set, const char *html);

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the tests of --pages share: links of an HTML page, and the data of the player's pages."""
+import html
+import html.parser
+import json
+import os
+import re
+import urllib.parse
+
+
+class Links(html.parser.HTMLParser):
+    """The targets of all links, and the sources of all pictures, in order; strict about what is open."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.targets, self.pictures, self.names = [], [], {}
+        self.feed(open(path).read())
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        if tag == "script":
+            raise AssertionError("a script")
+        if tag == "a":
+            self.targets.append(attributes["href"])
+            self.names[attributes["href"]] = attributes.get("aria-label") or attributes.get("title")
+        if tag == "img":
+            self.pictures.append(urllib.parse.unquote(attributes["src"]))
+
+
+def moment(target):
+    """pages/NAME.html, seconds, body (-1: none) of a link."""
+    path, t, body, _ = re.fullmatch(r"([^#]+)#t=([0-9.e+-]+)(?:&body=(\d+))?(&run=\d+)?", target).groups()
+    return path, float(t), -1 if body is None else int(body)
+
+
+def data(path):
+    """The data of a page that plays runs."""
+    text = open(path).read()
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1))
+
+
+def check_shown(folder, target):
+    """The page is there and shows the moment; its data."""
+    path, time, body = moment(target)
+    page = data(os.path.join(folder, path))
+    frame = round(time / page["dt"]) - page["first"]
+    assert 0 <= frame < page["frames"] * page["every"], (target, page["first"], page["frames"])
+    assert -1 <= body < page["runs"][-1]["bodies"], target
+    return page

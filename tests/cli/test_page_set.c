@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pages of a study stay within bounds: of one page, and of all together. */
+#include "testing.h"
+
+#include "cli/page_set.h"
+#include "common/file.h"
+
+/* Two boxes that stand still for so many frames. */
+static Trajectory *make_run(int frames) {
+    Error error = {0};
+    Trajectory *run = trajectory_create(frames, 2, &error);
+    assert_ok(run != NULL, error);
+    strcpy(run->scene, "still");
+    strcpy(run->method, "none");
+    run->dt = 0.0625f;
+    run->no_contacts = true;
+    for (int body = 0; body < 2; body++) run->size[body] = vec2(1, 1);
+    for (int i = 0; i < 2 * frames; i++) {
+        run->position[i] = vec2((float)(i % 2) * 2, 0.5f);
+        run->velocity[i] = vec2(0, 0);
+        run->angle[i] = run->angular_velocity[i] = 0;
+    }
+    return run;
+}
+
+static PageFile write_run(const PageSet *set, const char *name, int frames, const PlayerOptions *options) {
+    Error error = {0};
+    PageFile file;
+    Trajectory *run = make_run(frames);
+    assert_ok(page_set_write(set, name, (const Trajectory *const[]){run}, 1, options, &file, &error), error);
+    trajectory_destroy(run);
+    return file;
+}
+
+static char *read_page(const PageFile *file) {
+    Error error = {0};
+    char path[PAGE_NAME_SIZE + 64];
+    size_t size;
+    assert_ok(file_path(path, sizeof path, &error, "%s/%s", temporary_folder, file->path), error);
+    char *text = file_read(path, 64 << 20, &size, &error);
+    assert_ok(text != NULL, error);
+    return text;
+}
+
+static void begin(PageSet *set) {
+    Error error = {0};
+    temporary_path(""); /* makes the folder */
+    assert_ok(page_set_open(set, temporary_folder, 1, 3, &error), error);
+}
+
+static void end(PageSet *set) {
+    Error error = {0};
+    assert_ok(page_set_end(set, &error), error);
+    page_set_close(set);
+}
+
+/* 48 bytes a frame: 8 MB are 174,762 frames. What is not asked for does not count. */
+static void a_long_run_has_every_second_frame(void **state) {
+    (void)state;
+    PageSet set;
+    begin(&set);
+    const struct {
+        int frames;
+        PlayerOptions options;
+        const char *every;
+    } cases[] = {{174000, {.last = -1}, "\"every\": 1,"},
+                 {175000, {.last = -1}, "\"every\": 2,"},
+                 {175000, {.first = 2000, .last = -1}, "\"every\": 1,"},
+                 {175000, {.last = 100}, "\"every\": 1,"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const PageFile file = write_run(&set, "a long/run", cases[i].frames, &cases[i].options);
+        assert_string_equal(file.path, "pages/a_long_run.html");
+        char *text = read_page(&file);
+        if (strstr(text, cases[i].every) == NULL) fail_msg("case %d: not %s", (int)i, cases[i].every);
+        assert_int_equal(strlen(text), file.bytes);
+        free(text);
+    }
+    end(&set);
+}
+
+/* What the part writes: rows of two pages, one of them twice, and one without. */
+static bool write_rows(void *context, FILE *lines, const Progress *progress, Error *error) {
+    (void)context, (void)progress, (void)error;
+    fputs("t:1,pages/a.html#t=1&body=2,100\nt:2,pages/a.html#t=5,100\nt:\"3,4\",pages/b.html#t=1,20\nt:4,,0\n", lines);
+    return true;
+}
+
+static void pages_are_counted_once(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int round = 0; round < 2; round++) { /* the second finds the stored part */
+        PageSet set;
+        begin(&set);
+        assert_ok(page_set_do(&set, "part", write_rows, NULL, &error), error);
+        assert_true(set.pages == 2 && set.bytes == 120 && set.left_out == 1);
+        if (round == 1)
+            end(&set);
+        else
+            page_set_close(&set);
+    }
+}
+
+static void beyond_the_limit_pages_are_left_out(void **state) {
+    (void)state;
+    PageSet set;
+    begin(&set);
+    char link[PAGE_LINK_SIZE];
+    set.bytes = PAGE_SET_MAX_BYTES - 1;
+    PageFile file = write_run(&set, "last", 3, &(PlayerOptions){.last = -1});
+    page_set_link(link, &file, 0.125, 1, 1);
+    assert_string_equal(link, "pages/last.html#t=0.125&body=1&run=1");
+    page_set_link(link, &file, 0.125, -1, 1);
+    assert_string_equal(link, "pages/last.html#t=0.125");
+    set.bytes += file.bytes;
+    file = write_run(&set, "beyond", 3, &(PlayerOptions){.last = -1});
+    assert_true(file.path[0] == '\0' && file.bytes == 0);
+    assert_int_equal(access(temporary_path("pages/beyond.html"), F_OK), -1);
+    page_set_link(link, &file, 0.125, 1, 1);
+    assert_string_equal(link, "");
+    end(&set);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_long_run_has_every_second_frame),
+        cmocka_unit_test(pages_are_counted_once),
+        cmocka_unit_test(beyond_the_limit_pages_are_left_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,87 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# stability --pages: cells at a border link to what happened there.
+. "$(dirname "$0")/checks.sh"
+export PYTHONPATH=$sources/tests/cli PYTHONDONTWRITEBYTECODE=1
+
+methods=engine,momentum,pair-net
+maps="--study speed_thickness --study slope_friction"
+run 0 stability --scenes "$scenes" -o maps --pages $maps --methods $methods
+says " MB together -> maps/pages; links to them -> maps/stability.html"
+/usr/bin/python3 - <<'PYTHON' || fail "stability.html"
+import collections, csv, os, pages
+HOLDS = {"settles", "sways", "creeps"}
+cells = collections.defaultdict(dict)
+for row in csv.DictReader(open("maps/maps.csv")):
+    cells[row["map"], row["method"], row["setting"]][float(row["x"]), float(row["y"])] = row
+listed = list(csv.DictReader(open("maps/map_pages.csv")))
+links = pages.Links("maps/stability.html")
+assert links.targets and set(links.targets) == {row["page"] for row in listed}
+assert {pages.moment(row["page"])[0] for row in listed} == {f"pages/{name}" for name in os.listdir("maps/pages")}
+chosen = collections.Counter()
+for row in listed:
+    name = row["map"], row["method"], row["setting"]
+    grid, at = cells[name], (float(row["x"]), float(row["y"]))
+    cell = grid[at]
+    chosen[name] += 1
+    assert cell["verdict"] not in HOLDS, row
+    assert (row["frame"], row["body"]) == (cell["frame"], cell["body"] or "-1"), (row, cell)
+    xs, ys = (sorted({place[i] for place in grid}) for i in (0, 1))
+    i, j = xs.index(at[0]), ys.index(at[1])
+    beside = [grid[xs[a], ys[b]]["verdict"] for a, b in ((i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1))
+              if 0 <= a < len(xs) and 0 <= b < len(ys)]
+    assert HOLDS & set(beside) or not HOLDS & {other["verdict"] for other in grid.values()}, (row, beside)
+    page = pages.check_shown("maps", row["page"])
+    path, time, body = pages.moment(row["page"])
+    own = page["runs"][-1]
+    assert own["method"] == row["method"] and own["verdict"]["text"].startswith(cell["verdict"] + " at "), own["verdict"]
+    assert page["first"] + own["verdict"]["frame"] * page["every"] == round(time / page["dt"]), (page["first"], own["verdict"])
+    assert str(own["verdict"]["body"]) == row["body"]
+    assert page["frames"] <= 9 / page["dt"] + 2, page["frames"]
+    assert row["page"].endswith("&run=1") == (len(page["runs"]) == 2), row["page"]
+    assert links.names[row["page"]].startswith(cell["verdict"] + " at ")
+    # Beside the first method that holds there, if one does.
+    holder = next((other[1] for other in cells if other[0] == name[0] and at in cells[other]
+                   and cells[other][at]["verdict"] in HOLDS), None)
+    assert [run["method"] for run in page["runs"]] == ([holder] if holder else []) + [row["method"]], (row, holder)
+for name, grid in cells.items():
+    failing = sum(cell["verdict"] not in HOLDS | {"not applicable"} for cell in grid.values())
+    assert (chosen[name] > 0) == (failing > 0) and chosen[name] <= 8, (name, chosen[name], failing)
+assert max(chosen.values()) == 8, chosen
+PYTHON
+checks=$((checks + 1))
+
+# Interrupted while pages are written, it continues with them.
+"$twinbox" stability --scenes "$scenes" -o part --pages --study slope_friction --methods $methods >out 2>err </dev/null &
+for _ in $(seq 6000); do
+    ls part/parts-*/slope_friction-1 >/dev/null 2>&1 && break
+    sleep 0.01
+done
+kill -INT $!
+wait $!
+equal "exit status of interrupted pages" $? 130
+[ -e part/maps.csv ] && [ ! -e part/stability.html ] || fail "pages were interrupted: $(ls part)"
+sed -i '1s/,[0-9]*$/,77/' part/parts-*/slope_friction-1
+run 0 stability --scenes "$scenes" -o part --pages --study slope_friction --methods $methods
+equal "rows changed by hand that stay" "$(sed -n '2s/.*,//p' part/map_pages.csv)" 77
+equal "what is left behind" "$(ls part | grep -c part)" 0
+
+# A scene of one's own, whose steps are thinned to 60 a second.
+run 0 stability "$scenes/stability/time_step.yaml" --vary height=2:40 --vary rate=30:240 --quick --methods engine,momentum \
+    -o own --pages
+/usr/bin/python3 - <<'PYTHON' || fail "pages of an own scene"
+import csv, pages
+listed = list(csv.DictReader(open("own/map_pages.csv")))
+assert listed
+for row in listed:
+    page = pages.check_shown("own", row["page"])
+    assert 29 < 1 / page["dt"] < 120, page["dt"]
+assert any(float(row["y"]) > 100 or float(row["x"]) > 100 for row in listed), listed
+PYTHON
+checks=$((checks + 1))
+
+run 2 stability --scenes "$scenes" -o own --pages --clip speed_thickness:engine:12.6,0.27
+complains "--pages: error: cannot be combined with --clip"
+run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o plain
+[ -e plain/stability.html ] && fail "pages that nobody asked for"
+finish
