@@ -125,9 +125,8 @@ static void put_html(FILE *out, const void *context) {
         out,
         "<header><h1>Stability</h1></header>\n"
         "<p class=\"soft\">Each cell is a run and its verdict. Up to %d failing cells of a method beside cells that "
-        "hold "
-        "open a page: it plays the run beside that of the first method that holds there, at the moment and at the body "
-        "that decided the verdict.</p>\n",
+        "hold open a page: it plays the run beside that of the first method that holds there, at the moment and at "
+        "the body that decided the verdict.</p>\n",
         MAP_PAGES_EACH);
     const int left_out = count_left_out(html);
     if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d cells.</p>\n", left_out);

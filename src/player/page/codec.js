@@ -11,6 +11,7 @@ const runs = data.runs.map((run, index) => {
     run[name] = new Float32Array(run.frames * run.bodies);
     bits[name] = new Uint32Array(run[name].buffer); /* a float that is copied as a number may lose the bits of a NaN */
   }
+  run.x.fill(NaN); /* a body that is not decoded yet is not there */
   return Object.assign(run, {
     bits, index, size: Array.from({length: run.bodies}, (_, i) => [sizes[2 * i], sizes[2 * i + 1]]),
     fixed: Array.from(packed("fixed" + index), Boolean), lists: [], loads: [], list_loads: [], done: [],
