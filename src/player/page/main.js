@@ -2,7 +2,7 @@
 let planned_for = "";
 const looks = new Map(); /* the control of each */
 const again = () => change({});
-const undecoded = () => say("The states cannot be decoded.");
+const undecoded = () => { ui.summary.textContent = "The page is damaged: states cannot be decoded."; };
 
 function show_look() {
   const reasons = {}, {compare, show} = view;
