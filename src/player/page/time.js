@@ -35,7 +35,7 @@ const short_verdict = run => cut(runs[run].ended.split(/ \(|;/)[0], 100);
 function add_event(form, run, at, words) {
   if (!(at?.frame >= 0)) return;
   const {events} = moments[at.frame] ??= {frame: at.frame, events: []};
-  events.push([form, run, words + (at.body >= 0 ? `, body ${at.body}` : "")]);
+  events.push([form, run, words + (at.body >= 0 ? `, body\u00a0${at.body}` : "")]);
 }
 
 /* Each in the first row that has room. */
