@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/json_write.h"
 #include "common/method_look.h"
+#include "gl/font.h"
 #include "picture/caption.h"
 #include "player/player_parts.h"
 
 #include <stdio.h>
 
-enum { RAMP = 11 }; /* colours of the scale of distances */
+enum {
+    RAMP = 11, /* colours of the scale of distances */
+    EM = 40    /* pixels: large, as widths are whole pixels */
+};
 
 static void put_color(JsonWriter *json, const char *key, uint32_t color) {
     char text[16];
@@ -55,6 +59,12 @@ static void put_mark(JsonWriter *json, const char *key, int frame, int body) {
     json_end(json);
 }
 
+/* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
+static double ems(FontFace face, const char *text) {
+    const Font font = font_pick(face, EM);
+    return (double)font_width(&font, text) / font.pixels;
+}
+
 static void put_provenance(JsonWriter *json, const Player *player, int index) {
     const Trajectory *run = player->picture.runs[index];
     char name[CAPTION_SIZE], note[CAPTION_SIZE];
@@ -64,6 +74,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_text(json, "method", run->method);
     json_put_text(json, "name", name);
     json_put_text(json, "note", note);
+    json_put_number(json, "ems", ems(FONT_SEMIBOLD, name));
     json_put_text(json, "file", player->options->files[index]);
     json_put_hash(json, "hash", trajectory_hash(run));
     if (run->scene_hash != 0)
@@ -174,6 +185,7 @@ void player_put_data(FILE *file, const Player *player) {
     json_put_int(&json, "total", player->picture.frames);
     json_put_int(&json, "chunk", PLAYER_CHUNK);
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
+    json_put_number(&json, "distance_ems", ems(FONT_REGULAR, "0.00 m"));
     put_left_out(&json, player);
     put_framing(&json, first);
     put_measures(&json, player);

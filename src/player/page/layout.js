@@ -57,10 +57,13 @@ function grid_of(count, columns) {
 
 const scale_in = ({width, height}, needs) => min(width / needs.x, height / needs.y);
 
-/* The grid in which the scene is largest; an unusual one only if the scene gains, more where names would be cut. */
+/* The grid in which the scene is largest; an unusual one only if the scene gains, more where names would be cut. Their widths
+   are those of `render`'s font. */
 function choose_grid(count, needs) {
   const few = count > 3 ? 2 : 1, usual = grid_of(count, lay.height > lay.width ? few : ceil(count / few));
-  const wide = max(...names.map(name_width)) + distance_item(lay.method, "", 0).width + lay.title.em / 2;
+  const {title, method} = lay, distance = ceil(data.distance_ems * method.em);
+  const wide = max(...runs.map(({ems}, run) => ceil(ems * title.em) + (run > 0 ? distance : 0))) +
+    swatch_side(title) + 2 * (title.em >> 1);
   let best = usual, most = scale_in(usual, needs);
   for (let columns = 1; columns <= count; columns++) {
     const grid = grid_of(count, columns), worth = scale_in(grid, needs) / (grid.width >= wide ? 1.05 : 1.5);
