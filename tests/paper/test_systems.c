@@ -5,6 +5,7 @@
 #include "common/file.h"
 #include "paper/systems/system.h"
 #include "paper/systems/system_strips.h"
+#include "sanitized.h"
 #include "study/study_parts.h"
 
 #include <math.h>
@@ -240,10 +241,14 @@ static void strips_are_refused_or_stopped(void **state) {
     assert_error(error, ERROR_INPUT, "/nowhere/stack.yaml");
 }
 
-/* The engine and the system, in this order. */
+/* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
+   search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
 static void a_page_plays_the_runs_of_the_strips(void **state) {
     (void)state;
     Error error = {0};
+#ifdef SANITIZED
+    skip();
+#endif
     assert_ok(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), NULL, &error), error);
     for (int i = 0; i < STRIP_SCENES; i++) {
         char name[64];
