@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A page that plays runs side by side: one HTML file that needs no network and no other file. It has every state of its
-   frames bit by bit, and contacts rounded (player/contact_chunks.h). The script that draws it is in player/page. */
+   frames bit by bit, and contacts rounded (player/contact_chunk.h). The script that draws it is in player/page. */
 #pragma once
 #include "common/method_description.h"
 #include "picture/render_options.h"
