@@ -28,10 +28,7 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "RUN_OR_SCENE...",
-              .needed = "a run (.npz) or a scene (.yaml) is needed",
-              OPTION_PATHS(Options, inputs, input_count)},
-    .inputs = {1, RENDER_PANELS_MAX, "panel"},
+    PANELS_INPUTS(Options),
     .help =
         "Write one HTML file that plays runs side by side in any browser, without a network or other files. Its "
         "readers "

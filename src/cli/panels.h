@@ -13,6 +13,13 @@ typedef struct Panels {
     const char *inputs[RENDER_PANELS_MAX]; /* the file of each run, or its scene's */
 } Panels;
 
+/* What a CommandSpec says of such inputs. T is the command's Options, with inputs[RENDER_PANELS_MAX] and input_count. */
+#define PANELS_INPUTS(T)                                             \
+    .input = {.value = "RUN_OR_SCENE...",                            \
+              .needed = "a run (.npz) or a scene (.yaml) is needed", \
+              OPTION_PATHS(T, inputs, input_count)},                 \
+    .inputs = {1, RENDER_PANELS_MAX, "panel"}
+
 /* Settings need exactly one scene among the inputs. After an error, panels_free frees what was loaded before it. */
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set, Error *error);
 void panels_free(Panels *panels);

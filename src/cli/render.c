@@ -5,6 +5,7 @@
 #include "cli/frames_option.h"
 #include "cli/options.h"
 #include "cli/panel_costs.h"
+#include "cli/panels.h"
 #include "cli/picture_notes.h"
 #include "common/folder_reserve.h"
 #include "picture/caption_check.h"
@@ -84,10 +85,7 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "RUN_OR_SCENE...",
-              .needed = "a run (.npz) or a scene (.yaml) is needed",
-              OPTION_PATHS(Options, inputs, input_count)},
-    .inputs = {1, RENDER_PANELS_MAX, "panel"},
+    PANELS_INPUTS(Options),
     .help =
         "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz). A scene (.yaml) "
         "is simulated with the engine and with the pair-net that it names.\v"

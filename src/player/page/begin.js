@@ -16,6 +16,7 @@ inflated("viewer").then(bytes => {
   script.textContent = new TextDecoder().decode(bytes);
   document.body.append(script);
 }).catch(() => {
-  document.getElementById("summary").textContent = "DecompressionStream" in window ? "The page is damaged: its script " +
-    "cannot be unpacked." : "This browser cannot unpack the page: it has no DecompressionStream. Browsers of 2023 and later have.";
+  document.getElementById("summary").textContent = "DecompressionStream" in window
+    ? "The page is damaged: its script cannot be unpacked."
+    : "This browser cannot unpack the page, as it has no DecompressionStream. Browsers of 2023 and later have it.";
 });

@@ -1,7 +1,7 @@
 /* The address: #t=0.55&body=7&compare=overlay&show=ghosts,trails&view=X,Y,W,H&speed=0.25&theme=dark */
 let writing = 0;
 
-/* Times are rounded: a hundredth of a frame is none. */
+/* Times in links are rounded: one within 0.02 of a stored frame means that frame. */
 function frame_at(t) {
   const frame = t / data.dt - data.first / data.every;
   return abs(frame - round(frame)) < 0.02 ? round(frame) : frame;
