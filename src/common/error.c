@@ -9,6 +9,7 @@
 #include <string.h>
 
 #undef error_input
+#undef error_incomplete
 #undef error_system
 #undef error_interrupted
 #undef error_memory
@@ -62,6 +63,14 @@ bool error_interrupted(Error *error, const char *where, const char *format, ...)
     va_list arguments;
     va_start(arguments, format);
     set(error, ERROR_INTERRUPTED, where, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_incomplete(Error *error, const char *where, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set(error, ERROR_INCOMPLETE, where, format, arguments);
     va_end(arguments);
     return false;
 }

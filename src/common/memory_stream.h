@@ -9,3 +9,8 @@
    Returns NULL when memory is short. After fclose(), *text is a malloc'ed string of *size characters, for the caller to
    free, even if writing failed; fflush() makes both current, too. */
 FILE *memory_stream(char **text, size_t *size);
+
+/* fwrite() of an array that may be empty, and then NULL. */
+static inline void stream_put(FILE *stream, const void *items, size_t size, size_t count) {
+    if (count > 0) fwrite(items, size, count, stream);
+}

@@ -21,10 +21,11 @@ const char *temporary_files_folder(void) {
 
 static bool print_name(TemporaryFile *temporary, const char *path, unsigned attempt) {
     struct timespec now;
+    char owner[TEMPORARY_OWNER];
     clock_gettime(CLOCK_REALTIME, &now);
-    const int length =
-        snprintf(temporary->name, sizeof temporary->name, "%.*s.twinbox-%ld-%lx-%u.tmp", (int)file_folder_length(path),
-                 path, (long)getpid(), (unsigned long)now.tv_nsec, attempt);
+    temporary_owner(owner);
+    const int length = snprintf(temporary->name, sizeof temporary->name, "%.*s.twinbox-%s%lx-%u.tmp",
+                                (int)file_folder_length(path), path, owner, (unsigned long)now.tv_nsec, attempt);
     if (length >= 0 && (size_t)length < sizeof temporary->name) return true;
     errno = ENAMETOOLONG;
     return false;

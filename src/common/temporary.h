@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that get their name when they are whole. Before, they have none where the file system can do that; otherwise, and
-   for the moment in which one replaces a file, the name is `.twinbox-PID-....tmp` and the file is locked by flock(): so a
-   file that a killed process left can be told from one in use. Functions set errno when they fail. */
+   for the moment in which one replaces a file, the name is `.twinbox-MACHINE-PID-....tmp` and the file is locked by flock():
+   so a file that a killed process left can be told from one in use, also in a folder that machines share. Functions set
+   errno when they fail. */
 #pragma once
 #include <limits.h>
 #include <stdbool.h>
@@ -28,8 +29,8 @@ bool temporary_remove_name(TemporaryFile *temporary);
 /* The same, and closes the file. Leaves errno unchanged. */
 void temporary_close(TemporaryFile *temporary);
 
-/* Removes what killed processes left in the folder of path: once for each folder, as it reads the whole of it. Best
-   effort: nothing depends on it. */
+/* Removes what killed processes of this machine left in the folder of path: once for each folder, as it reads the whole of
+   it. Best effort: nothing depends on it. */
 void temporary_sweep(int at, const char *path);
 
 /* The folder for temporary files: TMPDIR, or /tmp. */
@@ -38,3 +39,11 @@ const char *temporary_files_folder(void);
 /* Takes the lock that files in use have, without waiting. False if another process has it, or if the file has lost its
    name to a process that found it unlocked. True where the file system has no locks. */
 bool temporary_lock(int file);
+
+/* "MACHINE-PID-", with which names of temporary files and folders begin. Two machines, two starts of one, and two
+   containers of one have different names. */
+enum { TEMPORARY_OWNER = 48 };
+void temporary_owner(char owner[TEMPORARY_OWNER]);
+
+/* Whether the name begins with an owner on this machine whose process has ended. */
+bool temporary_owner_ended(const char *name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Temporary files of killed processes: those that nobody has locked. */
+/* Temporary files of killed processes of this machine, and reservations (file_reserve.h) that nobody has locked. */
 #include "common/temporary.h"
 
 #include "common/file.h"
@@ -36,21 +36,29 @@ static bool remember(const struct stat *folder) {
     return !known;
 }
 
-/* The lock is held while the name is removed; else a process could take the file in between. */
-static void remove_dead(int folder, const char *name) {
+/* The lock is held while the name is removed; else a process could take the file in between. Over NFS, only a file that is
+   open for writing can be locked. */
+static void remove_dead(int folder, const char *name, bool (*lock)(int)) {
     struct stat status, named;
-    const int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file < 0) return;
-    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
-        flock(file, LOCK_EX | LOCK_NB) == 0 && fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 &&
-        same_file(&status, &named))
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() && lock(file) &&
+        fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && same_file(&status, &named))
         unlinkat(folder, name, 0);
     close(file);
 }
 
-static bool is_temporary(const char *name) {
+static bool is_locked_now(int file) { return flock(file, LOCK_EX | LOCK_NB) == 0; }
+
+/* Reservations have no owner in their names. A temporary file may be in use by children of a process that has ended. */
+static void visit(int folder, const char *name) {
     static const char start[] = ".twinbox-";
-    return strncmp(name, start, sizeof start - 1) == 0 && file_name_ends_with(name, ".tmp");
+    const char *owner = name + sizeof start - 1;
+    if (strncmp(name, start, sizeof start - 1) != 0 || !file_name_ends_with(name, ".tmp")) return;
+    if (strchr(owner, '-') == NULL)
+        remove_dead(folder, name, is_locked_now);
+    else if (temporary_owner_ended(owner))
+        remove_dead(folder, name, temporary_lock);
 }
 
 void temporary_sweep(int at, const char *path) {
@@ -65,7 +73,6 @@ void temporary_sweep(int at, const char *path) {
         close(folder);
         return;
     }
-    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;)
-        if (is_temporary(entry->d_name)) remove_dead(folder, entry->d_name);
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) visit(folder, entry->d_name);
     closedir(entries);
 }

@@ -35,6 +35,14 @@ int csv_word(const char *const *words, const char *word) {
     return words[i] != NULL ? i : -1;
 }
 
+static bool read_field(const CsvCell *cell, void *row, Error *error) {
+    static const char *const empty = "";
+    if (cell->field >= 0) return csv_cell_read(cell, row, error);
+    if (cell->column->optional && cell->column->kind == CSV_TEXT)
+        memcpy((char *)row + cell->column->offset, &empty, sizeof empty);
+    return true;
+}
+
 static bool read_rows(const Reading *reading) {
     const CsvLayout *layout = reading->layout;
     CsvTable *table = reading->table;
@@ -45,7 +53,7 @@ static bool read_rows(const Reading *reading) {
         for (int i = 0; i < layout->column_count; i++) {
             const CsvCell cell = {&table->csv, row, table->fields[i], &layout->columns[i]};
             void *target = (char *)table->rows + (size_t)(row - 1) * layout->row_size;
-            if (cell.field >= 0 && !csv_cell_read(&cell, target, reading->error)) return false;
+            if (!read_field(&cell, target, reading->error)) return false;
         }
     return true;
 }
@@ -86,7 +94,7 @@ static bool read_header(const Reading *reading) {
     for (int field = 0; field < csv->width; field++)
         if (!place_column(reading, field)) return false;
     for (int i = 0; layout->header != CSV_SUBSET && i < layout->column_count; i++)
-        if (reading->table->fields[i] < 0)
+        if (reading->table->fields[i] < 0 && !layout->columns[i].optional)
             return csv_error(csv, 0, 0, reading->error, "the column '%s' is missing", layout->columns[i].name);
     return true;
 }

@@ -40,13 +40,14 @@ typedef struct CsvColumn {
     int digits;               /* significant digits of a number as written; 0: 6 */
     bool quoted;              /* a text is written in quotes even if it does not need them */
     bool key;                 /* no two rows may be equal in all columns with this flag */
+    bool optional;            /* a file may lack the column, if it is one of the last: older ones do */
 } CsvColumn;
 
-/* Which headers are accepted. */
+/* Which headers are accepted. Members without a column are 0; optional texts are empty. */
 typedef enum CsvHeader {
     CSV_ALL,   /* all columns, in any order; further columns are ignored */
     CSV_EXACT, /* these columns in this order */
-    CSV_SUBSET /* any of the columns, in any order; members without a column are 0 */
+    CSV_SUBSET /* any of the columns, in any order */
 } CsvHeader;
 
 typedef struct CsvLayout {

@@ -201,14 +201,15 @@ static void files_in_use_stay(void **state) {
 static void only_such_names_are_removed(void **state) {
     (void)state;
     make_folder();
-    write_bytes(below(".twinbox-1-2-3.tmp"), "x", 1);
+    write_bytes(below(".twinbox-0123456789abcdef.tmp"), "x", 1);      /* a reservation */
+    write_bytes(below(".twinbox-00000000-99999999-0-0.tmp"), "x", 1); /* another machine's */
     write_bytes(below(".twinbox-notes"), "x", 1);
-    write_bytes(below("twinbox-1-2-3.tmp"), "x", 1);
+    write_bytes(below("twinbox-0123456789abcdef.tmp"), "x", 1);
     assert_int_equal(mkdir(below(".twinbox-folder.tmp"), 0777), 0);
     assert_int_equal(symlink("file", below(".twinbox-link.tmp")), 0);
     assert_int_equal(write_in_child(replace_file, "new", NO_CALL), 0);
-    assert_int_equal(count_entries(folder), 5);
-    assert_int_not_equal(access(below(".twinbox-1-2-3.tmp"), F_OK), 0);
+    assert_int_equal(count_entries(folder), 6);
+    assert_int_not_equal(access(below(".twinbox-0123456789abcdef.tmp"), F_OK), 0);
 }
 
 static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state) {

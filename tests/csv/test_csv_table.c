@@ -37,6 +37,13 @@ static const CsvLayout all = CSV_LAYOUT("rows", columns, Row, .max_rows = 3);
 static const CsvLayout exact = CSV_LAYOUT("rows", columns, Row, .min_rows = 1, .max_rows = 3, .header = CSV_EXACT);
 static const CsvLayout subset = CSV_LAYOUT("rows", columns, Row, .min_rows = 1, .max_rows = 3, .header = CSV_SUBSET);
 
+/* The last column came later. */
+static const CsvColumn later[] = {
+    {"integer", CSV_INTEGER, .offset = offsetof(Row, integer), .maximum = 9},
+    {"text", CSV_TEXT, .offset = offsetof(Row, text), .maximum = 12, .optional = true},
+};
+static const CsvLayout grown = CSV_LAYOUT("rows", later, Row, .max_rows = 3, .header = CSV_EXACT);
+
 static const char *write_file(const char *text) {
     Error error = {0};
     const char *path = temporary_path("rows.csv");
@@ -232,8 +239,23 @@ static void unreadable_values_are_not_written(void **state) {
     }
 }
 
+static void an_optional_column_may_be_missing(void **state) {
+    (void)state;
+    Error error = {0};
+    CsvTable table = read_good(&grown, "integer\n3\n");
+    assert_int_equal(((Row *)table.rows)->integer, 3);
+    assert_string_equal(((Row *)table.rows)->text, "");
+    csv_table_free(&table);
+    table = read_good(&grown, "integer,text\n3,a\n");
+    assert_string_equal(((Row *)table.rows)->text, "a");
+    csv_table_free(&table);
+    assert_false(csv_table_read(&table, write_file("text\na\n"), &grown, &error));
+    assert_error(error, ERROR_INPUT, "rows.csv:1:1: error: column 1 must be 'integer' (got 'text')");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_optional_column_may_be_missing),
         cmocka_unit_test(each_kind_fills_its_member),
         cmocka_unit_test(columns_are_found_by_name),
         cmocka_unit_test(other_headers_are_refused),
