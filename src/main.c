@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, 2 bad usage or input,
+/* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, or incomplete, 2 bad usage or input,
    3 the system failed, 130 interrupted by SIGINT or SIGTERM. */
 #define _GNU_SOURCE /* on_exit */
 #include "cli/commands.h"
@@ -20,7 +20,7 @@ static void print_help(FILE *file) {
           file);
     for (const Command *command = commands; command->name != NULL; command++)
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fputs("\nExit status: 0 done (and equal), 1 different, 2 bad input, 3 system failure, 130 interrupted.\n"
+    fputs("Exit status: 0 done (and equal), 1 different or incomplete, 2 bad input, 3 system, 130 interrupted.\n"
           "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
           file);
 }

@@ -3,7 +3,6 @@
 
 #include "common/utf8.h"
 #include "simulate/method.h"
-#include "study/chart_rows.h"
 #include "study/pareto.h"
 #include "type/type.h"
 
@@ -207,6 +206,8 @@ static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, 
 
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
     *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY};
+    chart_times_note(chart->times, table->rows, table->count);
+    chart_make_plain(chart->times);
     bool gathered =
         add_lines(chart, table, path, error) && add_marks(chart, table, scene, path, error) &&
         (chart->panels[0].count + chart->panels[1].count > 0 ||

@@ -2,7 +2,7 @@
 /* The data of a chart of one scene: marks joined to lines, in two panels. */
 #pragma once
 #include "chart/chart_style.h"
-#include "study/chart_csv.h"
+#include "study/chart_rows.h"
 
 #include <stdbool.h>
 
@@ -49,6 +49,7 @@ typedef struct Chart {
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS];                   /* impact frames and the frames after; closed loop */
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
+    char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; safe for gnuplot */
 } Chart;
 
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to

@@ -139,21 +139,29 @@ static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
     fputs("</tbody>\n</table>\n</div>\n", out);
 }
 
-static void put_scene(FILE *out, ChartHtml *html, const char *scene) {
-    Chart chart;
-    if (!chart_gather(&chart, &html->chart, scene, html->csv, html->error)) {
-        html->failed = true;
-        return;
-    }
+static void put_heading(FILE *out, const char *scene, int launches) {
     fputs("<section class=\"panel\" aria-label=\"", out);
     html_put(out, scene);
     fputs("\">\n<h2>", out);
     html_put(out, scene);
-    fprintf(out, ", %d launches</h2>\n", chart.launches);
-    put_figure(out, html, &chart, scene);
-    put_table(out, html, scene);
+    fprintf(out, ", %d launches</h2>\n", launches);
+}
+
+static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
+    Chart chart;
+    if (chart_scene_untimed(html->chart.rows, html->chart.count, first->scene)) {
+        put_heading(out, first->scene, first->launches);
+        fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
+    } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->error)) {
+        put_heading(out, first->scene, chart.launches);
+        put_figure(out, html, &chart, first->scene);
+        chart_free(&chart);
+    } else {
+        html->failed = true;
+        return;
+    }
+    put_table(out, html, first->scene);
     fputs("</section>\n", out);
-    chart_free(&chart);
 }
 
 static bool is_first(const ChartHtml *html, int row) {
@@ -170,6 +178,7 @@ static int count_left_out(const ChartHtml *html) {
 
 static void put_html(FILE *out, const void *context) {
     ChartHtml *html = (ChartHtml *)context; /* where it fails is noted */
+    char times[CHART_TIMES_SIZE];
     house_page_begin(out, "Speed and accuracy", chart_css);
     fputs("<header><h1>Speed and accuracy</h1></header>\n"
           "<p class=\"soft\">Each point opens a page that plays the launch that was worst for it, beside the converged "
@@ -177,10 +186,16 @@ static void put_html(FILE *out, const void *context) {
           "the step with the largest error. Errors are means over all launches, of velocities against the converged "
           "solution of the same step; of a step, over its bodies.</p>\n",
           out);
+    chart_times_note(times, html->chart.rows, html->chart.count);
+    if (times[0] != '\0') {
+        fputs("<p class=\"soft\">", out);
+        html_put(out, times);
+        fputs("</p>\n", out);
+    }
     const int left_out = count_left_out(html);
     if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d points.</p>\n", left_out);
     for (int i = 0; i < html->chart.count; i++)
-        if (!html->failed && is_first(html, i)) put_scene(out, html, html->chart.rows[i].scene);
+        if (!html->failed && is_first(html, i)) put_scene(out, html, &html->chart.rows[i]);
     house_page_end(out);
 }
 

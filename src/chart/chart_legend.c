@@ -51,7 +51,8 @@ void chart_lay_out_legend(ChartLayout *layout) {
     /* The fewest columns for this number of rows: the legend fills its width. */
     layout->columns = (entries + layout->rows - 1) / layout->rows;
     layout->column_width = room / layout->columns;
-    layout->foot_rows = has_counts(layout->chart) + has_no_push_out(layout->chart) + has_beyond(layout->chart);
+    layout->foot_rows = has_counts(layout->chart) + has_no_push_out(layout->chart) + has_beyond(layout->chart) +
+                        (layout->chart->times[0] != '\0');
 }
 
 static double entry_left(const ChartLayout *layout, int entry) {
@@ -146,6 +147,11 @@ static void write_notes(const ChartLayout *layout) {
         end_note(layout, row++);
     }
     if (has_beyond(chart)) write_beyond(layout, row++);
+    if (chart->times[0] != '\0') {
+        begin_note(layout);
+        fputs(chart->times, layout->script);
+        end_note(layout, row++);
+    }
 }
 
 /* A third plot over the whole page, with axes in mm. */

@@ -17,6 +17,7 @@ typedef struct EqualTimeGrid {
     char methods[EQUAL_TIME_COLUMNS][CHART_TEXT_SIZE]; /* safe for gnuplot */
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
+    char times[CHART_TIMES_SIZE]; /* chart_times_note(), safe for gnuplot; set by the caller */
     EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
 } EqualTimeGrid;
 

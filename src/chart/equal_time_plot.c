@@ -14,7 +14,7 @@
 
 /* mm */
 static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55, name_slope = 1.15,
-                    foot = 16, bar_height = 2.6, bar_width = 62, note_width = 76;
+                    foot = 16, note_height = 3.5, bar_height = 2.6, bar_width = 62, note_width = 76;
 static const double degrees = 40;
 static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
 
@@ -22,6 +22,7 @@ typedef struct Layout {
     const EqualTimeGrid *grid;
     GnuplotPage *page;
     double left, top, cell; /* mm: left of the first cell, top of the first row, width of a cell */
+    double foot;            /* mm: height of all below the rows */
 } Layout;
 
 static double longest(const char (*names)[CHART_TEXT_SIZE], int count) {
@@ -48,7 +49,8 @@ static Layout lay_out(const EqualTimeGrid *grid, GnuplotPage *page) {
     const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
     layout.cell = fmin(fmax(room, cell_least), cell_most);
     page->width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
-    layout.top = foot + grid->rows * cell_height;
+    layout.foot = foot + (grid->times[0] != '\0' ? note_height : 0);
+    layout.top = layout.foot + grid->rows * cell_height;
     page->height = layout.top + longest(grid->methods, grid->columns) * sin(turned) * name_slope + 4;
     return layout;
 }
@@ -131,7 +133,7 @@ static void draw_scale(const Layout *layout) {
     static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
     enum { STEPS = 61 };
     GnuplotPage *page = layout->page;
-    const double bottom = 8.8;
+    const double bottom = layout->foot - 7.2;
     char text[24], colour[8], note[CHART_TEXT_SIZE + 64];
     for (int i = 0; i < STEPS; i++) {
         name_colour(colour, pow(strongest, 2 * (i + 0.5) / STEPS - 1));
@@ -145,6 +147,8 @@ static void draw_scale(const Layout *layout) {
     snprintf(note, sizeof note, "in the time of momentum:%s; rivals learn nothing", layout->grid->time);
     gnuplot_text(page, layout->left + bar_width + 6, bottom + bar_height / 2, "left", 8,
                  "error at the impact / error of the best rival,");
+    if (layout->grid->times[0] != '\0')
+        gnuplot_text(page, layout->left, note_height / 2, "left", 8, layout->grid->times);
     gnuplot_text(page, layout->left + bar_width + 6, bottom - 2, "left", 8, note);
     gnuplot_text(page, layout->left + bar_width + 6, bottom - 5.5, "left", 8, "– slower than that, or lost the scene");
 }
@@ -201,6 +205,10 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
         ok = csv_table_write(path, &equal_time_layout, table.rows, table.count, error) &&
              csv_table_write(methods, &equal_methods_layout, table.methods, table.method_count, error) &&
              equal_time_grid(grid, &table, chart_csv, error);
+        if (ok) {
+            chart_times_note(grid->times, chart.rows, chart.count);
+            chart_make_plain(grid->times);
+        }
         *drawn = ok && has_ratio(grid);
         ok = ok && (!*drawn || draw(grid, folder, error));
         equal_time_free(&table);

@@ -52,7 +52,9 @@ static void sweep(const char *path) {
     DIR *entries = opendir(path);
     if (entries == NULL) return;
     for (const struct dirent *entry; (entry = readdir(entries)) != NULL;)
-        if (strncmp(entry->d_name, START, sizeof START - 1) == 0) remove_dead(dirfd(entries), entry->d_name);
+        if (strncmp(entry->d_name, START, sizeof START - 1) == 0 &&
+            temporary_owner_ended(entry->d_name + sizeof START - 1))
+            remove_dead(dirfd(entries), entry->d_name);
     closedir(entries);
 }
 
@@ -64,8 +66,11 @@ static bool is_still_there(const GnuplotFolder *folder) {
 
 /* Between mkdtemp() and the lock, another process may remove it. */
 static bool make(GnuplotFolder *folder, const char *place) {
+    char owner[TEMPORARY_OWNER];
+    temporary_owner(owner);
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-        if (snprintf(folder->path, sizeof folder->path, "%s/" START "XXXXXX", place) >= (int)sizeof folder->path) {
+        if (snprintf(folder->path, sizeof folder->path, "%s/" START "%sXXXXXX", place, owner) >=
+            (int)sizeof folder->path) {
             errno = ENAMETOOLONG;
             return false;
         }

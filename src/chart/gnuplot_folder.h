@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The temporary folder of one run of gnuplot, in TMPDIR or /tmp. It is locked while it is in use: the next one that is made
-   removes those that killed processes left. */
+   removes those that killed processes of this machine left. */
 #pragma once
 #include "common/error.h"
 

@@ -6,18 +6,22 @@
 #include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/shard_option.h"
 #include "common/file.h"
 #include "common/folder_reserve.h"
 #include "npz/output_check.h"
+#include "study/chart_rows.h"
 #include "study/speed_accuracy.h"
 #include "type/type_check.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
     SpeedAccuracyOptions study;
     const char *scenes[STUDY_MAX_SCENES];
+    const char *shard; /* or NULL */
 } Options;
 
 /* A number, or the path of a table. */
@@ -49,6 +53,7 @@ static const Option option_table[] = {
     {"--pages", 0, NULL,
      "Also write chart.html, whose points link to pages that play the launch that was worst for them",
      OPTION_FLAG(Options, study.pages)},
+    {OPTION_SHARD(Options, shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -68,16 +73,24 @@ static const CommandSpec spec = {
         "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick\n"
         "         twinbox chart out/chart/chart.csv -o out/drawn"};
 
-static const Progress *begin_stage(void *context, const char *what) {
-    (void)context;
-    return progress_bar_begin(what);
-}
+/* A scene and what its line says. */
+typedef struct Drawn {
+    const char *scene, *what;
+    bool timed; /* else there is nothing to draw */
+} Drawn;
 
 /* The chart of scene i of `count`. A signal is noticed between two charts. */
-static bool draw_scene(const char *csv, const char *scene, const char *folder, int i, int count, Error *error) {
+static bool draw_scene(const char *csv, const Drawn *drawn, const char *folder, int i, int count, Error *error) {
     if (!progress_report(progress_bar_begin("charts"), i, count))
         return error_interrupted(error, folder, "stopped; chart.csv is finished");
-    return chart_plot(csv, scene, folder, error);
+    if (!drawn->timed) {
+        printf("%s%s: no chart, as its times were measured on another processor than the first\n", drawn->scene,
+               drawn->what);
+        return true;
+    }
+    if (!chart_plot(csv, drawn->scene, folder, error)) return false;
+    printf("%s%s -> %s/chart-%s.png, .svg, .pdf\n", drawn->scene, drawn->what, folder, drawn->scene);
+    return true;
 }
 
 static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
@@ -98,17 +111,20 @@ static bool draw_scenes(const ChartTable *table, const char *csv, const char *fo
         int first = 0;
         while (strcmp(table->rows[first].scene, table->rows[i].scene) != 0) first++;
         if (first < i) continue;
-        if (!draw_scene(csv, table->rows[i].scene, folder, i, table->count, error)) return false;
-        printf("%s -> %s/chart-%s.png, .svg, .pdf\n", table->rows[i].scene, folder, table->rows[i].scene);
+        const char *scene = table->rows[i].scene;
+        const Drawn drawn = {scene, "", !chart_scene_untimed(table->rows, table->count, scene)};
+        if (!draw_scene(csv, &drawn, folder, i, table->count, error)) return false;
     }
     return true;
 }
 
 /* The charts of a finished table. */
-static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Error *error) {
+static bool draw_again(const Options *given, const char *csv, Error *error) {
+    const SpeedAccuracyOptions *options = &given->study;
     ChartTable table;
     if (options->scene_count > 1 || options->methods != NULL || options->quick || options->pages ||
-        options->launches.count > 0 || options->launches.table != NULL || options->launches.bomb_x.count > 0)
+        given->shard != NULL || options->launches.count > 0 || options->launches.table != NULL ||
+        options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!chart_csv_read(&table, csv, error)) return false;
     const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
@@ -118,21 +134,25 @@ static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Err
     return drawn;
 }
 
+static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, const SpeedAccuracyScene *scene, int i,
+                          Error *error) {
+    char what[64];
+    snprintf(what, sizeof what, ": %d methods and settings, %d launches", scene->contenders, scene->launches);
+    const Drawn drawn = {scene->name, what, scene->timed};
+    if (!draw_scene(csv, &drawn, options->folder, i, options->scene_count, error)) return false;
+    const char *without = scene->without_network.text;
+    if (without[0] != '\0') printf("    left out, as no network is named for them: %s\n", without);
+    printf("    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %" PRId64 " of %" PRId64
+           " steps in closed loop\n",
+           scene->solves.frozen_residual, scene->solves.unconverged, scene->solves.solves);
+    return true;
+}
+
 static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key, Error *error) {
     char csv[CSV_PATH_SIZE];
     if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
-    for (int i = 0; i < options->scene_count; i++) {
-        if (!draw_scene(csv, scenes[i].name, options->folder, i, options->scene_count, error)) return false;
-        printf("%s: %d methods and settings, %d launches -> %s/chart-%s.png, .svg, .pdf\n", scenes[i].name,
-               scenes[i].contenders, scenes[i].launches, options->folder, scenes[i].name);
-        const char *without = scenes[i].without_network.text;
-        if (without[0] != '\0') printf("    left out, as no network is named for them: %s\n", without);
-        /* Nothing was solved if an earlier run had scored everything. */
-        if (scenes[i].solves == 0) continue;
-        printf(
-            "    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %d of %d steps in closed loop\n",
-            scenes[i].frozen_residual, scenes[i].unconverged, scenes[i].solves);
-    }
+    for (int i = 0; i < options->scene_count; i++)
+        if (!draw_measured(options, csv, &scenes[i], i, error)) return false;
     if (!draw_equal_time(csv, options->folder, error)) return false;
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
@@ -140,23 +160,31 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
     return !options->pages || chart_pages_write(options, scenes, key, error);
 }
 
+static bool study(const SpeedAccuracyOptions *options, Error *error) {
+    Pieces pieces = {0};
+    SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
+    const bool ok = speed_accuracy_run(options, &pieces, progress_bar_begin("chart"), scenes, error);
+    progress_bar_end();
+    if (ok && pieces.mode == PIECES_SHARD) shard_option_print(&pieces, options->folder);
+    return ok;
+}
+
 bool command_chart(int argc, char **argv, Error *error) {
     Options options = {0};
+    PiecesRun run;
     options.study.scenes = options.scenes;
     options.study.draw = draw;
+    options.study.run = &run;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const LaunchChoice *launches = &options.study.launches;
     if (launches->bomb_x.count > 0 && (launches->table != NULL || launches->count > 0))
         return error_input(error, "--bomb-x", "cannot be combined with --launches");
     for (int i = 0; i < options.study.scene_count; i++)
-        if (is_table(options.scenes[i])) return draw_again(&options.study, options.scenes[i], error);
+        if (is_table(options.scenes[i])) return draw_again(&options, options.scenes[i], error);
     for (int i = 0; i < options.study.scene_count; i++) { /* a scene has its file's name */
         const char *path = options.scenes[i];
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
-    SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
-    const bool ok = output_check_folder(options.study.folder, error) &&
-                    speed_accuracy_run(&options.study, &(StageProgress){begin_stage, NULL}, scenes, error);
-    progress_bar_end();
-    return ok;
+    return shard_option_take(&run, options.shard, argc, argv, error) &&
+           output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

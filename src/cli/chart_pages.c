@@ -3,6 +3,7 @@
 
 #include "chart/chart_html.h"
 #include "cli/page_set.h"
+#include "cli/progress_bar.h"
 #include "simulate/simulate.h"
 #include "study/launch_page.h"
 #include "study/worst_launch.h"
@@ -18,10 +19,14 @@ static const double margin = 0.25;
 
 typedef struct Pages {
     PageSet set;
-    SceneStudy study;
+    const SpeedAccuracyOptions *options;
+    const SpeedAccuracyScene *scenes;
+    ContenderList contenders;
     Method reference;
+    int scene;              /* the current one; -1: not yet */
+    SceneStudy study;       /* of the scene */
     Trajectory **converged; /* [launches] as far as they were needed; NULL: not */
-    int contender;
+    int contender;          /* the current one */
 } Pages;
 
 /* The converged run of a launch, with at least so many frames. */
@@ -36,7 +41,7 @@ static const Trajectory *converged_run(Pages *pages, const Scene *scene, int lau
 static bool write_page(Pages *pages, const Contender *contender, const WorstLaunch *worst, PageFile *file,
                        Error *error) {
     char name[3 * CHART_NAME_SIZE], title[TITLE_SIZE];
-    Scene scene = pages->study.launches[worst->launch];
+    Scene scene = scene_study_launch(&pages->study, worst->launch);
     const int around = (int)lround(margin / (double)scene.dt);
     const int end = worst->touch + scene.bomb.impact_frames + AFTER_FRAMES + around;
     scene.frames = end < worst->frames ? end : worst->frames;
@@ -58,8 +63,7 @@ static bool write_page(Pages *pages, const Contender *contender, const WorstLaun
 }
 
 static LaunchPage describe(const Pages *pages, const Contender *contender, const WorstLaunch *worst, int phase) {
-    const Scene *scene = &pages->study.launches[worst->launch];
-    const Launch launch = launch_of(scene);
+    const Launch launch = pages->study.launches[worst->launch];
     return (LaunchPage){.scene = pages->study.scene->name,
                         .method = contender->name,
                         .setting = contender->setting,
@@ -72,18 +76,42 @@ static LaunchPage describe(const Pages *pages, const Contender *contender, const
                         .launch_frame = launch.frame,
                         .error_worst = worst->mean,
                         .error = worst->error,
-                        .time = worst->frame * (double)scene->dt,
+                        .time = worst->frame * (double)pages->study.scene->dt,
                         .frame = worst->frame,
                         .body = worst->body};
 }
 
+static void end_scene(Pages *pages) {
+    for (int i = 0; pages->converged != NULL && i < pages->study.launch_count; i++)
+        trajectory_destroy(pages->converged[i]);
+    free(pages->converged);
+    pages->converged = NULL;
+    scene_study_end(&pages->study);
+}
+
+/* Parts are the contenders of scene after scene. */
+static bool enter(Pages *pages, int part, Error *error) {
+    int scene = 0, first = 0;
+    while (part >= first + pages->scenes[scene].contenders) first += pages->scenes[scene++].contenders;
+    pages->contender = part - first;
+    if (scene == pages->scene) return true;
+    end_scene(pages);
+    pages->scene = scene;
+    if (!scene_study_begin(&pages->study, pages->options->scenes[scene], &pages->contenders, &pages->options->launches,
+                           speed_accuracy_size(pages->options->quick), error))
+        return false;
+    pages->converged = calloc((size_t)pages->study.launch_count, sizeof *pages->converged);
+    return pages->converged != NULL || error_memory(error, "pages");
+}
+
 /* Both phases have one page if they have the same worst launch. */
-static bool write_contender(void *context, FILE *lines, const Progress *progress, Error *error) {
+static bool write_contender(void *context, int part, FILE *rows, const Progress *progress, Error *error) {
     Pages *pages = context;
-    const Contender *contender = pages->study.contenders[pages->contender];
     WorstLaunch worst[PHASES];
     PageFile file = {0};
     char link[PAGE_LINK_SIZE];
+    if (!enter(pages, part, error)) return false;
+    const Contender *contender = pages->study.contenders[pages->contender];
     if (!worst_launch_find(&pages->study, &contender->method, worst, progress, error)) return false;
     for (int phase = PHASE_IMPACT; phase <= PHASE_AFTER; phase++) {
         if (worst[phase].launch < 0) continue;
@@ -93,51 +121,27 @@ static bool write_contender(void *context, FILE *lines, const Progress *progress
         page_set_link(link, &file, row.time, row.body, 1);
         row.page = link;
         row.bytes = file.bytes;
-        if (!study_parts_print(lines, &launch_page_layout, &row, error)) return false;
+        if (!piece_tables_print(rows, &launch_page_layout, -1, &row, error)) return false;
     }
     return true;
 }
 
-static void free_runs(Pages *pages) {
-    for (int i = 0; pages->converged != NULL && i < pages->study.launch_count; i++)
-        trajectory_destroy(pages->converged[i]);
-    free(pages->converged);
-    pages->converged = NULL;
-}
-
-static bool write_scene(Pages *pages, const SpeedAccuracyOptions *options, const ContenderList *contenders, int scene,
-                        Error *error) {
-    SceneStudy *study = &pages->study;
-    if (!scene_study_begin(study, options->scenes[scene], contenders, &options->launches,
-                           speed_accuracy_size(options->quick), error))
-        return false;
-    pages->converged = calloc((size_t)study->launch_count, sizeof *pages->converged);
-    bool ok = pages->converged != NULL || error_memory(error, "pages");
-    for (pages->contender = 0; ok && pages->contender < study->contender_count; pages->contender++) {
-        char part[64];
-        snprintf(part, sizeof part, "%d-%d", scene + 1, pages->contender + 1);
-        ok = page_set_do(&pages->set, part, write_contender, pages, error);
-    }
-    free_runs(pages);
-    scene_study_end(study);
-    return ok;
-}
-
 bool chart_pages_write(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key,
                        Error *error) {
-    Pages pages = {0};
-    ContenderList contenders;
-    int total = 0;
-    for (int i = 0; i < options->scene_count; i++) total += scenes[i].contenders;
-    if (!contenders_parse(&contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+    Pages pages = {
+        .options = options,
+        .scenes = scenes,
+        .scene = -1,
+        .set = {.folder = options->folder, .layout = &launch_page_layout, .write = write_contender, .context = &pages}};
+    for (int i = 0; i < options->scene_count; i++) pages.set.parts += scenes[i].contenders;
+    if (!contenders_parse(&pages.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
-    bool ok = method_parse(&pages.reference, "reference", error) &&
-              page_set_open(&pages.set, options->folder, key, total, error);
-    for (int i = 0; ok && i < options->scene_count; i++) ok = write_scene(&pages, options, &contenders, i, error);
-    ok = ok && page_set_table(&pages.set, &launch_page_layout, error) && chart_html_write(options->folder, error) &&
-         page_set_end(&pages.set, error);
-    page_set_close(&pages.set);
-    contenders_free(&contenders);
+    const bool ok = method_parse(&pages.reference, "reference", error) &&
+                    page_set_make(&pages.set, key, progress_bar_begin("pages"), error) &&
+                    chart_html_write(options->folder, error) && page_set_end(&pages.set, error);
+    progress_bar_end();
+    end_scene(&pages);
+    contenders_free(&pages.contenders);
     if (ok) page_set_print(&pages.set, "chart.html");
     return ok;
 }

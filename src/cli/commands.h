@@ -22,6 +22,7 @@
     COMMAND(chart, "measure speed against accuracy for every method")              \
     COMMAND(paper, "reproduce the paper, from seed to report")                     \
     COMMAND(stability, "find where each method fails")                             \
+    COMMAND(merge, "join what the shards of a study did")                          \
     COMMAND(problem, "write the contact problem of one step to a file")            \
     COMMAND(solve, "solve one contact problem with many methods and score them")   \
     COMMAND(methods, "list the methods and their settings")                        \

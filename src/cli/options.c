@@ -197,7 +197,8 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
     argp_err_exit_status = ERROR_INPUT;
     const error_t status = argp_parse(&argp, argc, argv, 0, NULL, &parsing);
     if (status != 0 && error->kind == ERROR_NONE) error_memory(error, argv[0]);
-    note_set_level(parsing.level);
+    if (parsing.level != NOTES_NORMAL)
+        note_set_level(parsing.level); /* that of a merge stays in the command that it runs */
     note_begin(argv[0]);
     return error->kind == ERROR_NONE;
 }

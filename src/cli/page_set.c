@@ -1,27 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/page_set.h"
 
-#include "cli/progress_bar.h"
 #include "common/file.h"
 #include "common/text_add.h"
-#include "study/study_key.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-
-bool page_set_open(PageSet *set, const char *folder, uint64_t key, int total, Error *error) {
-    char pages[PATH_MAX];
-    *set = (PageSet){.folder = folder, .parts = {.progress = progress_bar_begin("pages"), .total = total}};
-    study_key_add(&key, "pages", sizeof "pages"); /* the study's own parts are in another folder */
-    return file_path(pages, sizeof pages, error, "%s/pages", folder) && file_make_directory(pages, error) &&
-           study_parts_open(&set->parts, folder, key, error);
-}
-
-void page_set_close(PageSet *set) {
-    study_parts_close(&set->parts);
-    progress_bar_end();
-}
 
 /* The last two fields of a row, without a moment: "pages/NAME.html" and BYTES. */
 static char *page_of(char *row, int64_t *bytes) {
@@ -46,23 +32,47 @@ static void count_row(PageSet *set, char *row) {
     set->bytes += bytes;
 }
 
-bool page_set_do(PageSet *set, const char *name, bool (*write)(void *context, FILE *lines, const Progress *, Error *),
-                 void *context, Error *error) {
-    const StudyPart part = {name, 1, write, context};
-    const size_t before = set->parts.size;
-    if (!study_parts_do(&set->parts, &part, error)) return false;
-    char *rows = strdup(set->parts.text != NULL ? set->parts.text + before : ""), *rest = rows;
-    if (rows == NULL) return error_memory(error, name);
-    for (char *row; (row = strtok_r(rest, "\n", &rest)) != NULL;) count_row(set, row);
-    free(rows);
+/* The pages of the parts before this one, whichever run wrote them. */
+static bool count_parts(PageSet *set, int64_t part, Error *error) {
+    for (; set->counted < part; set->counted++) {
+        size_t size;
+        char *rows = pieces_read(&set->pieces, set->counted, &size, NULL, error), *rest = rows;
+        if (rows == NULL) return false;
+        for (char *row; (row = strtok_r(rest, "\n", &rest)) != NULL;) count_row(set, row);
+        free(rows);
+    }
     return true;
 }
 
-bool page_set_table(const PageSet *set, const CsvLayout *layout, Error *error) {
-    return study_parts_table(&set->parts, set->folder, layout, error);
+static void describe(void *context, int64_t part, PieceInfo *info) {
+    (void)context;
+    snprintf(info->name, sizeof info->name, "pages %" PRId64, part + 1);
+    info->weight = 1;
+    info->alone = true; /* whether there is room for a page depends on those before */
 }
 
-bool page_set_end(const PageSet *set, Error *error) { return study_parts_remove(&set->parts, error); }
+static bool work(void *context, int64_t part, FILE *rows, const Progress *progress, Error *error) {
+    PageSet *set = context;
+    return count_parts(set, part, error) && set->write(set->context, (int)part, rows, progress, error);
+}
+
+/* The study's own pieces are in another folder, and shards have no pages. */
+static bool open_parts(PageSet *set, uint64_t key, Error *error) {
+    Pieces *pieces = &set->pieces;
+    *pieces = (Pieces){.shard = {1, 1}, .key = key ^ UINT64_C(0x7061676573)};
+    set->plan = (PiecePlan){.count = set->parts, .describe = describe, .work = work, .context = set};
+    return file_path(pieces->folder, sizeof pieces->folder, error, "%s/parts-%016" PRIx64, set->folder, pieces->key);
+}
+
+bool page_set_make(PageSet *set, uint64_t key, const Progress *progress, Error *error) {
+    char pages[PATH_MAX];
+    return file_path(pages, sizeof pages, error, "%s/pages", set->folder) && file_make_directory(pages, error) &&
+           open_parts(set, key, error) && pieces_do(&set->pieces, &set->plan, progress, error) &&
+           count_parts(set, set->parts, error) &&
+           piece_tables_write(&set->pieces, set->folder, &set->layout, 1, NULL, 0, error);
+}
+
+bool page_set_end(const PageSet *set, Error *error) { return pieces_end(&set->pieces, error); }
 
 static int frames_of(const Trajectory *const *runs, int count, const PlayerOptions *options) {
     int most = 0;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pages of a study, folder/pages/NAME.html, and the table that lists them. They are written in parts, so that a study
-   that is interrupted continues with the page that it was at. */
+/* The pages of a study, folder/pages/NAME.html, and the table that lists them. They are written in parts, one after the
+   other, so that a study that is interrupted continues with the page that it was at. */
 #pragma once
+#include "pieces/pieces.h"
 #include "player/player.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 /* All pages of a folder together, and the states in one page, which has only every n-th frame if they would take more. */
 #define PAGE_SET_MAX_BYTES (256 << 20)
@@ -11,25 +12,28 @@
 
 enum { PAGE_NAME_SIZE = 256 };
 
+/* The caller sets the first five members. */
 typedef struct PageSet {
     const char *folder;
-    StudyParts parts;
+    const CsvLayout *layout; /* of the table; its last columns are a link into a page and the page's bytes */
+    int parts;
+    /* Writes the pages of a part, and the table's rows that list them (piece_tables_print). Parts come in their order, but for
+       those that an earlier run did. Rows of one page follow each other; where a page was left out, their last columns are
+       empty and 0. */
+    bool (*write)(void *context, int part, FILE *rows, const Progress *progress, Error *error);
+    void *context;
+    Pieces pieces;
+    PiecePlan plan;
+    int counted;               /* parts whose pages are counted: */
     int64_t bytes;             /* of the pages so far */
     int pages, left_out;       /* left out: beyond PAGE_SET_MAX_BYTES */
     char last[PAGE_NAME_SIZE]; /* the page of the last row that had one */
 } PageSet;
 
-/* key: of the study (study/study_key.h). total: the number of parts. The caller keeps the folder's name. */
-bool page_set_open(PageSet *set, const char *folder, uint64_t key, int total, Error *error);
-void page_set_close(PageSet *set);
+/* Writes the pages and the table. key: of the study (pieces/study_key.h). */
+bool page_set_make(PageSet *set, uint64_t key, const Progress *progress, Error *error);
 
-/* Does a part of weight 1 (study_parts_do), whose lines are rows of one table; their last columns are a link into a page and
-   the page's bytes. Rows of one page follow each other; where a page was left out, these are empty and 0. */
-bool page_set_do(PageSet *set, const char *name, bool (*write)(void *context, FILE *lines, const Progress *, Error *),
-                 void *context, Error *error);
-
-/* Writes the table; and removes the parts, once all that the caller makes of it is written. */
-bool page_set_table(const PageSet *set, const CsvLayout *layout, Error *error);
+/* Removes what the parts have left, once all that the caller makes of the table is written. */
 bool page_set_end(const PageSet *set, Error *error);
 
 /* For `write`: makes `name` fit a file, and path "pages/NAME.html" of it; writes that page. path is empty and bytes is 0 if

@@ -5,8 +5,10 @@
 #include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/shard_option.h"
 #include "cli/stability_clip.h"
 #include "cli/stability_pages.h"
+#include "cli/stability_plan_print.h"
 #include "cli/stability_print.h"
 #include "npz/output_check.h"
 #include "stability/stability_case.h"
@@ -21,7 +23,8 @@ enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, VARY_TEXTS = STABILITY_MAX_VARY + 1
 
 typedef struct Options {
     StabilityOptions study;
-    bool pages;
+    bool pages, plan;
+    const char *shard; /* or NULL */
     const char *clip;  /* or NULL */
     const char *scene; /* or NULL */
     int vary_count;
@@ -41,13 +44,15 @@ static void list_names(void) {
 static const Option option_table[] = {
     {"--output", 'o', "DIR",
      "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures",
-     OPTION_TEXT(Options, study.folder), .needed = "-o DIR is needed"},
+     OPTION_TEXT(Options, study.folder)},
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
      "does not report as left out)",
      OPTION_TEXT(Options, study.methods)},
-    {"--vary", 0, "NAME[=FROM:TO]",
-     "Parameter of SCENE to vary, by default between its bounds; two parameters give their map, too",
+    {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
+     "Parameter of SCENE to vary, by default between its bounds; with STEP at every such value, up to 128; two "
+     "parameters "
+     "give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},
@@ -62,6 +67,9 @@ static const Option option_table[] = {
     {"--clip", 0, "CELL",
      "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map",
      OPTION_TEXT(Options, clip)},
+    {OPTION_SHARD(Options, shard)},
+    {"--plan", 0, NULL, "Only measure some of the pieces, and print what all take on 1 to 100,000 cores; needs no -o",
+     OPTION_FLAG(Options, plan)},
     {0}};
 
 static const CommandSpec spec = {
@@ -136,8 +144,13 @@ static bool draw(void *context, uint64_t key, Error *error) {
 }
 
 static bool study(const StabilityOptions *options, Error *error) {
-    bool ok = stability_run(options, progress_bar_begin("stability"), error);
+    Pieces pieces = {0};
+    bool ok = stability_run(options, &pieces, progress_bar_begin("stability"), error);
     progress_bar_end();
+    if (ok && pieces.mode == PIECES_SHARD) {
+        shard_option_print(&pieces, options->folder);
+        return true;
+    }
     ok = ok && stability_print(options->folder, error);
     const NameList left_out = contenders_left_out(STUDY_STABILITY);
     if (ok && options->methods == NULL && left_out.text[0] != '\0')
@@ -145,8 +158,19 @@ static bool study(const StabilityOptions *options, Error *error) {
     return ok;
 }
 
+static bool estimate(const StabilityOptions *options, Error *error) {
+    PiecesEstimate result;
+    const bool ok = stability_estimate(options, &result, progress_bar_begin("plan"), error);
+    progress_bar_end();
+    if (ok) stability_plan_print(&result);
+    return ok;
+}
+
 /* SCENE and --vary go together, and neither with what chooses studies of the table. */
 static bool check_options(const Options *options, Error *error) {
+    if (options->study.folder == NULL && !options->plan) return error_input(error, "-o", "-o DIR is needed");
+    if (options->plan && (options->pages || options->clip != NULL || options->shard != NULL))
+        return error_input(error, "--plan", "writes nothing; it cannot be combined with --pages, --clip or --shard");
     if (options->pages && options->clip != NULL) return error_input(error, "--pages", "cannot be combined with --clip");
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
@@ -159,6 +183,7 @@ static bool check_options(const Options *options, Error *error) {
 bool command_stability(int argc, char **argv, Error *error) {
     Options options = {.study = {.scenes = installed_path("scenes"), .draw = draw}};
     StabilityOwn own;
+    PiecesRun run;
     list_names();
     if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
     if (options.scene != NULL) {
@@ -167,6 +192,9 @@ bool command_stability(int argc, char **argv, Error *error) {
         options.study.own = &own;
     }
     options.study.draw_context = &options;
+    options.study.run = &run;
+    if (options.plan) return estimate(&options.study, error);
+    if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
     if (options.clip != NULL) return make_clip(&options, error);
     return output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

@@ -47,8 +47,8 @@ static bool draw(const ClipOptions *options, CellRuns *runs, Error *error) {
     }
     const DrawVideos videos = {1, {video}};
     RenderResult result;
-    if (!file_make_directory(folder, error) || !draw_videos_check(&videos, render.width, render.height, error) ||
-        !draw_panels(&runs->panels, &render, &videos, &result, error))
+    if (!file_make_directory(folder, error) || !draw_videos_check(&videos, render.width, render.height, false, error) ||
+        !draw_panels(&runs->panels, &render, &videos, NULL, &result, error))
         return false;
     printf("%s: %s -> %s, %s/frame_%06d.png ... frame_%06d.png\n", options->cell, notes[runs->count - 1], video, folder,
            result.first, result.last);

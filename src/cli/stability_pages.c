@@ -2,6 +2,7 @@
 #include "cli/stability_pages.h"
 
 #include "cli/page_set.h"
+#include "cli/progress_bar.h"
 #include "simulate/method.h"
 #include "stability/map_pages.h"
 #include "stability/stability_html.h"
@@ -22,6 +23,7 @@ typedef struct Pages {
     MapTable table;
     MapPanels *map; /* the current one, */
     int panel;      /* and method */
+    int first, row; /* the map's first part; the row of the table behind it */
 } Pages;
 
 static const ClipMap *find_map(const Pages *pages, const char *name) {
@@ -49,7 +51,7 @@ static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, 
     return page_set_write(&pages->set, strrchr(clip, '/') + 1, shown, runs->panels.count, &options, file, error);
 }
 
-static bool write_cell(Pages *pages, const MapCell *cell, FILE *lines, const Progress *progress, Error *error) {
+static bool write_cell(Pages *pages, const MapCell *cell, FILE *rows, const Progress *progress, Error *error) {
     const ClipMap *map = find_map(pages, cell->map);
     CellRuns runs;
     PageFile file;
@@ -71,30 +73,29 @@ static bool write_cell(Pages *pages, const MapCell *cell, FILE *lines, const Pro
                          .body = body,
                          .page = link,
                          .bytes = file.bytes};
-    return study_parts_print(lines, &map_page_layout, &row, error);
+    return piece_tables_print(rows, &map_page_layout, -1, &row, error);
+}
+
+/* Parts are the methods of map after map, and come in this order. */
+static bool enter(Pages *pages, int part, Error *error) {
+    while (part >= pages->first + pages->map->panel_count) {
+        pages->first += pages->map->panel_count;
+        if (!map_panels_gather(pages->map, &pages->table, &pages->row, error)) return false;
+    }
+    pages->panel = part - pages->first;
+    return true;
 }
 
 /* The pages of a method in a map. */
-static bool write_method(void *context, FILE *lines, const Progress *progress, Error *error) {
+static bool write_method(void *context, int part, FILE *rows, const Progress *progress, Error *error) {
     Pages *pages = context;
     MapPlace places[MAP_PAGES_EACH];
+    if (!enter(pages, part, error)) return false;
     const int count = map_pages_choose(pages->map, pages->panel, places);
     for (int i = 0; i < count; i++) {
         const MapCell *cell = map_panels_cell(pages->map, &pages->table, pages->panel, places[i]);
         ProgressStage stage = {progress, (double)i / count, 1.0 / count, false};
-        if (!write_cell(pages, cell, lines, &(Progress){progress_stage, &stage}, error)) return false;
-    }
-    return true;
-}
-
-static bool write_maps(Pages *pages, Error *error) {
-    for (int row = 0; row < pages->table.count;) {
-        if (!map_panels_gather(pages->map, &pages->table, &row, error)) return false;
-        for (pages->panel = 0; pages->panel < pages->map->panel_count; pages->panel++) {
-            char part[CSV_NAME_SIZE + 16];
-            snprintf(part, sizeof part, "%s-%d", pages->map->first->map, pages->panel + 1);
-            if (!page_set_do(&pages->set, part, write_method, pages, error)) return false;
-        }
+        if (!write_cell(pages, cell, rows, &(Progress){progress_stage, &stage}, error)) return false;
     }
     return true;
 }
@@ -108,13 +109,16 @@ static int count_methods(const MapTable *table) {
 }
 
 bool stability_pages_write(const StabilityPages *options, uint64_t key, Error *error) {
-    Pages pages = {.options = options, .map = malloc(sizeof *pages.map)};
+    Pages pages = {
+        .options = options,
+        .map = calloc(1, sizeof *pages.map),
+        .set = {.folder = options->folder, .layout = &map_page_layout, .write = write_method, .context = &pages}};
     if (pages.map == NULL) return error_memory(error, "pages");
     bool ok = map_table_read(&pages.table, options->folder, error);
-    ok = ok && page_set_open(&pages.set, options->folder, key, count_methods(&pages.table), error) &&
-         write_maps(&pages, error) && page_set_table(&pages.set, &map_page_layout, error) &&
+    if (ok) pages.set.parts = count_methods(&pages.table);
+    ok = ok && page_set_make(&pages.set, key, progress_bar_begin("pages"), error) &&
          stability_html_write(options->folder, error) && page_set_end(&pages.set, error);
-    page_set_close(&pages.set);
+    progress_bar_end();
     map_table_free(&pages.table);
     free(pages.map);
     if (ok) page_set_print(&pages.set, "stability.html");

@@ -93,9 +93,9 @@ static void draw_tiles(const BorderRows *rows) {
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *row = &rows->table->rows[i];
         if (!border_same_study(row, rows->study) || holds_throughout(row)) continue;
-        tiles[count++] = (Tile){tile_place(rows->axis, row), height_of(rows, row), row->verdict};
+        tiles[count++] = (Tile){.x = tile_place(rows->axis, row), .y = height_of(rows, row), .look = row->verdict};
     }
-    verdict_draw_tiles(rows->page, tiles, count, (TileScale){1, rows->height, half_tile});
+    verdict_draw_tiles(rows->page, tiles, count, (TileScale){.unit_x = 1, .unit_y = rows->height, .half = half_tile});
 }
 
 void border_marks_draw(const BorderRows *rows) {

@@ -9,7 +9,7 @@
 #pragma once
 #include "stability/verdict.h"
 
-enum { BORDER_SEEDS = 3, BORDERS_MAX = 32, BORDER_POINTS_MAX = 64 };
+enum { BORDER_SEEDS = 3, BORDERS_MAX = 32, BORDER_POINTS_MAX = 128 };
 
 /* Resolution: linear 1/100 of the range, logarithmic a factor of 1.05; at least 1 for whole numbers. */
 typedef struct BorderScan {

@@ -2,16 +2,17 @@
 #include "stability/stability_map.h"
 
 #include "chart/chart_data.h"
+#include "stability/map_axis.h"
 
 #include <math.h>
 #include <string.h>
 
 /* mm */
 static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
-                    largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, tic_height = 3,
-                    tic_digit = 1.65, letter = 1.55;
+                    largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, border_share = 0.35,
+                    letter = 1.55, least_symbol_room = 2, symbol_distance = 3;
 
-enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2, TICS_SIZE = MAP_MAX_VALUES * 40 };
+enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2 };
 
 typedef struct Layout {
     const MapPanels *map;
@@ -35,23 +36,6 @@ static int count_used(const Layout *layout) {
     return count;
 }
 
-/* Three significant digits; integers up to 1e6 in full. */
-static int name_value(char *text, size_t size, double value) {
-    bool whole = fabs(value) > 999 && fabs(value) < 1e6;
-    return snprintf(text, size, whole ? "%.0f" : "%.3g", value);
-}
-
-/* mm: width of the longest label. */
-static double number_width(const double *values, int count) {
-    char text[32];
-    int longest = 0;
-    for (int i = 0; i < count; i++) {
-        int length = name_value(text, sizeof text, values[i]);
-        longest = length > longest ? length : longest;
-    }
-    return longest * tic_digit;
-}
-
 /* A single panel is one column of a printed page wide; several fill the page. */
 static Layout lay_out(const MapPanels *map, GnuplotPage *page) {
     int panels = map->panel_count;
@@ -63,7 +47,7 @@ static Layout lay_out(const MapPanels *map, GnuplotPage *page) {
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* The border is one more legend item. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
-    layout.left = label_room + number_width(map->y, map->y_count);
+    layout.left = label_room + map_axis_width(map->y, map->y_count);
     layout.width = (page_width - layout.left - right - gap * (layout.columns - 1)) / layout.columns;
     layout.cell.unit_x = layout.width / map->x_count;
     char label[STABILITY_TEXT_SIZE];
@@ -77,13 +61,26 @@ static Layout lay_out(const MapPanels *map, GnuplotPage *page) {
     return layout;
 }
 
+/* Small tiles have a symbol here and there: each would be a dot. */
+static int symbols_every(double unit) { return unit < least_symbol_room ? (int)ceil(symbol_distance / unit) : 1; }
+
+/* Not at the very edge, which would cut it. */
+static bool has_symbol(int i, int count, int every) {
+    return i % every == every / 2 && (every == 1 || i + every / 3 < count);
+}
+
 static void draw_tiles(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
+    TileScale scale = layout->cell;
+    const int across = symbols_every(scale.unit_x), up = symbols_every(scale.unit_y);
     int count = 0;
     for (int x = 0; x < map->x_count; x++)
-        for (int y = 0; y < map->y_count; y++) tiles[count++] = (Tile){x, y, map->looks[panel][x][y]};
-    verdict_draw_tiles(layout->page, tiles, count, layout->cell);
+        for (int y = 0; y < map->y_count; y++)
+            tiles[count++] = (Tile){x, y, map->looks[panel][x][y],
+                                    !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up)};
+    scale.symbol_room = fmin(across * scale.unit_x, up * scale.unit_y);
+    verdict_draw_tiles(layout->page, tiles, count, scale);
 }
 
 /* One holds and the other fails; cells without a verdict do neither. */
@@ -95,7 +92,8 @@ static bool differ(int look, int other) {
 static void draw_border(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     const GnuplotLook look = {"", {.colour = "black"}, 0, false, 1, false};
-    double across = border_width / 2 / layout->cell.unit_x, up = border_width / 2 / layout->cell.unit_y;
+    const double width = fmin(border_width, border_share * fmin(layout->cell.unit_x, layout->cell.unit_y)),
+                 across = width / 2 / layout->cell.unit_x, up = width / 2 / layout->cell.unit_y;
     gnuplot_series_begin(layout->page);
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
@@ -106,23 +104,6 @@ static void draw_border(const Layout *layout, int panel) {
                 gnuplot_bar(layout->page, x - 0.5 - across, y + 0.5 - up, x + 0.5 + across, y + 0.5 + up);
         }
     gnuplot_series_end(layout->page, &look);
-}
-
-/* One tic per cell; labels are thinned so that they do not touch. */
-static void write_axis(const Layout *layout, char axis, const double *values, int count, bool numbers,
-                       const char *label) {
-    char tics[TICS_SIZE], text[32];
-    double room = axis == 'x' ? layout->cell.unit_x : layout->cell.unit_y;
-    double needed = axis == 'x' ? number_width(values, count) + tic_digit : tic_height;
-    int every = (int)ceil(needed / room);
-    size_t used = (size_t)snprintf(tics, sizeof tics, "out%s (", axis == 'x' ? " offset 0,0.3" : "");
-    for (int i = 0; i < count; i++) {
-        name_value(text, sizeof text, values[i]);
-        used += (size_t)snprintf(tics + used, sizeof tics - used, "%s'%s' %d", i > 0 ? ", " : "",
-                                 numbers && i % every == 0 ? text : "", i);
-    }
-    snprintf(tics + used, sizeof tics - used, ")");
-    gnuplot_linear_axis(layout->page, axis, -0.5, count - 0.5, tics, numbers ? label : NULL);
 }
 
 /* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
@@ -161,8 +142,9 @@ static void draw_panel(const Layout *layout, int panel) {
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     gnuplot_panel_begin(layout->page, box, title);
-    write_axis(layout, 'x', map->x, map->x_count, panel + layout->columns >= map->panel_count, x);
-    write_axis(layout, 'y', map->y, map->y_count, column == 0, y);
+    map_axis_write(layout->page, 'x', map->x, map->x_count, layout->cell.unit_x,
+                   panel + layout->columns >= map->panel_count ? x : NULL);
+    map_axis_write(layout->page, 'y', map->y, map->y_count, layout->cell.unit_y, column == 0 ? y : NULL);
     draw_tiles(layout, panel);
     draw_border(layout, panel);
     draw_links(layout, panel, box);

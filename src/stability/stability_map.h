@@ -4,7 +4,7 @@
 #include "chart/gnuplot_page.h"
 #include "stability/stability_table.h"
 
-enum { MAP_MAX_VALUES = 64, MAP_MAX_METHODS = 24 };
+enum { MAP_MAX_VALUES = 128, MAP_MAX_METHODS = 24 };
 
 /* A map's cells, arranged by method, x and y. */
 typedef struct MapPanels {

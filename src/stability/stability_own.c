@@ -61,19 +61,36 @@ static double rounded_inward(double value, int direction) {
     return strtod(text, NULL);
 }
 
-/* "NAME" or "NAME=FROM:TO". */
+/* Every value from FROM to TO, in steps. */
+static bool make_steps(const SceneParameter *parameter, const char *text, double from, double to, double step,
+                       BorderScan *scan, Error *error) {
+    const double count = round((to - from) / step);
+    if (fabs(from + count * step - to) > 1e-6 * step)
+        return error_input(error, "--vary", "'%s': TO is not a whole number of steps from FROM", text);
+    if (count + 1 > BORDER_POINTS_MAX)
+        return error_input(error, "--vary", "'%s' has %.0f values; at most %d are allowed", text, count + 1,
+                           BORDER_POINTS_MAX);
+    if (parameter->whole && !is_whole(step))
+        return error_input(error, "--vary", "'%s': the steps of %s must be whole numbers", text, parameter->name);
+    *scan = (BorderScan){.from = from, .to = to, .points = (int)count + 1, .whole = parameter->whole, .either = true};
+    return true;
+}
+
+/* "NAME", "NAME=FROM:TO" or "NAME=FROM:TO:STEP", which sets the number of points. */
 static bool read_text(const Scene *scene, const char *text, char name[SCENE_PARAMETER_SIZE], BorderScan *scan,
                       Error *error) {
     const size_t length = strcspn(text, "=");
     snprintf(name, SCENE_PARAMETER_SIZE, "%.*s", (int)length, text);
     const SceneParameter *parameter = find(scene, name, error);
     if (parameter == NULL) return false;
-    double from = parameter->from, to = parameter->to;
+    double from = parameter->from, to = parameter->to, step = 0;
     const char *rest;
-    if (text[length] == '=' &&
-        (!parse_leading_double(text + length + 1, &from, &rest) || *rest != ':' || !parse_double(rest + 1, &to)))
-        return error_input(error, "--vary", "'%s' is not NAME=FROM:TO", text);
+    if (text[length] == '=' && !(parse_leading_double(text + length + 1, &from, &rest) && *rest == ':' &&
+                                 parse_leading_double(rest + 1, &to, &rest) &&
+                                 (*rest == '\0' || (*rest == ':' && parse_double(rest + 1, &step) && step > 0))))
+        return error_input(error, "--vary", "'%s' is not NAME=FROM:TO or NAME=FROM:TO:STEP", text);
     if (!check_range(parameter, text, from, to, error)) return false;
+    if (step > 0) return make_steps(parameter, text, from, to, step, scan, error);
     from = rounded_inward(from, 1);
     to = rounded_inward(to, -1);
     *scan = (BorderScan){.from = from,
@@ -157,7 +174,8 @@ static bool add_study(StabilityOwn *own, const Scene *scene, const char *path, c
     if (!read_text(scene, text, name, &scan, error)) return false;
     if (i > 0 && strcmp(name, own->parameters[0]) == 0)
         return error_input(error, "--vary", "the parameter '%s' is given twice", name);
-    scan.points = quick ? SCAN_QUICK_POINTS : SCAN_POINTS;
+    own->stepped[i] = scan.points > 0;
+    if (!own->stepped[i]) scan.points = quick ? SCAN_QUICK_POINTS : SCAN_POINTS;
     bool iterations = false;
     if (!try_values(path, name, &scan, &iterations, error)) return false;
     make_name(own->names[i], scene->name, name);
@@ -171,22 +189,23 @@ static bool add_study(StabilityOwn *own, const Scene *scene, const char *path, c
     return true;
 }
 
-static StabilityAxis axis_of(const StabilityStudy *study) {
-    BorderScan scan = study->scan;
-    scan.points = MAP_POINTS;
-    return (StabilityAxis){study->parameter, scan, MAP_QUICK_POINTS};
+static StabilityAxis axis_of(const StabilityOwn *own, int i) {
+    BorderScan scan = own->studies[i].scan;
+    if (!own->stepped[i]) scan.points = MAP_POINTS;
+    return (StabilityAxis){own->studies[i].parameter, scan, own->stepped[i] ? scan.points : MAP_QUICK_POINTS};
 }
 
 static void add_map(StabilityOwn *own, const char *scene_name, const char *path) {
     char both[2 * SCENE_PARAMETER_SIZE];
     snprintf(both, sizeof both, "%.12s_%.12s", own->parameters[0], own->parameters[1]);
     make_name(own->names[STABILITY_MAX_VARY], scene_name, both);
+    const StabilityAxis x = axis_of(own, 0), y = axis_of(own, 1);
     own->maps[own->map_count++] = (StabilityMap){.name = own->names[STABILITY_MAX_VARY],
                                                  .scene = own->names[STABILITY_MAX_VARY],
-                                                 .x = axis_of(&own->studies[0]),
-                                                 .y = axis_of(&own->studies[1]),
+                                                 .x = x,
+                                                 .y = y,
                                                  .iterations = own->studies[0].iterations || own->studies[1].iterations,
-                                                 .weight = MAP_POINTS * MAP_POINTS,
+                                                 .weight = x.scan.points * y.scan.points,
                                                  .file = path};
 }
 

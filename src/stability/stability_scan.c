@@ -4,7 +4,7 @@
 #include "common/array.h"
 #include "common/parallel.h"
 #include "stability/stability_table.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,11 +33,11 @@ typedef struct Result {
 } Result;
 
 typedef struct Run {
-    const StabilityScan *scan;
-    Scene *typical; /* with default parameters */
-    ConvergedRuns converged;
+    ScanContext *context;
+    const StabilityScan *scan; /* of the context */
+    int first;                 /* method of the first result */
     RunCounter counter;
-    Result *results; /* [methods] */
+    Result *results;
 } Run;
 
 static StabilityPlace place_of(const StabilityScan *scan) {
@@ -87,7 +87,8 @@ static bool probe_value(void *context, double value, int seed, Verdict *verdict,
     const ProbeContext *probed = context;
     Run *run = probed->run;
     VerdictReading reading;
-    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->converged, &reading, error)) return false;
+    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->context->converged, &reading, error))
+        return false;
     *verdict = reading.verdict;
     if (seed == 0 && !store_run(probed->result, value, &reading, error)) return false;
     return run_counter_add(&run->counter, run->scan->study->name, error);
@@ -105,11 +106,13 @@ static bool applies(const StabilityScan *scan, const Method *method, Error *reas
     return ok;
 }
 
+static const Contender *contender_of(const Run *run, int i) { return &run->scan->methods->items[run->first + i]; }
+
 static bool study_method(void *context, int i, Error *error) {
     Run *run = context;
     Result *result = &run->results[i];
     const StabilityStudy *study = run->scan->study;
-    ProbeContext probed = {run, &run->scan->methods->items[i].method, result};
+    ProbeContext probed = {run, &contender_of(run, i)->method, result};
     if (study->iterations && !stability_takes_iterations(probed.method)) {
         result->part = PART_LEFT_OUT;
         return true;
@@ -123,17 +126,17 @@ static bool study_method(void *context, int i, Error *error) {
 }
 
 static bool write_border(const Run *run, int i, const Border *border, FILE *lines, Error *error) {
-    const Contender *contender = &run->scan->methods->items[i];
+    const Contender *contender = contender_of(run, i);
     const StabilityStudy *study = run->scan->study;
     const BorderRow row = {.study = study->name,
                            .method = contender->name,
                            .setting = contender->setting,
                            .parameter = study->parameter,
-                           .unit = stability_unit(run->typical, study->parameter),
+                           .unit = stability_unit(run->context->typical, study->parameter),
                            .holds_at = border != NULL ? border->holds_at : NAN,
                            .fails_at = border != NULL ? border->fails_at : NAN,
                            .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
-    return study_parts_print(lines, &border_layout, &row, error);
+    return piece_tables_print(lines, &border_layout, -1, &row, error);
 }
 
 static int by_value(const void *left, const void *right) {
@@ -144,14 +147,14 @@ static int by_value(const void *left, const void *right) {
 static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
 
 static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
-    const Contender *contender = &run->scan->methods->items[i];
+    const Contender *contender = contender_of(run, i);
     const StabilityStudy *study = run->scan->study;
     const VerdictReading *reading = &scan_run->reading;
     const RunRow row = {.study = study->name,
                         .method = contender->name,
                         .setting = contender->setting,
                         .parameter = study->parameter,
-                        .unit = stability_unit(run->typical, study->parameter),
+                        .unit = stability_unit(run->context->typical, study->parameter),
                         .value = scan_run->value,
                         .steps = reading->steps,
                         .verdict = (int)reading->verdict,
@@ -163,8 +166,8 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
                         .by_sweeps = reading->fallbacks.by_sweeps};
     const MethodDescription *method = contender->method.kind->description;
     const bool may_fall_back = method->needs_network || method->falls_back;
-    if (may_fall_back && !study_parts_print(lines, &fallback_layout, &row, error)) return false;
-    return !study->rests || study_parts_print(lines, &rest_layout, &row, error);
+    if (may_fall_back && !piece_tables_print(lines, &fallback_layout, -1, &row, error)) return false;
+    return !study->rests || piece_tables_print(lines, &rest_layout, -1, &row, error);
 }
 
 static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {
@@ -177,11 +180,11 @@ static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {
 }
 
 static bool write_refusal(const Run *run, int i, FILE *lines, Error *error) {
-    const Contender *contender = &run->scan->methods->items[i];
+    const Contender *contender = contender_of(run, i);
     char *reason = run->results[i].reason.message;
     reason[strcspn(reason, "\n")] = '\0';
     const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
-    return write_border(run, i, NULL, lines, error) && study_parts_print(lines, &refusal_layout, &row, error);
+    return write_border(run, i, NULL, lines, error) && piece_tables_print(lines, &refusal_layout, -1, &row, error);
 }
 
 static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
@@ -192,22 +195,33 @@ static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
     return write_runs(run, i, lines, error) && (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
 }
 
-bool stability_scan_write(void *scan, FILE *lines, const Progress *progress, Error *error) {
-    const int methods = ((const StabilityScan *)scan)->methods->count;
-    Run run = {.scan = scan, .counter = {.progress = progress}};
-    const StabilityStudy *study = run.scan->study;
+bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error) {
+    const StabilityPlace place = place_of(scan);
+    *context = (ScanContext){.scan = scan, .typical = stability_scene(&place, NULL, 0, error)};
+    return context->typical != NULL;
+}
+
+void stability_scan_end(ScanContext *context) {
+    converged_runs_free(&context->converged);
+    scene_destroy(context->typical);
+    *context = (ScanContext){0};
+}
+
+bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,
+                          Error *error) {
+    const StabilityStudy *study = context->scan->study;
+    const int methods = end - first;
+    Run run = {
+        .context = context,
+        .scan = context->scan,
+        .first = first,
+        .counter = {.progress = progress, .expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER)}};
     const ParallelWork work = {study_method, &run};
-    run.counter.expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER);
-    const StabilityPlace place = place_of(run.scan);
-    run.typical = stability_scene(&place, NULL, 0, error);
     run.results = calloc((size_t)methods, sizeof *run.results);
-    bool ok = run.typical != NULL;
-    if (ok && run.results == NULL) ok = error_memory(error, study->name);
-    ok = ok && parallel_for(&work, methods, study->name, NULL, error);
-    for (int i = 0; ok && i < methods; i++) ok = write_result(&run, i, lines, error);
+    bool ok = (run.results != NULL || error_memory(error, study->name)) &&
+              parallel_for(&work, methods, study->name, NULL, error);
+    for (int i = 0; ok && i < methods; i++) ok = write_result(&run, i, results, error);
     for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
     free(run.results);
-    converged_runs_free(&run.converged);
-    scene_destroy(run.typical);
     return ok;
 }

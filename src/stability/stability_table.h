@@ -6,7 +6,7 @@
 #include "stability/verdict_look.h"
 
 enum {
-    STABILITY_MAX_CELLS = 40000,
+    STABILITY_MAX_CELLS = 200000,
     STABILITY_MAX_BORDERS = 2000,
     STABILITY_MAX_RUNS = 100000,
     STABILITY_MAX_PANELS = 512,

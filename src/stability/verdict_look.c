@@ -18,20 +18,25 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
 };
 
 /* mm */
-static const double most_symbol = 2.0, seam = 0.07, legend_tile = 2.9, name_gap = 1.3;
+static const double most_symbol = 2.0, seam = 0.07, least_with_seam = 1.2, legend_tile = 2.9, name_gap = 1.3;
 
 /* Symbol width relative to a tile's smaller side; diameter of a gnuplot point of size 1 in mm. */
 static const double symbol_share = 0.56, point_size_1 = 2.1;
 
+static double tile_side(TileScale scale) { return scale.half > 0 ? 2 * scale.half : fmin(scale.unit_x, scale.unit_y); }
+
 static double symbol_width(TileScale scale) {
-    double side = scale.half > 0 ? 2 * scale.half : fmin(scale.unit_x, scale.unit_y);
-    return fmin(symbol_share * side, most_symbol);
+    const double room = scale.symbol_room > 0 ? scale.symbol_room : tile_side(scale);
+    return fmin(symbol_share * room, most_symbol);
 }
+
+/* Seams between small tiles would be most of what is seen. */
+static double seam_of(TileScale scale) { return tile_side(scale) < least_with_seam ? 0 : seam; }
 
 static void draw_fills(GnuplotPage *page, const Tile *tiles, int count, int look, TileScale scale) {
     const char *fill = verdict_looks[look].fill;
-    double x = (scale.half > 0 ? scale.half / scale.unit_x : 0.5) - seam / scale.unit_x;
-    double y = (scale.half > 0 ? scale.half / scale.unit_y : 0.5) - seam / scale.unit_y;
+    double x = (scale.half > 0 ? scale.half / scale.unit_x : 0.5) - seam_of(scale) / scale.unit_x;
+    double y = (scale.half > 0 ? scale.half / scale.unit_y : 0.5) - seam_of(scale) / scale.unit_y;
     GnuplotLook bars = {"", {.colour = fill}, 0, false, 1, false};
     gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
@@ -44,7 +49,7 @@ static void draw_strokes(GnuplotPage *page, const Tile *tiles, int count, int lo
     const GnuplotLook line = {"", {.colour = verdict_looks[look].ink, .dashes = "solid"}, 1.2, false, 0, false};
     gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
-        if (tiles[i].look == look)
+        if (tiles[i].look == look && !tiles[i].bare)
             gnuplot_segment(page, tiles[i].x - x, tiles[i].y - y, tiles[i].x + x, tiles[i].y + y);
     gnuplot_series_end(page, &line);
 }
@@ -54,7 +59,7 @@ static void draw_symbols(GnuplotPage *page, const Tile *tiles, int count, int lo
     const GnuplotLook nothing = {.line = 0};
     gnuplot_series_begin(page);
     for (int i = 0; i < count; i++)
-        if (tiles[i].look == look) gnuplot_point(page, tiles[i].x, tiles[i].y);
+        if (tiles[i].look == look && !tiles[i].bare) gnuplot_point(page, tiles[i].x, tiles[i].y);
     gnuplot_series_end(page, &nothing);
     if (page->points == 0 || page->plot == NULL) return;
     fprintf(page->plot, ", $d%d with points pt %d ps %.3g lw 1.2 lc rgb '%s'", page->block, is->symbol,
@@ -88,9 +93,9 @@ int verdict_draw_legend(GnuplotPage *page, const bool used[VERDICT_LOOKS], const
         double x = place->left + place->width * (count % place->columns),
                y = place->top - GNUPLOT_LEGEND_ROW * (count / place->columns);
         if (verdict_looks[look].fill == NULL) draw_frame(page, x + legend_tile / 2, y);
-        tiles[count++] = (Tile){x + legend_tile / 2, y, look};
+        tiles[count++] = (Tile){.x = x + legend_tile / 2, .y = y, .look = look};
         gnuplot_text(page, x + legend_tile + name_gap, y, "left", 7.5, verdict_looks[look].name);
     }
-    verdict_draw_tiles(page, tiles, count, (TileScale){1, 1, legend_tile / 2});
+    verdict_draw_tiles(page, tiles, count, (TileScale){.unit_x = 1, .unit_y = 1, .half = legend_tile / 2});
     return count;
 }

@@ -22,12 +22,14 @@ extern const VerdictLook verdict_looks[VERDICT_LOOKS];
 typedef struct TileScale {
     double unit_x, unit_y; /* mm of the page that one unit of the axis takes */
     double half;           /* mm: half a tile's side; 0: a tile fills its unit */
+    double symbol_room;    /* mm: what a symbol may take; 0: its tile */
 } TileScale;
 
 /* x, y: centre, on the panel's axes. */
 typedef struct Tile {
     double x, y;
     int look;
+    bool bare; /* without its symbol */
 } Tile;
 
 /* Draws tiles on the open panel: all fills, then all symbols. */

@@ -35,6 +35,7 @@ static const CsvColumn columns[] = {
     FIGURE(drift, -INFINITY, INFINITY),
     FIGURE(energy, -INFINITY, INFINITY),
     FIGURE(moved, 0, INFINITY),
+    {"cpu", CSV_TEXT, .offset = offsetof(ChartRow, cpu), .maximum = CPU_NAME_SIZE - 1, .optional = true},
 };
 
 enum { SOLVER_MEDIAN = 6 };

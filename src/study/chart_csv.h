@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* chart.csv: speed and accuracy of every method; one row for each scene, method, setting, protocol and phase. */
 #pragma once
+#include "common/cpu_name.h"
 #include "csv/csv_table.h"
 #include "simulate/phases.h"
 
@@ -30,6 +31,7 @@ typedef struct ChartRow {
     double penetration_max, drift;                /* m */
     double energy;                                /* above the converged run's, J */
     double moved;                                 /* boxes that moved more than 0.5 m */
+    const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
 } ChartRow;
 
 extern const CsvLayout chart_layout;
@@ -40,7 +42,7 @@ typedef struct ChartTable {
     const ChartRow *rows; /* [count] */
 } ChartTable;
 
-/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact),
-   and a median time outside its quartiles. On failure nothing is to be freed. */
+/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact; the
+   last column, cpu, may be missing), and a median time outside its quartiles. On failure nothing is to be freed. */
 bool chart_csv_read(ChartTable *table, const char *path, Error *error);
 void chart_csv_free(ChartTable *table);

@@ -3,6 +3,7 @@
 
 #include "common/parse.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -37,4 +38,31 @@ bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
             return true;
     }
     return false;
+}
+
+/* A row has both a time and an error, or its phase did not occur. */
+static bool is_left_out(const ChartRow *row) { return isnan(row->us_solver) && !isnan(row->error_mean); }
+
+void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
+    const char *cpu = NULL;
+    bool left_out = false, others = false;
+    for (int i = 0; i < count; i++) {
+        left_out |= is_left_out(&rows[i]);
+        if (rows[i].cpu[0] == '\0') continue;
+        if (cpu == NULL) cpu = rows[i].cpu;
+        others |= strcmp(rows[i].cpu, cpu) != 0;
+    }
+    note[0] = '\0';
+    if (cpu != NULL)
+        snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.%s", cpu, others ? " and others" : "",
+                 left_out ? " Those of other processors are left out." : "");
+}
+
+bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene) {
+    bool known = false;
+    for (int i = 0; i < count; i++) {
+        if (strcmp(rows[i].scene, scene) == 0 && !isnan(rows[i].us_solver)) return false;
+        known |= rows[i].cpu[0] != '\0';
+    }
+    return known;
 }

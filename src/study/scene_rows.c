@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void scene_row_errors(ChartRow *row, StepScores *scores) {
+void scene_row_errors(ChartRow *row, const PhaseScores *scores) {
     row->error_mean = statistics_mean(scores->error, scores->count);
     row->share_right = statistics_mean(scores->share, scores->count);
     row->error_median = statistics_quantile(scores->error, scores->count, 0.5);
@@ -56,13 +56,15 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .penetration_max = NAN,
                       .drift = NAN,
                       .energy = NAN,
-                      .moved = NAN};
+                      .moved = NAN,
+                      .cpu = ""};
 }
 
-void scene_row_cost(ChartRow *row, const StepCost *cost) {
+void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
     row->us_solver = cost->solver;
     row->us_solver_q1 = cost->solver_q1;
     row->us_solver_q3 = cost->solver_q3;
     row->us_step = cost->step;
     row->instructions = cost->instructions;
+    if (!isnan(cost->solver)) row->cpu = cpu;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One scene of the speed-accuracy study. */
+/* One scene of the speed-accuracy study: its launches and the methods that are scored on them. */
 #pragma once
 #include "study/contenders.h"
-#include "study/frozen.h"
 #include "study/launch_choice.h"
-#include "study/timing.h"
+#include "study/rollout.h"
+#include "study/stepper_pool.h"
 
 typedef struct StudySize {
     int launches;            /* unless a table of launches is given */
@@ -15,13 +15,11 @@ typedef struct StudySize {
 typedef struct SceneStudy {
     Scene *scene;
     int launch_count, contender_count;
-    Scene *launches;              /* [launch_count] launched scenes */
+    Launch *launches;             /* [launch_count] */
     const Contender **contenders; /* [contender_count] available for this scene */
-    RunLog *converged;            /* [launch_count] */
-    SnapshotList *snapshots;      /* [launch_count] */
+    StepperPool steppers;         /* of the contenders */
+    bool no_push_out;             /* one of them is scored against converged velocities without push-out */
     StudySize size;
-    double frozen_residual;  /* m/s: largest residual of the reference solves of frozen steps */
-    int solves, unconverged; /* reference solves in closed loop */
 } SceneStudy;
 
 /* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. */
@@ -29,13 +27,5 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
 
-/* Computes the converged run and the frozen steps of every launch. */
-bool scene_study_prepare(SceneStudy *study, const Progress *progress, Error *error);
-
-enum { ROWS_EACH = PROTOCOLS * PHASES };
-
-/* Scores one contender into rows[ROWS_EACH]; costs stay NaN. Thread-safe. */
-bool scene_study_score(SceneStudy *study, int contender, ChartRow *rows, Error *error);
-
-/* Measures the costs of rows[contender_count * ROWS_EACH]. */
-bool scene_study_time(SceneStudy *study, ChartRow *rows, const Progress *progress, Error *error);
+/* The scene with a launch of the study, as launch_scene(). */
+Scene scene_study_launch(const SceneStudy *study, int launch);

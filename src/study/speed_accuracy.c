@@ -2,12 +2,7 @@
 #include "study/speed_accuracy.h"
 
 #include "common/folder_reserve.h"
-#include "common/parallel.h"
-#include "study/part_file.h"
-#include "study/scene_study.h"
-#include "study/study_key.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,114 +23,16 @@ const StudySize *speed_accuracy_size(bool quick) { return quick ? &quick_size : 
 
 typedef struct Run {
     const SpeedAccuracyOptions *options;
-    const StageProgress *progress;
     ContenderList contenders;
-    PartFile part;
-    ChartRow *rows; /* of the finished scenes, followed by those of the current scene */
-    int row_count;  /* of the finished scenes */
-    SceneStudy study;
-    bool *scored; /* [contenders] of the current scene */
+    ChartPlan plan;
+    SpeedAccuracyScene *scenes; /* [scenes of the plan] */
+    ChartRow *rows;             /* of all scenes */
+    int row_count;
+    char (*cpus)[CPU_NAME_SIZE]; /* [scenes of the plan] */
 } Run;
 
-static const Progress *begin_stage(const Run *run, const char *what) {
-    if (run->progress == NULL) return NULL;
-    char title[CHART_NAME_SIZE + 64];
-    snprintf(title, sizeof title, "%s: %s", run->study.scene->name, what);
-    return run->progress->begin(run->progress->context, title);
-}
-
-static ChartRow *rows_of(const Run *run, int contender) { return run->rows + run->row_count + contender * ROWS_EACH; }
-
-/* Saves the rows of the finished scenes and of the contenders scored in the current one. */
-static bool save_checkpoint(const Run *run, Error *error) {
-    int count = run->row_count;
-    size_t most = (size_t)run->row_count + (size_t)run->study.contender_count * ROWS_EACH;
-    ChartRow *done = malloc((most + 1) * sizeof *done);
-    if (done == NULL) return error_memory(error, "study");
-    if (count > 0) memcpy(done, run->rows, (size_t)count * sizeof *done);
-    for (int i = 0; i < run->study.contender_count; i++) {
-        if (!run->scored[i]) continue;
-        memcpy(done + count, rows_of(run, i), ROWS_EACH * sizeof *done);
-        count += ROWS_EACH;
-    }
-    bool ok = part_file_write(&run->part, done, count, error);
-    free(done);
-    return ok;
-}
-
-static bool score(void *context, int i, Error *error) {
-    Run *run = context;
-    bool ok = true;
-    if (run->scored[i]) return true;
-    if (!scene_study_score(&run->study, i, rows_of(run, i), error)) return false;
-#pragma omp critical(study_part)
-    {
-        run->scored[i] = true;
-        ok = save_checkpoint(run, error);
-    }
-    return ok;
-}
-
-/* Restores the scores of an interrupted study. True if all costs are known too. */
-static bool restore_checkpoint(Run *run) {
-    bool timed = true;
-    for (int i = 0; i < run->study.contender_count; i++) {
-        ChartRow *rows = rows_of(run, i);
-        *rows = (ChartRow){.scene = run->study.scene->name,
-                           .method = run->study.contenders[i]->name,
-                           .setting = run->study.contenders[i]->setting};
-        run->scored[i] = part_file_find(&run->part, rows, ROWS_EACH);
-        timed &= run->scored[i] && !isnan(rows[PROTOCOL_CLOSED * PHASES + PHASE_REST].us_solver);
-    }
-    return timed;
-}
-
-static bool measure_scene(Run *run, Error *error) {
-    SceneStudy *study = &run->study;
-    if (restore_checkpoint(run)) return true;
-    const ParallelWork work = {score, run};
-    return scene_study_prepare(study, begin_stage(run, "converged runs"), error) &&
-           parallel_for(&work, study->contender_count, study->scene->name, begin_stage(run, "scores"), error) &&
-           scene_study_time(study, rows_of(run, 0), begin_stage(run, "times"), error) && save_checkpoint(run, error);
-}
-
-static bool add_scene(Run *run, const char *path, SpeedAccuracyScene *summary, Error *error) {
-    const StudySize *size = speed_accuracy_size(run->options->quick);
-    if (!scene_study_begin(&run->study, path, &run->contenders, &run->options->launches, size, error)) return false;
-    for (int i = 0; i < run->row_count; i++)
-        if (strcmp(run->rows[i].scene, run->study.scene->name) == 0) {
-            scene_study_end(&run->study);
-            return error_input(error, path, "another scene has the same name (%s)", run->rows[i].scene);
-        }
-    int count = run->study.contender_count;
-    size_t rows = (size_t)run->row_count + (size_t)count * ROWS_EACH;
-    ChartRow *grown = realloc(run->rows, (rows + 1) * sizeof *grown);
-    if (grown != NULL) run->rows = grown;
-    run->scored = calloc((size_t)count + 1, sizeof *run->scored);
-    bool ok = grown != NULL && run->scored != NULL;
-    if (!ok) error_memory(error, "study");
-    ok = ok && measure_scene(run, error);
-    if (ok) {
-        *summary =
-            (SpeedAccuracyScene){.contenders = count,
-                                 .launches = run->study.launch_count,
-                                 .without_network = contenders_without_network(&run->contenders, run->study.scene),
-                                 .frozen_residual = run->study.frozen_residual,
-                                 .solves = run->study.solves,
-                                 .unconverged = run->study.unconverged};
-        snprintf(summary->name, sizeof summary->name, "%s", run->study.scene->name);
-        /* The scene ends here, its rows do not. */
-        for (size_t i = (size_t)run->row_count; i < rows; i++) run->rows[i].scene = summary->name;
-        run->row_count = (int)rows;
-    }
-    free(run->scored);
-    run->scored = NULL;
-    scene_study_end(&run->study);
-    return ok;
-}
-
 /* A missing network is an error only of the method that needs it. */
-static bool add_scene_to_key(uint64_t *key, const char *path, Error *error) {
+static bool add_scene_to_key(StudyKey *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
     for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
@@ -144,7 +41,7 @@ static bool add_scene_to_key(uint64_t *key, const char *path, Error *error) {
 }
 
 /* Hashes everything that determines the result: the program, the options and the files. */
-static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error *error) {
+static bool find_key(const SpeedAccuracyOptions *options, StudyKey *key, Error *error) {
     if (!study_key_begin(key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
@@ -159,25 +56,65 @@ static bool study_key(const SpeedAccuracyOptions *options, uint64_t *key, Error 
     return true;
 }
 
-static bool run_scenes(Run *run, SpeedAccuracyScene *scenes, Error *error) {
-    char path[CSV_PATH_SIZE];
-    if (!csv_table_path(path, run->options->folder, &chart_layout, error)) return false;
-    for (int i = 0; i < run->options->scene_count; i++)
-        if (!add_scene(run, run->options->scenes[i], &scenes[i], error)) return false;
-    return csv_table_write(path, &chart_layout, run->rows, run->row_count, error);
+static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
+    SpeedAccuracyScene summary = {.contenders = study->contender_count,
+                                  .launches = study->launch_count,
+                                  .without_network = contenders_without_network(&run->contenders, study->scene)};
+    snprintf(summary.name, sizeof summary.name, "%s", study->scene->name);
+    return summary;
 }
 
-bool speed_accuracy_run(const SpeedAccuracyOptions *options, const StageProgress *progress, SpeedAccuracyScene *scenes,
-                        Error *error) {
-    Run run = {.options = options, .progress = progress};
-    uint64_t key;
+static bool assemble(Run *run, const Pieces *pieces, Error *error) {
+    size_t count = 0;
+    for (int i = 0; i < run->plan.count; i++) count += (size_t)run->plan.scenes[i].study.contender_count * ROWS_EACH;
+    run->rows = malloc((count + 1) * sizeof *run->rows);
+    run->cpus = calloc((size_t)run->plan.count + 1, sizeof *run->cpus);
+    if (run->rows == NULL || run->cpus == NULL) return error_memory(error, "study");
+    for (int i = 0; i < run->plan.count; i++) {
+        const ChartScene *scene = &run->plan.scenes[i];
+        SpeedAccuracyScene *summary = &run->scenes[i];
+        *summary = summarise(run, &scene->study);
+        if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
+            return false;
+        summary->timed = pieces_keep_times(pieces, run->cpus[i]);
+        run->row_count += summary->contenders * ROWS_EACH;
+    }
+    return true;
+}
+
+/* What follows from the pieces, once all are there. */
+static bool finish(Run *run, const Pieces *pieces, Error *error) {
+    const SpeedAccuracyOptions *options = run->options;
+    char path[CSV_PATH_SIZE];
+    return csv_table_path(path, options->folder, &chart_layout, error) && assemble(run, pieces, error) &&
+           folder_reserve(options->folder, error) &&
+           csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
+           options->draw(options, run->scenes, pieces->key, error) && pieces_end(pieces, error);
+}
+
+/* Shards share a folder; a whole study has it to itself. */
+static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
+    const SpeedAccuracyOptions *options = run->options;
+    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
+    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
+    return pieces_do(pieces, &run->plan.plan, progress, error) &&
+           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
+}
+
+bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
+                        SpeedAccuracyScene *scenes, Error *error) {
+    Run run = {.options = options, .scenes = scenes};
+    StudyKey key = {0};
     if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
-    bool ok = study_key(options, &key, error) && folder_reserve(options->folder, error) &&
-              part_file_open(&run.part, options->folder, key, error) && run_scenes(&run, scenes, error) &&
-              options->draw(options, scenes, key, error) && part_file_remove(&run.part, error);
-    part_file_close(&run.part);
+    const bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders,
+                                    &options->launches, speed_accuracy_size(options->quick), error) &&
+                    find_key(options, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+    pieces->plan = NULL;
+    chart_plan_free(&run.plan);
+    study_key_free(&key);
     contenders_free(&run.contenders);
     free(run.rows);
+    free(run.cpus);
     return ok;
 }

@@ -2,6 +2,7 @@
 #include "study/worst_launch.h"
 
 #include "common/parallel.h"
+#include "study/rollout.h"
 #include "study/statistics.h"
 
 #include <limits.h>
@@ -29,7 +30,7 @@ static WorstLaunch measure(const StepScores *scores, const RunLog *log, int laun
 static bool search_launch(void *context, int i, Error *error) {
     const Search *search = context;
     const Sampling sampling = {.after = search->study->size.closed.after, .rest = INT_MAX};
-    const Scene *launched = &search->study->launches[i];
+    const Scene scene = scene_study_launch(search->study, i), *launched = &scene;
     Rollout rollout = {0};
     StepScores scores[PHASES] = {0};
     Stepper *stepper = stepper_create(search->method, launched, error);

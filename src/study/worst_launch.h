@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The launch that was worst for a method in a chart: what a page shows of a point. */
 #pragma once
+#include "common/progress.h"
 #include "study/scene_study.h"
 
 typedef struct WorstLaunch {
@@ -12,6 +13,6 @@ typedef struct WorstLaunch {
 } WorstLaunch;
 
 /* Runs all launches of the study in closed loop once more, in parallel, and fills the impact and after phases of
-   worst[PHASES]. The study needs no scene_study_prepare(). */
+   worst[PHASES]. */
 bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunch worst[PHASES],
                        const Progress *progress, Error *error);

@@ -108,8 +108,24 @@ static void folders_of_killed_processes_go(void **state) {
     unsetenv("TMPDIR");
 }
 
+/* TMPDIR may be a folder that machines share, where an unlocked folder can be in use. */
+static void folders_of_other_machines_stay(void **state) {
+    (void)state;
+    Error error = {0};
+    GnuplotFolder folder;
+    char path[PATH_MAX];
+    const char *place = fresh_folder("shared");
+    snprintf(path, sizeof path, "%s/twinbox-plot-00000000-99999999-abcdef", place);
+    assert_ok(file_make_directory(path, &error), error);
+    assert_int_equal(setenv("TMPDIR", place, 1), 0);
+    assert_ok(gnuplot_folder_make(&folder, &error) && gnuplot_folder_remove(&folder, &error), error);
+    assert_int_equal(rmdir(path), 0);
+    unsetenv("TMPDIR");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(any_name_of_tmpdir_works),
-                                       cmocka_unit_test(folders_of_killed_processes_go)};
+                                       cmocka_unit_test(folders_of_killed_processes_go),
+                                       cmocka_unit_test(folders_of_other_machines_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

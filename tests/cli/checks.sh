@@ -10,6 +10,8 @@ checks=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
+# A scheduler that runs the tests does not mean their commands.
+unset SLURM_ARRAY_TASK_ID PMI_RANK PMI_SIZE OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE SLURM_PROCID SLURM_NTASKS
 
 fail() {
     echo "FAILED: $*"
@@ -43,6 +45,31 @@ complains() {
 equal() {
     checks=$((checks + 1))
     [ "$2" = "$3" ] || fail "$1: '$2', not '$3'"
+}
+
+# unchanged FOLDER TEXT ARGUMENT...: the command is refused with this text, and the folder's files stay as they are.
+unchanged() {
+    local place=$1 text=$2 before
+    shift 2
+    before=$(find "$place" -type f | sort | xargs md5sum)
+    run 2 "$@"
+    complains "$text"
+    equal "files after '$text'" "$(find "$place" -type f | sort | xargs md5sum)" "$before"
+}
+
+# kill_shard PIECES ARGUMENT...: kills the command once that folder has two files. Sets kept: how many it has.
+kill_shard() {
+    local pieces=$1
+    shift
+    OMP_NUM_THREADS=1 "$twinbox" "$@" >out 2>err </dev/null &
+    for _ in $(seq 6000); do
+        [ "$(ls "$pieces" 2>/dev/null | wc -l)" -ge 2 ] && break
+        kill -0 $! 2>/dev/null || break
+        sleep 0.01
+    done
+    kill -KILL $!
+    wait $! 2>/dev/null
+    kept=$(ls "$pieces" | wc -l)
 }
 
 # run_undrawn ARGUMENT...: gnuplot fails, and so does the command.

@@ -7,7 +7,7 @@ run 0 --help
 [ "$(wc -l <out)" -le 24 ] || fail "--help does not fit a screen of 24 lines"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "--help is wider than 100 columns"
 names=$(awk '/^  [a-z]/ { print $1 }' out)
-equal "commands listed" "$(echo $names)" "new check simulate render page compare approve diverge figure import export dataset train chart paper stability problem solve methods"
+equal "commands listed" "$(echo $names)" "new check simulate render page compare approve diverge figure import export dataset train chart paper stability merge problem solve methods"
 
 for name in $names; do
     run 0 "$name" --help
@@ -18,7 +18,7 @@ for name in $names; do
 done
 run 0 dataset --help
 for word in relative raw-unturned contact neighbours pair net impulse points; do says "$word"; done
-for name in new check simulate render page compare approve diverge figure import export dataset train chart paper stability problem solve; do
+for name in new check simulate render page compare approve diverge figure import export dataset train chart paper stability merge problem solve; do
     run 2 "$name"
     complains "needed"
 done

@@ -42,23 +42,19 @@ static char *read_page(const PageFile *file) {
     return text;
 }
 
-static void begin(PageSet *set) {
+/* A set without parts, to write single pages. */
+static PageSet begin(void) {
     Error error = {0};
+    const PageSet set = {.folder = temporary_folder};
     temporary_path(""); /* makes the folder */
-    assert_ok(page_set_open(set, temporary_folder, 1, 3, &error), error);
-}
-
-static void end(PageSet *set) {
-    Error error = {0};
-    assert_ok(page_set_end(set, &error), error);
-    page_set_close(set);
+    assert_ok(file_make_directory(temporary_path("pages"), &error), error);
+    return set;
 }
 
 /* 48 bytes a frame: 8 MB are 174,762 frames. What is not asked for does not count. */
 static void a_long_run_has_every_second_frame(void **state) {
     (void)state;
-    PageSet set;
-    begin(&set);
+    const PageSet set = begin();
     const struct {
         int frames;
         PlayerOptions options;
@@ -75,35 +71,76 @@ static void a_long_run_has_every_second_frame(void **state) {
         assert_int_equal(strlen(text), file.bytes);
         free(text);
     }
-    end(&set);
 }
 
-/* What the part writes: rows of two pages, one of them twice, and one without. */
-static bool write_rows(void *context, FILE *lines, const Progress *progress, Error *error) {
-    (void)context, (void)progress, (void)error;
-    fputs("t:1,pages/a.html#t=1&body=2,100\nt:2,pages/a.html#t=5,100\nt:\"3,4\",pages/b.html#t=1,20\nt:4,,0\n", lines);
+typedef struct TestRow {
+    int number;
+    const char *page;
+    int bytes;
+} TestRow;
+
+static const CsvColumn columns[] = {
+    {"number", CSV_INTEGER, .offset = offsetof(TestRow, number), .maximum = 9},
+    {"page", CSV_TEXT, .offset = offsetof(TestRow, page), .maximum = 100},
+    {"bytes", CSV_INTEGER, .offset = offsetof(TestRow, bytes), .maximum = 1000},
+};
+static const CsvLayout layout = CSV_LAYOUT("listed", columns, TestRow, .max_rows = 100);
+
+/* Part 0 writes rows of two pages, one of them twice, and one without; part 1 another page. */
+static const TestRow rows[] = {{1, "pages/a.html#t=1&body=2", 100},
+                               {2, "pages/a.html#t=5", 100},
+                               {3, "pages/b.html#t=1", 20},
+                               {4, "", 0},
+                               {5, "pages/c.html#t=1", 3}};
+
+/* Where the second part fails once, and what the set has counted at its parts. */
+typedef struct Work {
+    PageSet *set;
+    bool fails;
+    int done[2];
+    int64_t bytes[2];
+} Work;
+
+static bool write_part(void *context, int part, FILE *lines, const Progress *progress, Error *error) {
+    (void)progress;
+    Work *work = context;
+    work->done[part]++;
+    work->bytes[part] = work->set->bytes;
+    if (part == 1 && work->fails) return error_input(error, "part", "fails");
+    for (int i = part == 0 ? 0 : 4; i < (part == 0 ? 4 : 5); i++)
+        assert_ok(piece_tables_print(lines, &layout, -1, &rows[i], error), *error);
     return true;
 }
 
+/* An interrupted set continues with the part that it was at, and counts the pages of those before it. */
 static void pages_are_counted_once(void **state) {
     (void)state;
-    Error error = {0};
-    for (int round = 0; round < 2; round++) { /* the second finds the stored part */
-        PageSet set;
-        begin(&set);
-        assert_ok(page_set_do(&set, "part", write_rows, NULL, &error), error);
-        assert_true(set.pages == 2 && set.bytes == 120 && set.left_out == 1);
-        if (round == 1)
-            end(&set);
-        else
-            page_set_close(&set);
+    Work work = {.fails = true};
+    for (int round = 0; round < 2; round++) {
+        Error error = {0};
+        PageSet set = begin();
+        set = (PageSet){.folder = set.folder, .layout = &layout, .parts = 2, .write = write_part, .context = &work};
+        work.set = &set;
+        assert_int_equal(page_set_make(&set, 1, NULL, &error), round == 1);
+        assert_int_equal(work.bytes[1], 120);
+        work.fails = false;
+        if (round == 0) continue;
+        assert_true(set.pages == 3 && set.bytes == 123 && set.left_out == 1);
+        assert_ok(page_set_end(&set, &error), error);
     }
+    assert_true(work.done[0] == 1 && work.done[1] == 2);
+    size_t size;
+    Error error = {0};
+    char *text = file_read(temporary_path("listed.csv"), 10000, &size, &error);
+    assert_ok(text != NULL, error);
+    assert_string_equal(text, "number,page,bytes\n1,pages/a.html#t=1&body=2,100\n2,pages/a.html#t=5,100\n"
+                              "3,pages/b.html#t=1,20\n4,,0\n5,pages/c.html#t=1,3\n");
+    free(text);
 }
 
 static void beyond_the_limit_pages_are_left_out(void **state) {
     (void)state;
-    PageSet set;
-    begin(&set);
+    PageSet set = begin();
     char link[PAGE_LINK_SIZE];
     set.bytes = PAGE_SET_MAX_BYTES - 1;
     PageFile file = write_run(&set, "last", 3, &(PlayerOptions){.last = -1});
@@ -117,7 +154,6 @@ static void beyond_the_limit_pages_are_left_out(void **state) {
     assert_int_equal(access(temporary_path("pages/beyond.html"), F_OK), -1);
     page_set_link(link, &file, 0.125, 1, 1);
     assert_string_equal(link, "");
-    end(&set);
 }
 
 int main(void) {

@@ -8,6 +8,7 @@ run 0 simulate scenes/single.yaml -o engine.npz
 run 0 simulate scenes/single.yaml --method momentum:k=3 -o momentum.npz
 run 0 dataset scenes/single.yaml --bomb-x 0:1:0.25 -o data.npz
 run 0 export engine.npz -o engine.csv
+for shard in 1/2 2/2; do run 0 stability --study bomb_speed --methods engine:k=4 -o shards --shard $shard; done
 run 0 render engine.npz --frames 0:1 --size 64x64 -o expected
 run 0 render momentum.npz --frames 0:1 --size 64x64 -o actual
 
@@ -28,6 +29,7 @@ train 0 data.npz -o out_of_train.npz --layers 10-10-2 --iterations 2
 chart 0 scenes/single.yaml --quick --launches scenes/launches/far.csv --methods engine -o out_of_chart
 paper 3 -o /proc/none --quick
 stability 0 --study bomb_speed --methods engine:k=4 -o out_of_stability
+merge 0 shards
 problem 0 scenes/stack.yaml --frame 41 -o out_of_problem.npz
 solve 0 out_of_problem.npz -m engine
 methods 0"

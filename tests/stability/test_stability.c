@@ -108,7 +108,7 @@ static void a_method_that_fits_some_values_only_does_not_apply(void **state) {
                                       .methods = "scene-net:network=" SOURCE_DIR "/scenes/networks/scene-stack.npz",
                                       .name_count = 1,
                                       .names = {"stack_height"}};
-    assert_ok(stability_run(&options, NULL, &error), error);
+    assert_ok(stability_run(&options, &(Pieces){0}, NULL, &error), error);
     char *borders = read_table(folder, "stability"), *refusals = read_table(folder, "refusals");
     assert_non_null(strstr(borders, ",height,boxes,,,not applicable\n"));
     assert_non_null(strstr(refusals, "the network is for the scene stack of 11 bodies; this one has 3"));
@@ -147,7 +147,7 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
                                       .quick = true,
                                       .name_count = 2,
                                       .names = {"bomb_speed", "speed_thickness"}};
-    return stability_run(&options, &(Progress){count_report, reports}, error);
+    return stability_run(&options, &(Pieces){0}, &(Progress){count_report, reports}, error);
 }
 
 /* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
@@ -196,7 +196,10 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
     size_t size = 0;
     FILE *lines = open_memstream(&text, &size);
     assert_non_null(lines);
-    assert_ok(stability_scan_write(&scan, lines, NULL, &error), error);
+    ScanContext context;
+    assert_ok(stability_scan_begin(&context, &scan, &error), error);
+    assert_ok(stability_scan_write(&context, 0, 2, lines, NULL, &error), error);
+    stability_scan_end(&context);
     assert_int_equal(fclose(lines), 0);
     for (int ratio = 1; ratio <= 2; ratio++) {
         char start[64];
@@ -227,7 +230,7 @@ static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
                                       .quick = true,
                                       .name_count = 1,
                                       .names = {"slope_friction"}};
-    assert_ok(stability_run(&options, NULL, &error), error);
+    assert_ok(stability_run(&options, &(Pieces){0}, NULL, &error), error);
     char *maps = read_table(folder, "maps");
     int cells = 0;
     for (const char *row = maps; (row = strstr(row, ",slope,,")) != NULL; cells++) {
@@ -253,10 +256,10 @@ static void an_interrupted_study_is_resumed(void **state) {
     assert_ok(run_shots(whole, "engine,momentum", &all, &error), error);
     some.stop_after = all.count - 3;
     assert_false(run_shots(cut, "engine,momentum", &some, &error));
-    assert_error(error, ERROR_INTERRUPTED, "speed_thickness: error: stopped; finished parts are kept");
+    assert_error(error, ERROR_INTERRUPTED, "speed_thickness 1-20: error: stopped; finished pieces are kept");
     error = (Error){0};
     assert_ok(run_shots(cut, "engine,momentum", &rest, &error), error);
-    assert_int_equal(rest.count, 2 * 5 * 4);
+    assert_int_equal(rest.count, 2 * 5 * 4 + 1); /* runs, and the piece itself */
     static const char *const names[] = {"stability", "maps", "refusals", "fallbacks", "rest"};
     for (int i = 0; i < 5; i++) {
         char *expected = read_table(whole, names[i]), *found = read_table(cut, names[i]);
@@ -270,17 +273,17 @@ static void unknown_names_and_methods_are_refused(void **state) {
     (void)state;
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
-    assert_false(stability_run(&options, NULL, &error));
+    assert_false(stability_run(&options, &(Pieces){0}, NULL, &error));
     assert_error(error, ERROR_INPUT, "'luck' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     error = (Error){0};
-    assert_false(stability_run(&options, NULL, &error));
+    assert_false(stability_run(&options, &(Pieces){0}, NULL, &error));
     assert_error(error, ERROR_INPUT, "'sorcery' is not a method");
     options.methods = "engine";
     options.scenes = "nowhere";
     error = (Error){0};
-    assert_false(stability_run(&options, NULL, &error));
+    assert_false(stability_run(&options, &(Pieces){0}, NULL, &error));
     assert_error(error, ERROR_INPUT, "nowhere/stability/bomb_speed.yaml");
 }
 

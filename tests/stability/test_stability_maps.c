@@ -172,9 +172,9 @@ static void invalid_maps_are_refused_with_their_place(void **state) {
 
 static void maps_too_large_are_refused(void **state) {
     (void)state;
-    char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 65);
+    char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 129);
     expect_refused(methods, BORDERS ONE_BORDER, "maps.csv:26:1: error: more than 24 methods");
-    expect_refused(values, BORDERS ONE_BORDER, "maps.csv:66:1: error: more than 64 values");
+    expect_refused(values, BORDERS ONE_BORDER, "maps.csv:130:1: error: more than 128 values");
     free(methods);
     free(values);
 }

@@ -1,0 +1,108 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Shards of a chart: merged, they give the tables of one process, but for times; what does not belong together is refused.
+# (Environments, records and damaged pieces: test_stability_shards.sh.)
+. "$(dirname "$0")/checks.sh"
+without_times() { "$sources/golden/without_times" "$1"; }
+
+few="$scenes/single.yaml $scenes/stack.yaml --quick --pages --methods engine:k=10,momentum:k=20,pair-net,soft-step"
+run 0 chart $few -o whole
+sed '/^error at/,$d' out >summary
+# Files, numbers and pages are those of the whole; times differ.
+same_as_whole() {
+    equal "files of $1" "$(echo $(ls "$1"))" "$(echo $( (ls whole && echo shards) | sort))"
+    cmp -s <(without_times whole/chart.csv) <(without_times "$1/chart.csv") || fail "$1: other numbers"
+    cmp -s whole/chart_pages.csv "$1/chart_pages.csv" || fail "$1: another list of pages"
+    for page in whole/pages/*; do
+        cmp -s "$page" "$1/pages/$(basename "$page")" || fail "$1: another $page"
+    done
+}
+
+# Three shards; before the last one, a merge names what is missing and writes nothing.
+run 0 chart $few -o three --shard 2/3
+says "shard 2 of 3: 4 pieces, 0 of them done before -> three/shards"
+says "when all shards are done: twinbox merge three"
+run 0 chart $few -o three --shard 1/3
+run 1 merge three
+equal "what sbatch needs" "$(cat out)" --array=3
+complains "4 of 12 pieces are missing: "
+equal "files of shards" "$(echo three/*)" three/shards
+run 0 chart $few -o three --shard 3/3
+run 0 merge three
+same_as_whole three
+equal "what a merge says" "$(sed '/^error at/,$d' out)" "$(sed s/whole/three/ summary)"
+times=$(md5sum three/chart.csv three/equal_time.csv three/chart-stack.svg)
+run 0 merge three
+same_as_whole three
+equal "tables and charts of a second merge" "$(md5sum three/chart.csv three/equal_time.csv three/chart-stack.svg)" "$times"
+run 0 merge three --times first
+equal "tables and charts of one processor" "$(md5sum three/chart.csv three/equal_time.csv three/chart-stack.svg)" "$times"
+cpu=$(/usr/bin/python3 -c 'import csv; print(next(csv.DictReader(open("three/chart.csv")))["cpu"])')
+[ "$cpu" ] || fail "no processor"
+grep -qF "Times measured on $cpu." three/chart.html || fail "chart.html does not name the processor $cpu"
+
+# Times that a merge leaves out: the scene has no chart, and the others say so.
+/usr/bin/python3 - <<'PYTHON'
+import csv
+rows = list(csv.DictReader(open("three/chart.csv")))
+with open("first.csv", "w") as file:
+    table = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+    table.writeheader()
+    for row in rows:
+        timed = row["scene"] == "single"
+        table.writerow({key: value if timed or not (key.startswith("us_") or key in ("instructions", "cpu")) else ""
+                        for key, value in row.items()})
+PYTHON
+run 0 chart first.csv -o first
+says "single -> first/chart-single.png, .svg, .pdf"
+says "stack: no chart, as its times were measured on another processor than the first"
+[ -e first/chart-stack.png ] && fail "a chart without times"
+for figure in chart-single equal_time; do
+    grep -qF "Times measured on $cpu. Those of other processors are left out." first/$figure.svg ||
+        fail "$figure.svg does not say whose times are left out"
+done
+
+# Shards that are killed again and again go on; nothing that is done is done again.
+for shard in 1 2; do
+    for _ in $(seq 40); do
+        timeout -s KILL "0.$((RANDOM % 20 + 10))" "$twinbox" chart $few -o killed --shard $shard/2 >out 2>err </dev/null &&
+            break
+    done 2>/dev/null # the shell tells of each kill
+    equal "files of killed shards" "$(echo killed/*)" killed/shards
+    run 0 chart $few -o killed --shard $shard/2
+    run 0 chart $few -o killed --shard $shard/2
+    says "shard $shard of 2: 6 pieces, 6 of them done before"
+done
+run 0 merge killed
+same_as_whole killed
+equal "files that are no pieces" "$(find killed -name '*.tmp')" ""
+
+# Refused, and nothing is changed.
+refused() { unchanged three "$@"; }
+refused "the study was begun in 3 shards, and this is one of 2" chart $few -o three --shard 1/2
+refused "three/shards/run.json: error: belongs to shards of a study: merge them (twinbox merge three)" chart $few -o three
+refused "another study: " chart $few --launches 4 -o three --shard 1/3
+refused "three/chart.csv: error: a finished chart is drawn as it is" chart three/chart.csv -o three --shard 1/3
+cp "$scenes/single.yaml" own.yaml
+sed -i "s|networks/|$scenes/networks/|" own.yaml
+own="own.yaml --quick --methods engine:k=4 -o own"
+run 0 chart $own --shard 1/2
+sed -i 's/^frames: .*/frames: 100/' own.yaml
+run 2 chart $own --shard 2/2
+complains "another study: the hash of the input own.yaml is "
+
+# The memory of a shard does not grow with the launches. (Under a sanitizer, freed memory is kept.)
+peak() {
+    /usr/bin/python3 - "$twinbox" chart "$scenes/stack.yaml" --quick --methods engine:k=4 -o "peak$1" --launches "$1" \
+        --shard 1/2 <<'PYTHON'
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+PYTHON
+}
+if ! sanitized; then
+    small=$(OMP_NUM_THREADS=2 peak 10) large=$(OMP_NUM_THREADS=2 peak 400)
+    [ $((large - small)) -lt 3000 ] || fail "a shard takes $small kB for 10 launches, and $large kB for 400"
+    checks=$((checks + 1))
+fi
+finish
