@@ -2,15 +2,19 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "dataset/dataset.h"
+#include "cli/shard_option.h"
+#include "common/file_reserve.h"
+#include "dataset/dataset_pieces.h"
 #include "npz/output_check.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 
 typedef struct Options {
     DatasetOptions dataset;
     const char *scenes[DATASET_MAX_SCENES];
-    const char *output, *launches;
+    const char *output;
+    const char *shard; /* or NULL */
 } Options;
 
 static const char *view_names[PAIR_VIEWS + 1]; /* of pair_views, in the order of PairView */
@@ -23,7 +27,7 @@ static const Option option_table[] = {
      "--random)",
      OPTION_RANGE(Options, dataset.bomb_x)},
     {"--launches", 0, "FILE.csv", "Launches of each scene instead: a table with any of the columns x,rotation,spin",
-     OPTION_PATH(Options, launches)},
+     OPTION_PATH(Options, dataset.table_path)},
     {"--random", 0, "N",
      "Further, random launches of each scene: x within +-15 m, rotation +-1.5 rad, spin +-20 rad/s (default: 0)",
      OPTION_INT(Options, dataset.random, 1, DATASET_MAX_LAUNCHES)},
@@ -43,6 +47,7 @@ static const Option option_table[] = {
     {"--seed", 0, "N",
      "Seed of the launches of --random and of the fifth of all launches that is held out (default: 1)",
      OPTION_SEED(Options, dataset.seed)},
+    {OPTION_SHARD(Options, shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -53,32 +58,85 @@ static const CommandSpec spec = {
     .inputs = {1, DATASET_MAX_SCENES, "scene"},
     .help =
         "Record a dataset to train on: for every touching pair in every step of every launch, positions, rotations and "
-        "velocities before the solve, and what the solve changed.\v"
+        "velocities before the solve, and what the solve changed. An interrupted recording continues where it "
+        "stopped.\v"
         "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
         "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse"};
 
-static bool record(const Options *options, Error *error) {
+static void print_rows(const Options *options, int64_t rows, int launches) {
+    printf("%" PRId64 " rows of %d launches -> %s\n", rows, launches, options->output);
+}
+
+/* A pipe has no folder for pieces. */
+static bool record_in_memory(const Options *options, Error *error) {
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
-    bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
-    if (ok) printf("%lld rows of %d launches -> %s\n", (long long)dataset->rows, dataset->launches, options->output);
+    const bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
+    if (ok) print_rows(options, dataset->rows, dataset->launches);
     dataset_destroy(dataset);
     return ok;
 }
 
+static bool join_pieces(const Options *options, const DatasetPieces *dataset, const Pieces *pieces, Error *error) {
+    int64_t rows;
+    const bool ok =
+        dataset_pieces_write(dataset, pieces, options->output, &rows, progress_bar_begin("writing"), error) &&
+        pieces_end(pieces, error) && dataset_check_rows(rows, error);
+    progress_bar_end();
+    if (ok) print_rows(options, rows, dataset->recording.dataset->launches);
+    return ok;
+}
+
+/* Shards share a file's pieces; a whole recording has them to itself. */
+static bool do_pieces(const Options *options, const DatasetPieces *dataset, Pieces *pieces, Error *error) {
+    FileReservation reservation;
+    const bool reserves = pieces->mode != PIECES_SHARD;
+    if (reserves && !file_reserve(&reservation, options->output, error)) return false;
+    bool ok = pieces_do(pieces, &dataset->plan, progress_bar_begin("recording launches"), error);
+    progress_bar_end();
+    if (ok && pieces->mode == PIECES_SHARD)
+        shard_option_print(pieces, options->output);
+    else if (ok)
+        ok = join_pieces(options, dataset, pieces, error);
+    return (!reserves || file_release(&reservation, error)) && ok;
+}
+
+static bool record_in_pieces(const Options *options, const PiecesRun *run, Error *error) {
+    DatasetPieces dataset;
+    Pieces pieces = {0};
+    StudyKey key = {0};
+    const bool ok =
+        dataset_pieces_make(&dataset, &options->dataset, error) && dataset_pieces_key(&dataset, &key, error) &&
+        pieces_open(&pieces, options->output, true, &key, run, error) && do_pieces(options, &dataset, &pieces, error);
+    pieces_close(&pieces);
+    study_key_free(&key);
+    dataset_pieces_free(&dataset);
+    return ok;
+}
+
+static bool record(const Options *options, const PiecesRun *run, Error *error) {
+    if (run->merge || output_is_file(options->output)) return record_in_pieces(options, run, error);
+    if (run->request.shard.count > 1)
+        return error_input(error, options->output,
+                           "shards need the name of a file, beside which their pieces are kept");
+    return record_in_memory(options, error);
+}
+
 bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
+    PiecesRun run;
     for (int v = 0; v < PAIR_VIEWS; v++) view_names[v] = pair_views[v].name;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_npz(options.output, "dataset", error)) return false;
+    if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
     options.dataset.scenes = options.scenes;
-    if (options.launches == NULL) return record(&options, error);
+    if (options.dataset.table_path == NULL) return record(&options, &run, error);
     if (options.dataset.bomb_x.count + options.dataset.random > 0)
         return error_input(error, "--launches", "cannot be combined with --bomb-x or --random");
     LaunchTable table;
-    if (!launches_read(&table, options.launches, error)) return false;
+    if (!launches_read(&table, options.dataset.table_path, error)) return false;
     options.dataset.table = &table;
-    const bool ok = record(&options, error);
+    const bool ok = record(&options, &run, error);
     launches_free(&table);
     return ok;
 }

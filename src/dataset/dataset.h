@@ -52,6 +52,7 @@ typedef struct DatasetOptions {
     int scene_count;
     /* Launches of each scene. None of the three: 201 of its family. */
     const LaunchTable *table; /* with neither of the others; NULL: none */
+    const char *table_path;   /* its file */
     FloatRange bomb_x;        /* m: swept, with the scene's rotation and spin; count may be 0 */
     int random;               /* random: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
     PairView view;

@@ -2,9 +2,9 @@
 /* Dataset files: .npz with version, kind ("dataset"), scenes (text, one name per line), view, target, labels (words),
    launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
    changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and, if recorded, context [rows, 17]. */
-#include "dataset/dataset.h"
+#include "dataset/dataset_file.h"
 
-#include "npz/npz.h"
+#include "dataset/dataset_record.h"
 
 #include <limits.h>
 #include <math.h>
@@ -15,16 +15,18 @@
 
 const char *const dataset_label_names[DATASET_LABELS + 1] = {"engine", "reference"};
 
-enum { SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE };
-
-void dataset_destroy(Dataset *dataset) {
-    if (dataset == NULL) return;
+void dataset_free_rows(Dataset *dataset) {
     free(dataset->inputs);
     free(dataset->changes);
     free(dataset->context);
     free(dataset->launch);
     free(dataset->frame);
     free(dataset->bodies);
+}
+
+void dataset_destroy(Dataset *dataset) {
+    if (dataset == NULL) return;
+    dataset_free_rows(dataset);
     free(dataset->launch_scene);
     free(dataset->launch_x);
     free(dataset->launch_rotation);
@@ -33,7 +35,7 @@ void dataset_destroy(Dataset *dataset) {
     free(dataset);
 }
 
-static void join_scenes(const Dataset *dataset, char text[SCENES_SIZE]) {
+static void join_scenes(const Dataset *dataset, char text[DATASET_SCENES_SIZE]) {
     text[0] = '\0';
     for (int s = 0; s < dataset->scene_count; s++) {
         if (s > 0) strcat(text, "\n");
@@ -41,7 +43,7 @@ static void join_scenes(const Dataset *dataset, char text[SCENES_SIZE]) {
     }
 }
 
-enum { WORDS = 6, ARRAYS = 11 };
+enum { ARRAYS = DATASET_ARRAYS - DATASET_WORDS };
 
 /* One list for writing and reading; the last may be missing. */
 static void list_arrays(const Dataset *dataset, NpzArray list[ARRAYS]) {
@@ -62,25 +64,30 @@ static void list_arrays(const Dataset *dataset, NpzArray list[ARRAYS]) {
     memcpy(list, all, sizeof all);
 }
 
-bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
-    const int32_t version = DATASET_VERSION;
-    char scenes[SCENES_SIZE];
-    join_scenes(dataset, scenes);
-    NpzArray arrays[WORDS + ARRAYS] = {
+int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays) {
+    static const int32_t version = DATASET_VERSION;
+    join_scenes(dataset, arrays->scenes);
+    const NpzArray words[DATASET_WORDS] = {
         {"version", NPZ_INT32, 0, {0}, &version},
         {"kind", NPZ_TEXT, 0, {0}, KIND},
         {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
         {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
         {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
-        {"scenes", NPZ_TEXT, 0, {0}, scenes},
+        {"scenes", NPZ_TEXT, 0, {0}, arrays->scenes},
     };
-    list_arrays(dataset, arrays + WORDS);
-    const size_t count = sizeof arrays / sizeof arrays[0];
-    return npz_write(path, arrays, dataset->context != NULL ? count : count - 1, error);
+    memcpy(arrays->list, words, sizeof words);
+    list_arrays(dataset, arrays->list + DATASET_WORDS);
+    return DATASET_ARRAYS - !context;
+}
+
+bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
+    DatasetArrays arrays;
+    const int count = dataset_arrays(dataset, dataset->context != NULL, &arrays);
+    return npz_write(path, arrays.list, (size_t)count, error);
 }
 
 static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
-    char text[SCENES_SIZE], *line = text;
+    char text[DATASET_SCENES_SIZE], *line = text;
     if (!npz_read_text(file, "scenes", text, sizeof text, error)) return false;
     while (line != NULL) {
         size_t length = strcspn(line, "\n");

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "dataset/dataset_record.h"
+
 #include "common/parallel.h"
 #include "dataset/dataset_launches.h"
 #include "dataset/dataset_rows.h"
@@ -7,12 +9,11 @@
 #include <string.h>
 
 /* State shared by the threads. */
-typedef struct Recording {
-    Scene *const *scenes;
-    const Dataset *dataset;
-    LaunchRows *launches;
-    int every; /* keep every n-th row */
-} Recording;
+typedef struct Runs {
+    const DatasetRecording *recording;
+    LaunchRows *launches; /* [count] */
+    int first, count;     /* launches of the dataset */
+} Runs;
 
 /* Drops and frees the other rows now: those of many launches would exceed memory. */
 static void thin(LaunchRows *launch, size_t every) {
@@ -23,12 +24,13 @@ static void thin(LaunchRows *launch, size_t every) {
     if (smaller != NULL) launch->rows = smaller;
 }
 
-static bool record_launch(void *context, int index, Error *error) {
-    const Recording *recording = context;
-    Scene scene = dataset_launch(recording->dataset, recording->scenes, index);
-    LaunchRows *launch = &recording->launches[index];
+static bool record_launch(void *context, int i, Error *error) {
+    const Runs *runs = context;
+    const DatasetRecording *recording = runs->recording;
+    const Scene scene = dataset_launch(recording->dataset, recording->scenes, runs->first + i);
+    LaunchRows *launch = &runs->launches[i];
     if (!dataset_record_rows(recording->dataset, &scene, launch, error)) return false;
-    if (recording->every > 1) thin(launch, (size_t)recording->every);
+    if (recording->options->every > 1) thin(launch, (size_t)recording->options->every);
     return true;
 }
 
@@ -49,9 +51,11 @@ static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t
 }
 
 /* Concatenates the rows of the launches, in order. */
-static bool gather(Dataset *dataset, LaunchRows *launches, bool context, Error *error) {
+static bool gather(const Runs *runs, Dataset *dataset, Error *error) {
+    const bool context = runs->recording->options->context;
+    LaunchRows *launches = runs->launches;
     size_t rows = 0;
-    for (int i = 0; i < dataset->launches; i++) {
+    for (int i = 0; i < runs->count; i++) {
         launches[i].start = rows;
         rows += launches[i].count;
     }
@@ -67,66 +71,77 @@ static bool gather(Dataset *dataset, LaunchRows *launches, bool context, Error *
     dataset->rows = (int64_t)rows;
     /* In parallel: most of the time is page faults at the first write. */
 #pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < dataset->launches; i++) place_rows(dataset, &launches[i], i, launches[i].start);
-    if (rows == 0) return error_input(error, "dataset", "no two bodies touched in any launch");
+    for (int i = 0; i < runs->count; i++) place_rows(dataset, &launches[i], runs->first + i, launches[i].start);
     return true;
 }
 
-static Dataset *record_scenes(const DatasetOptions *options, Scene *const *scenes, const Progress *progress,
-                              Error *error) {
-    Dataset *dataset = dataset_of_launches(options, scenes, error);
-    if (dataset == NULL) return NULL;
-    LaunchRows *launches = calloc((size_t)dataset->launches, sizeof *launches);
-    if (launches == NULL) error_memory(error, "dataset");
-    Recording recording = {.scenes = scenes, .dataset = dataset, .launches = launches, .every = options->every};
-    const ParallelWork work = {record_launch, &recording};
-    bool ok = launches != NULL && parallel_for(&work, dataset->launches, "recorded launches", progress, error) &&
-              gather(dataset, launches, options->context, error);
-    for (int i = 0; launches != NULL && i < dataset->launches; i++) free(launches[i].rows);
-    free(launches);
-    if (ok) return dataset;
-    dataset_destroy(dataset);
-    return NULL;
+bool dataset_record_launches(const DatasetRecording *recording, int first, int end, Dataset *part,
+                             const Progress *progress, Error *error) {
+    const int count = end - first;
+    const Runs runs = {recording, calloc((size_t)count, sizeof *runs.launches), first, count};
+    if (runs.launches == NULL) return error_memory(error, "dataset");
+    const ParallelWork work = {record_launch, (void *)&runs};
+    const bool ok = parallel_for(&work, count, "recorded launches", progress, error) && gather(&runs, part, error);
+    for (int i = 0; i < count; i++) free(runs.launches[i].rows);
+    free(runs.launches);
+    return ok;
+}
+
+bool dataset_check_rows(int64_t rows, Error *error) {
+    return rows > 0 || error_input(error, "dataset", "no two bodies touched in any launch");
+}
+
+static bool check_counts(const DatasetOptions *options, Error *error) {
+    if (options->scene_count < 1 || options->scene_count > DATASET_MAX_SCENES)
+        return error_input(error, "dataset", "%d scenes; expected 1 to %d", options->scene_count, DATASET_MAX_SCENES);
+    const int launches = dataset_launches_each(options);
+    return (launches >= 5 && launches <= DATASET_MAX_LAUNCHES) ||
+           error_input(error, "dataset",
+                       "%d launches per scene; expected at least 5, to hold out a fifth, and at most %d", launches,
+                       DATASET_MAX_LAUNCHES);
+}
+
+static bool check_target(const DatasetOptions *options, Error *error) {
+    if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE)
+        return error_input(error, "dataset",
+                           "the target impulse is the change by a sweep of the engine; the reference has none");
+    if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS)
+        return error_input(error, "dataset", "the target impulse has no view neighbours: they change at every visit");
+    if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact)
+        return error_input(error, "dataset",
+                           "the target points needs the view contact or neighbours, whose inputs have the warm start");
+    return !options->context || options->target == TARGET_PAIR ||
+           error_input(error, "dataset", "the context is for laws on the target pair; the target %s has none",
+                       pair_target_names[options->target]);
+}
+
+bool dataset_recording_begin(DatasetRecording *recording, const DatasetOptions *options, Error *error) {
+    *recording = (DatasetRecording){.options = options};
+    if (!check_counts(options, error) || !check_target(options, error)) return false;
+    for (int i = 0; i < options->scene_count; i++) {
+        const Scene *scene = recording->scenes[i] = scene_read(options->scenes[i], error);
+        if (scene == NULL) return false;
+        if (!scene->bomb.present) return error_input(error, options->scenes[i], "the scene has no bomb to launch");
+    }
+    recording->dataset = dataset_of_launches(options, recording->scenes, error);
+    return recording->dataset != NULL;
+}
+
+void dataset_recording_end(DatasetRecording *recording) {
+    dataset_destroy(recording->dataset);
+    for (int i = 0; i < DATASET_MAX_SCENES; i++) scene_destroy(recording->scenes[i]);
+    *recording = (DatasetRecording){.options = NULL};
 }
 
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error) {
-    if (options->scene_count < 1 || options->scene_count > DATASET_MAX_SCENES) {
-        error_input(error, "dataset", "%d scenes; expected 1 to %d", options->scene_count, DATASET_MAX_SCENES);
-        return NULL;
+    DatasetRecording recording;
+    Dataset *dataset = NULL;
+    if (dataset_recording_begin(&recording, options, error) &&
+        dataset_record_launches(&recording, 0, recording.dataset->launches, recording.dataset, progress, error) &&
+        dataset_check_rows(recording.dataset->rows, error)) {
+        dataset = recording.dataset;
+        recording.dataset = NULL;
     }
-    int launches = dataset_launches_each(options);
-    if (launches < 5 || launches > DATASET_MAX_LAUNCHES) {
-        error_input(error, "dataset", "%d launches per scene; expected at least 5, to hold out a fifth, and at most %d",
-                    launches, DATASET_MAX_LAUNCHES);
-        return NULL;
-    }
-    if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE) {
-        error_input(error, "dataset",
-                    "the target impulse is the change by a sweep of the engine; the reference has none");
-        return NULL;
-    }
-    if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS) {
-        error_input(error, "dataset", "the target impulse has no view neighbours: they change at every visit");
-        return NULL;
-    }
-    if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact) {
-        error_input(error, "dataset",
-                    "the target points needs the view contact or neighbours, whose inputs have the warm start");
-        return NULL;
-    }
-    if (options->context && options->target != TARGET_PAIR) {
-        error_input(error, "dataset", "the context is for laws on the target pair; the target %s has none",
-                    pair_target_names[options->target]);
-        return NULL;
-    }
-    Scene *scenes[DATASET_MAX_SCENES] = {NULL};
-    bool ok = true;
-    for (int i = 0; ok && i < options->scene_count; i++) {
-        scenes[i] = scene_read(options->scenes[i], error);
-        ok = scenes[i] != NULL &&
-             (scenes[i]->bomb.present || error_input(error, options->scenes[i], "the scene has no bomb to launch"));
-    }
-    Dataset *dataset = ok ? record_scenes(options, scenes, progress, error) : NULL;
-    for (int i = 0; i < options->scene_count; i++) scene_destroy(scenes[i]);
+    dataset_recording_end(&recording);
     return dataset;
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Copies items of `size` bytes; NULL (and no copy) if there are none. */
+/* Copies items of `size` bytes; NULL stays NULL. */
 static bool copy(void **to, const void *from, size_t count, size_t size) {
     if (from == NULL) return true;
     *to = malloc((count + 1) * size);

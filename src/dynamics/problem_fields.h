@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The arrays that a problem file holds for bodies and contacts. Only problem_read.c and problem_write.c include
+/* The arrays that a problem file holds for bodies and contacts. Only problem_read.c, problem_write.c and problem_bytes.c include
    this. */
 #pragma once
 #include "dynamics/problem_file.h"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_training/impact_problems.h"
 
+#include "common/memory_stream.h"
 #include "common/array.h"
+#include "dynamics/problem_bytes.h"
 #include "simulate/phases.h"
 #include "simulate/simulate.h"
 
@@ -113,5 +115,34 @@ bool impact_problems_record(ImpactProblems *problems, const Scene *scene, const 
     bool ok = run_launches(problems, scene, bomb_x, error) && solve_references(problems, progress, error);
     if (ok && problems->count == 0) ok = error_input(error, scene->name, "no reference converged");
     if (!ok) impact_problems_free(problems);
+    return ok;
+}
+
+void impact_problems_write(const ImpactProblems *problems, FILE *out) {
+    for (size_t i = 0; i < problems->count; i++) {
+        const ImpactProblem *item = &problems->items[i];
+        const int32_t impact = item->impact;
+        fwrite(&impact, sizeof impact, 1, out);
+        problem_bytes_write(&item->problem, out);
+        stream_put(out, item->reference, sizeof *item->reference, (size_t)item->problem.body_count);
+    }
+}
+
+static bool read_item(ImpactProblems *problems, ProblemBytes *bytes, Error *error) {
+    int32_t impact = 0;
+    ContactProblem problem = {0};
+    bool ok = problem_bytes_take(bytes, &impact, 1, sizeof impact, error) && problem_bytes_read(&problem, bytes, error);
+    if (ok && impact != 0 && impact != 1) ok = problem_bytes_refuse(bytes, error);
+    ok = ok && (impact_problems_add(problems, &problem, NULL, impact == 1) || error_memory(error, bytes->path));
+    ok = ok && problem_bytes_take(bytes, problems->items[problems->count - 1].reference, (size_t)problem.body_count,
+                                  sizeof(ReferenceVelocity), error);
+    problem_bytes_free(&problem);
+    return ok;
+}
+
+bool impact_problems_read(ImpactProblems *problems, const char *data, size_t size, const char *path, Error *error) {
+    ProblemBytes bytes = {data, size, path};
+    bool ok = true;
+    while (ok && bytes.left > 0) ok = read_item(problems, &bytes, error);
     return ok;
 }

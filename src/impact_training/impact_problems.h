@@ -8,6 +8,8 @@
 #include "reference/reference.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
+
 enum { AFTER_STEP = 6 }; /* all impact frames (simulate/phases.h) and every sixth frame after */
 
 typedef struct ImpactProblem {
@@ -34,3 +36,9 @@ bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from);
    touches a box, or progress stops the recording. */
 bool impact_problems_record(ImpactProblems *problems, const Scene *scene, const FloatRange *bomb_x,
                             const Progress *progress, Error *error);
+
+/* The problems as bytes. Whether writing failed is for the stream to tell. */
+void impact_problems_write(const ImpactProblems *problems, FILE *out);
+
+/* Appends what impact_problems_write() wrote. ERROR_INPUT, naming the file `path`, if the bytes are damaged. */
+bool impact_problems_read(ImpactProblems *problems, const char *data, size_t size, const char *path, Error *error);

@@ -1,100 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_training/scene_training.h"
 
+#include "impact_training/scene_recording.h"
 #include "impact_training/slot_fit.h"
-#include "impact_training/slot_rollout.h"
-#include "simulate/launch_check.h"
 #include "solvers/momentum.h"
-#include "solvers/scene_net.h"
-#include "solvers/solvers.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
-enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
-
-/* Of turned launches, unless the scene has a family of them; rad, rad/s. */
-static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
-/* RMS residual of the warm start over the contacts: below it at rest, above it during a shock. */
-static const float gate = 0.3f; /* m/s */
-/* The setting `near` (residual) of scene-net in the runs that record training samples. */
-static const float rollout_near = 0.05f; /* m/s */
 static const double impulse_weight = 0.02, first_rate = 3e-3;
 
 typedef struct Trainer {
     const Scene *scene;
     const SceneTraining *training;
-    Launch *launches; /* [launches] of the round */
-    gsl_rng *generator;
+    SceneRecording recording;
     SlotSamples samples, held_out;
     SlotNetwork *network;
-    int launches_done;
     ProgressStage stage;
     Progress progress; /* of the stage */
 } Trainer;
-
-static float draw(Trainer *trainer, const SceneSpan *span, const SceneSpan *otherwise) {
-    return scene_span_at(scene_span_varies(span) ? span : otherwise, gsl_rng_uniform(trainer->generator));
-}
-
-/* Every second launch has a random rotation and spin. The mass is the scene's: a network is for one mass. */
-static void draw_launches(Trainer *trainer, int count) {
-    const SceneBomb *bomb = &trainer->scene->bomb;
-    for (int i = 0; i < count; i++) {
-        Launch launch = launch_of(trainer->scene);
-        launch.x = draw(trainer, &bomb->x, &bomb->x);
-        if (i % 2 == 1) {
-            launch.rotation = draw(trainer, &bomb->rotation, &turned);
-            launch.spin = draw(trainer, &bomb->spin, &spinning);
-        }
-        trainer->launches[i] = launch;
-    }
-}
-
-typedef enum Driver { BY_MOMENTUM, BY_REFERENCE, BY_NETWORK } Driver;
-
-typedef struct DriverContext {
-    Driver driver;
-    const SlotNetwork *network;
-} DriverContext;
-
-static bool make_driver(void *context, ContactSolver *solver, Error *error) {
-    const DriverContext *run = context;
-    if (run->driver == BY_NETWORK) return scene_net_make(solver, run->network, rollout_near, error);
-    Settings settings;
-    const ContactSolverKind *kind = run->driver == BY_MOMENTUM ? &solver_momentum : &solver_reference;
-    if (!settings_parse(&settings, run->driver == BY_MOMENTUM ? "k=20" : "", kind->description.settings,
-                        kind->description.name, error))
-        return false;
-    void *state = kind->create(&settings, error);
-    if (state == NULL) return false;
-    *solver = (ContactSolver){kind, state};
-    return true;
-}
 
 static void next_stage(Trainer *trainer, double share) {
     trainer->stage.begin += trainer->stage.share;
     trainer->stage.share = share;
 }
 
-/* Runs launches first .. first + count - 1 of the round with a driver and labels their samples. */
-static bool record(Trainer *trainer, SlotSamples *samples, Driver driver, int first, int count, Error *error) {
-    DriverContext run = {driver, trainer->network};
-    const SlotRollout rollout = {.scene = trainer->scene,
-                                 .launches = trainer->launches + first,
-                                 .launch_count = count,
-                                 .first_launch = trainer->launches_done,
-                                 .steps = trainer->scene->bomb.impact_frames + STEPS_AFTER,
-                                 .gate = gate,
-                                 .make_solver = make_driver,
-                                 .context = &run};
-    const int had = samples->count;
-    trainer->launches_done += count;
-    return slot_rollout(&rollout, samples, NULL, error) && slot_samples_label(samples, had, &trainer->progress, error);
+static bool take(Trainer *trainer, SceneSet set, SlotSamples *samples, double share, Error *error) {
+    next_stage(trainer, share);
+    return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
 }
 
 /* The range of each input over the samples, with a margin. */
@@ -113,16 +47,14 @@ static void find_bounds(SlotNetwork *network, const SlotSamples *samples) {
 
 static bool first_round(Trainer *trainer, Error *error) {
     const SceneTraining *training = trainer->training;
-    const int half = training->launches / 2;
-    next_stage(trainer, 0.1);
-    if (!record(trainer, &trainer->samples, BY_MOMENTUM, 0, half, error)) return false;
-    next_stage(trainer, 0.1);
-    if (!record(trainer, &trainer->samples, BY_REFERENCE, half, training->launches - half, error)) return false;
+    if (!take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
+        !take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
+        return false;
     trainer->network = slot_network_from_samples(&trainer->samples, &training->widths, training->seed, error);
     if (trainer->network == NULL) return false;
     SlotNetwork *network = trainer->network;
     snprintf(network->scene, sizeof network->scene, "%s", trainer->scene->name);
-    network->gate = gate;
+    network->gate = SCENE_RECORDING_GATE;
     network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
     network->sweeps = training->sweeps;
     for (int s = 0; s < training->sweeps && training->momentum; s++)
@@ -132,9 +64,8 @@ static bool first_round(Trainer *trainer, Error *error) {
 
 static bool next_round(Trainer *trainer, double share, Error *error) {
     const int had = trainer->samples.count;
-    draw_launches(trainer, trainer->training->launches);
     next_stage(trainer, share);
-    return record(trainer, &trainer->samples, BY_NETWORK, 0, trainer->training->launches, error) &&
+    return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
            slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
 
@@ -160,37 +91,14 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     return score(trainer, round, error);
 }
 
-/* Held-out launches have their own random seed and are run by momentum. */
-static bool hold_out(Trainer *trainer, Error *error) {
-    gsl_rng_set(trainer->generator, (unsigned long)trainer->training->seed + HELD_OUT_SEED);
-    const int count = trainer->training->launches < HELD_OUT_LAUNCHES ? trainer->training->launches : HELD_OUT_LAUNCHES;
-    draw_launches(trainer, count);
-    trainer->stage.share = 0.02;
-    return launches_check(trainer->scene, trainer->launches, count, error) &&
-           record(trainer, &trainer->held_out, BY_MOMENTUM, 0, count, error);
-}
-
-/* Draws the launches of all rounds once before the work: the last round must not be the first to be refused. */
-static bool check_rounds(Trainer *trainer, Error *error) {
-    const SceneTraining *training = trainer->training;
-    gsl_rng_set(trainer->generator, (unsigned long)training->seed);
-    bool ok = true;
-    for (int round = 0; ok && round < training->rounds; round++) {
-        draw_launches(trainer, training->launches);
-        ok = launches_check(trainer->scene, trainer->launches, training->launches, error);
-    }
-    return ok;
-}
-
 static bool train(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds;
     const double share = 0.78 / rounds;
-    if (!check_rounds(trainer, error) || !hold_out(trainer, error)) return false;
-    gsl_rng_set(trainer->generator, (unsigned long)trainer->training->seed);
-    draw_launches(trainer, trainer->training->launches);
-    if (!first_round(trainer, error) || !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error))
+    if (!scene_recording_begin(&trainer->recording, trainer->scene, trainer->training, error) ||
+        !take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) || !first_round(trainer, error) ||
+        !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
+        !fit_round(trainer, 0, share, error))
         return false;
-    if (!fit_round(trainer, 0, share, error)) return false;
     for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {
         Error failure = {0};
         if (next_round(trainer, 0.3 * share, &failure)) {
@@ -205,26 +113,12 @@ static bool train(Trainer *trainer, Error *error) {
 
 SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
                                 Error *error) {
-    if (!scene->bomb.present) {
-        error_input(error, scene->name, "has no bomb to launch");
-        return NULL;
-    }
-    if (!scene_span_varies(&scene->bomb.x)) {
-        error_input(error, scene->name, "the bomb has one x; write a family of launches, x: {from: A, to: B}");
-        return NULL;
-    }
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
-    const int launches = training->launches > HELD_OUT_LAUNCHES ? training->launches : HELD_OUT_LAUNCHES;
-    trainer.launches = malloc((size_t)launches * sizeof *trainer.launches);
-    gsl_set_error_handler_off(); /* its default aborts */
-    trainer.generator = gsl_rng_alloc(gsl_rng_mt19937);
-    bool ok = trainer.launches != NULL && trainer.generator != NULL;
-    ok = ok ? train(&trainer, error) : error_memory(error, "scene-net");
+    bool ok = train(&trainer, error);
     if (ok && training->verdict != NULL)
         ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
-    free(trainer.launches);
-    if (trainer.generator != NULL) gsl_rng_free(trainer.generator);
+    scene_recording_end(&trainer.recording);
     slot_samples_free(&trainer.samples);
     slot_samples_free(&trainer.held_out);
     if (ok) return trainer.network;

@@ -9,6 +9,7 @@
 #include "impact_training/scene_net_score.h"
 #include "impact_training/scene_net_verdict.h"
 #include "impact_training/slot_network_init.h"
+#include "pieces/pieces.h"
 #include "scene/scene.h"
 
 typedef struct SceneTraining {
@@ -23,6 +24,7 @@ typedef struct SceneTraining {
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
     SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
+    const Pieces *recorded;   /* what the first round runs is read from these (scene_recording.h); or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_training/slot_samples.h"
 
+#include "common/memory_stream.h"
 #include "common/array.h"
 #include "common/parallel.h"
+#include "dynamics/problem_bytes.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -58,19 +60,25 @@ typedef struct Labels {
     Reference *references; /* [threads] */
 } Labels;
 
-static bool label(void *context, int i, Error *error) {
-    const Labels *labels = context;
-    SlotSample *sample = &labels->items[i];
-    Reference *reference = &labels->references[omp_get_thread_num()];
+/* Everything of a label but the goal's impulses. */
+static bool begin_label(SlotSample *sample, const ReferenceVelocity *velocities) {
     const size_t bodies = (size_t)sample->problem.body_count, contacts = (size_t)sample->problem.contact_count;
-    if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
     sample->reference = malloc(bodies * sizeof *sample->reference + 1);
     sample->goal = malloc(contacts * sizeof *sample->goal + 1);
     if (sample->reference == NULL || sample->goal == NULL ||
         !unrolled_problem_make(&sample->unrolled, &sample->problem))
-        return error_memory(error, "labels");
-    memcpy(sample->reference, reference->velocities, bodies * sizeof *sample->reference);
-    for (size_t k = 0; k < contacts; k++)
+        return false;
+    memcpy(sample->reference, velocities, bodies * sizeof *sample->reference);
+    return true;
+}
+
+static bool label(void *context, int i, Error *error) {
+    const Labels *labels = context;
+    SlotSample *sample = &labels->items[i];
+    Reference *reference = &labels->references[omp_get_thread_num()];
+    if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
+    if (!begin_label(sample, reference->velocities)) return error_memory(error, "labels");
+    for (int k = 0; k < sample->problem.contact_count; k++)
         sample->goal[k] = (ContactImpulse){(float)reference->impulses[k].normal, (float)reference->impulses[k].tangent};
     return true;
 }
@@ -100,4 +108,45 @@ bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetw
         ok = ok && fine;
     }
     return ok || error_memory(error, "samples");
+}
+
+void slot_samples_write(const SlotSamples *samples, FILE *out) {
+    for (int i = 0; i < samples->count; i++) {
+        const SlotSample *sample = &samples->items[i];
+        const int32_t place[2] = {sample->launch, sample->since};
+        fwrite(place, sizeof place, 1, out);
+        problem_bytes_write(&sample->problem, out);
+        stream_put(out, sample->reference, sizeof *sample->reference, (size_t)sample->problem.body_count);
+        stream_put(out, sample->goal, sizeof *sample->goal, (size_t)sample->problem.contact_count);
+    }
+}
+
+/* The numbers of reference and goal are not checked: a reference that diverged is NaN in the training, too. */
+static bool read_label(SlotSample *sample, const ReferenceVelocity *velocities, ProblemBytes *bytes, Error *error) {
+    return (begin_label(sample, velocities) || error_memory(error, bytes->path)) &&
+           problem_bytes_take(bytes, sample->goal, (size_t)sample->problem.contact_count, sizeof *sample->goal, error);
+}
+
+static bool read_sample(SlotSamples *samples, ProblemBytes *bytes, int bodies, Error *error) {
+    int32_t place[2];
+    ContactProblem problem = {0};
+    ReferenceVelocity *velocities = malloc((size_t)bodies * sizeof *velocities);
+    bool ok = velocities != NULL || error_memory(error, bytes->path);
+    ok = ok && problem_bytes_take(bytes, place, 1, sizeof place, error) && problem_bytes_read(&problem, bytes, error);
+    if (ok && (place[0] < 0 || place[1] < 0 || problem.body_count != bodies || problem.bomb < 0))
+        ok = problem_bytes_refuse(bytes, error);
+    ok = ok && problem_bytes_take(bytes, velocities, (size_t)bodies, sizeof *velocities, error) &&
+         (slot_samples_add(samples, &problem, place[0], place[1]) || error_memory(error, bytes->path)) &&
+         read_label(&samples->items[samples->count - 1], velocities, bytes, error);
+    problem_bytes_free(&problem);
+    free(velocities);
+    return ok;
+}
+
+bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path,
+                       Error *error) {
+    ProblemBytes bytes = {data, size, path};
+    bool ok = true;
+    while (ok && bytes.left > 0) ok = read_sample(samples, &bytes, bodies, error);
+    return ok;
 }

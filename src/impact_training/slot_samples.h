@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 typedef struct SlotSample {
     ContactProblem problem; /* owns its arrays */
@@ -43,3 +44,11 @@ bool slot_samples_label(SlotSamples *samples, int first, const Progress *progres
 /* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
    has projections. */
 bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
+
+/* Labelled samples as bytes, without view and inputs, which follow from the network. Whether writing failed is for the stream
+   to tell. */
+void slot_samples_write(const SlotSamples *samples, FILE *out);
+
+/* Appends what slot_samples_write() wrote. ERROR_INPUT, naming the file `path`, if the bytes are damaged, or the problems do not
+   have a bomb and `bodies` bodies. */
+bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path, Error *error);

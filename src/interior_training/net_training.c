@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_training/net_training.h"
 
-#include "interior_training/recording.h"
 #include "common/split_mix.h"
+#include "interior_training/first_round.h"
+#include "interior_training/recording.h"
 #include "solvers/interior_net.h"
-#include "solvers/solvers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-
-enum { HELD_OUT_SEED = 7919, HELD_OUT_PART = 5 }; /* a fifth as many scenes */
 
 static const double first_rate = 0.01, first_weight = 0.6;
 
 typedef struct Trainer {
     const NetTraining *training;
+    FirstRound first_round;
     NetState state;
     NetFit fit;
     ImpactProblems problems, held_out;
@@ -22,23 +21,9 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-/* Who runs the scenes. */
-typedef struct Driver {
-    int round;
-    InteriorNet net;
-} Driver;
-
 static bool make_solver(void *context, int number, ContactSolver *solver, Error *error) {
-    const Driver *driver = context;
-    if (driver->round > 0) return interior_net_make(solver, &driver->net, error);
-    const ContactSolverKind *kind = number % 2 == 0 ? &solver_interior : &solver_momentum;
-    Settings settings;
-    if (!settings_parse(&settings, kind == &solver_momentum ? "k=30" : "", kind->description.settings,
-                        kind->description.name, error))
-        return false;
-    void *state = kind->create(&settings, error);
-    if (state != NULL) *solver = (ContactSolver){kind, state};
-    return state != NULL;
+    (void)number;
+    return interior_net_make(solver, context, error);
 }
 
 /* As they would be read from a file. */
@@ -54,19 +39,17 @@ static void next_stage(Trainer *trainer, double share) {
 /* Every problem of the round's scenes. */
 static bool record(Trainer *trainer, int round, Error *error) {
     const NetTraining *training = trainer->training;
-    Driver driver = {.round = round};
-    round_weights(trainer->state.drivers[round], &driver.net);
-    const Recording recording = {training->seed, round * training->scenes, training->scenes, make_solver, &driver};
+    if (round == 0)
+        return first_round_take(&trainer->first_round, FIRST_TRAINED, &trainer->problems, &trainer->progress, error);
+    InteriorNet net = {0};
+    round_weights(trainer->state.drivers[round], &net);
+    const Recording recording = {training->seed, round * training->scenes, training->scenes, make_solver, &net};
     return recording_run(&recording, &trainer->problems, &trainer->progress, error);
 }
 
 static bool hold_out(Trainer *trainer, Error *error) {
-    const NetTraining *training = trainer->training;
-    Driver driver = {.round = 0};
-    const Recording recording = {training->seed + HELD_OUT_SEED, 0, training->scenes / HELD_OUT_PART + 1, make_solver,
-                                 &driver};
     ImpactProblems all = {0};
-    bool ok = recording_run(&recording, &all, &trainer->progress, error);
+    bool ok = first_round_take(&trainer->first_round, FIRST_HELD_OUT, &all, &trainer->progress, error);
     for (size_t i = 0; ok && i < all.count; i++)
         if (all.items[i].impact)
             ok = impact_problems_add(&trainer->held_out, &all.items[i].problem, all.items[i].reference, true) ||
@@ -172,6 +155,7 @@ bool net_training_run(const NetTraining *training, InteriorNet *net, const Progr
     Trainer *trainer = calloc(1, sizeof *trainer);
     if (trainer == NULL) return error_memory(error, "interior-net");
     trainer->training = training;
+    first_round_make(&trainer->first_round, training);
     trainer->stage.whole = progress;
     trainer->progress = (Progress){progress_stage, &trainer->stage};
     bool ok = run(trainer, error);

@@ -6,6 +6,7 @@
 #pragma once
 #include "common/progress.h"
 #include "interior_training/net_fit.h"
+#include "pieces/pieces.h"
 
 typedef struct NetScore {
     int round, epoch, problems;
@@ -21,6 +22,7 @@ typedef struct NetTraining {
     const char *command;    /* names the training: only the same command resumes it */
     const char *state_path; /* where the state is stored, and read from if it exists. The caller removes it once it has
                                stored the network */
+    const Pieces *recorded; /* what the first round runs is read from these (first_round.h); or NULL */
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const NetScore *score);
     void *context;

@@ -35,6 +35,12 @@ static bool is_standard_output(const struct stat *status) {
     return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
 }
 
+bool output_is_file(const char *path) {
+    struct stat status;
+    return !path_is_standard(path) &&
+           (stat(path, &status) != 0 || (S_ISREG(status.st_mode) && !is_standard_output(&status)));
+}
+
 bool output_check_file(const char *path, const char *ending, Error *error) {
     struct stat status;
     char folder[PATH_MAX];

@@ -13,5 +13,8 @@ bool output_check_file(const char *path, const char *ending, Error *error);
    of another kind: it must not be lost by a mistyped name. */
 bool output_check_npz(const char *path, const char *kind, Error *error);
 
+/* The output is, or becomes, a file of that name: not standard output, a device or a pipe. Its pieces can be kept beside it. */
+bool output_is_file(const char *path);
+
 /* A folder exists and takes new files, or can be made with its parents. */
 bool output_check_folder(const char *path, Error *error);

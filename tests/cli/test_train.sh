@@ -10,9 +10,9 @@ equal "options of pair-net" "$(listed 'pair-net (default): ')" \
     "from hidden iterations laws layers loss optimizer output-activation scale seed "
 equal "options of momentum-schedule" "$(listed 'momentum-schedule: ')" "bomb-x iterations seed "
 equal "options of scene-net" "$(listed 'scene-net: ')" \
-    "iterations launches momentum rounds seed smallest sweeps width within "
+    "iterations launches momentum rounds seed shard smallest sweeps width within "
 says "  or:  twinbox train [OPTION...] --kind scene-net SCENE"
-equal "options of interior-net" "$(listed 'interior-net: ')" "epochs rounds scenes seed "
+equal "options of interior-net" "$(listed 'interior-net: ')" "epochs rounds scenes seed shard "
 says "  or:  twinbox train [OPTION...] --kind interior-net"
 equal "options of sain" "$(listed 'sain: ')" "launches rounds seed steps with "
 equal "options of hybrid" "$(listed 'hybrid: ')" "launches limit seed steps tolerance "

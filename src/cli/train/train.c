@@ -85,7 +85,8 @@ static const TrainKind *find_kind(const char *name, Error *error) {
 }
 
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {
-    *request = (TrainRequest){find_kind(options->kind, error), options->input, options->output, {NULL}};
+    *request =
+        (TrainRequest){.kind = find_kind(options->kind, error), .input = options->input, .output = options->output};
     if (request->kind == NULL) return false;
     if ((request->input == NULL) != (request->kind->input == NULL))
         return request->input == NULL
@@ -118,11 +119,13 @@ bool command_train(int argc, char **argv, Error *error) {
                 "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};
     TrainRequest request;
     if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error) ||
-        !output_check_npz(request.output, request.kind->file_kind, error))
+        !output_check_npz(request.output, request.kind->file_kind, error) ||
+        !train_take_shard(&request, argc, argv, error))
         return false;
-    char command[TEXT_SIZE];
+    char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
+    if (train_is_shard(&request)) return request.kind->train(&request, error);
     FileReservation reservation;
     if (!file_reserve(&reservation, request.output, error)) return false;
     const bool done = request.kind->train(&request, error);

@@ -3,7 +3,7 @@
 #include "cli/train/train.h"
 #include "common/standard_io.h"
 #include "common/file.h"
-#include "interior_training/net_training.h"
+#include "interior_training/first_round.h"
 
 #include <stdio.h>
 
@@ -16,6 +16,7 @@ static const Option options[] = {
     {"--epochs", 0, "N", "Epochs of each round", OPTION_INT(NetTraining, epochs, 1, 100000), .standard = "20"},
     {"--seed", 0, "N", "Seed of the scenes and of the initial weights", OPTION_SEED(NetTraining, seed),
      .standard = "1"},
+    {TRAIN_SHARD},
     {0}};
 
 static void print_score(void *context, const NetScore *score) {
@@ -29,10 +30,23 @@ static void print_score(void *context, const NetScore *score) {
     fflush(stdout);
 }
 
+static bool train(const TrainRequest *request, const NetTraining *training, Error *error) {
+    InteriorNet net;
+    printf("held-out impacts, velocity error in m/s after 3 and 5 iterations, without the network in brackets\n"
+           "round  problems     loss   mean             95%%              mean             95%%\n");
+    bool ok = net_training_run(training, &net, progress_bar_begin("training"), error);
+    progress_bar_end();
+    snprintf(net.command, sizeof net.command, "%s", training->command);
+    ok = ok && interior_net_write(&net, request->output, error) && file_remove(training->state_path, error);
+    if (ok) printf("%d weights -> %s\n", INTERIOR_NET_WEIGHTS, request->output);
+    return ok;
+}
+
 static bool run(const TrainRequest *request, Error *error) {
     NetTraining training = {.on_score = print_score};
-    InteriorNet net;
-    char command[sizeof net.command], state[PATH_SIZE];
+    FirstRound first_round;
+    Pieces pieces = {0};
+    char command[sizeof((InteriorNet *)NULL)->command], state[PATH_SIZE];
     if (path_is_standard(request->output))
         return error_input(error, "-o", "interior-net keeps its state beside the network; give the network a name");
     if (!train_read(request, &training, error) || !file_path(state, sizeof state, error, "%s.part", request->output))
@@ -40,13 +54,11 @@ static bool run(const TrainRequest *request, Error *error) {
     train_describe(request, command, sizeof command);
     training.command = command;
     training.state_path = state;
-    printf("held-out impacts, velocity error in m/s after 3 and 5 iterations, without the network in brackets\n"
-           "round  problems     loss   mean             95%%              mean             95%%\n");
-    bool ok = net_training_run(&training, &net, progress_bar_begin("training"), error);
-    progress_bar_end();
-    snprintf(net.command, sizeof net.command, "%s", command);
-    ok = ok && interior_net_write(&net, request->output, error) && file_remove(state, error);
-    if (ok) printf("%d weights -> %s\n", INTERIOR_NET_WEIGHTS, request->output);
+    first_round_make(&first_round, &training);
+    bool ok = train_pieces(request, &first_round.plan, &pieces, error);
+    if (ok && pieces.mode == PIECES_MERGE) training.recorded = &pieces;
+    if (ok && pieces.mode != PIECES_SHARD) ok = train(request, &training, error);
+    pieces_close(&pieces);
     return ok;
 }
 

@@ -2,7 +2,7 @@
 #include "cli/interrupt.h"
 #include "cli/progress_bar.h"
 #include "cli/train/train.h"
-#include "impact_training/scene_training.h"
+#include "impact_training/scene_recording.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -34,6 +34,7 @@ static const Option options[] = {
     {"--smallest", 0, NULL, "Train the smallest width whose held-out error is at most that of --within",
      OPTION_FLAG(Options, smallest)},
     {"--within", 0, "E", "Held-out error to reach, m/s; only with --smallest", OPTION_DOUBLE(Options, within, 0, 1000)},
+    {TRAIN_SHARD},
     {0}};
 
 static bool read_momentum(const Option *option, const char *text, void *value, Error *error) {
@@ -122,6 +123,19 @@ static bool train_and_store(const Scene *scene, const TrainRequest *request, Opt
     return ok;
 }
 
+/* A shard records and does not train; every width that a merge trains reads the same records. */
+static bool record_or_train(const Scene *scene, const TrainRequest *request, Options *given, Error *error) {
+    SceneRecording recording;
+    Pieces pieces = {0};
+    bool ok = scene_recording_begin(&recording, scene, &given->training, error) &&
+              train_pieces(request, &recording.plan, &pieces, error);
+    if (ok && pieces.mode == PIECES_MERGE) given->training.recorded = &pieces;
+    if (ok && pieces.mode != PIECES_SHARD) ok = train_and_store(scene, request, given, error);
+    pieces_close(&pieces);
+    scene_recording_end(&recording);
+    return ok;
+}
+
 static bool run(const TrainRequest *request, Error *error) {
     Options given = {.training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = print_score},
                      .within = -1};
@@ -132,7 +146,7 @@ static bool run(const TrainRequest *request, Error *error) {
     if (given.smallest != (given.within >= 0))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
     Scene *scene = scene_read(request->input, error);
-    bool ok = scene != NULL && train_and_store(scene, request, &given, error);
+    bool ok = scene != NULL && record_or_train(scene, request, &given, error);
     scene_destroy(scene);
     return ok;
 }
