@@ -40,26 +40,33 @@ bool draw_videos_use_output(const DrawVideos *videos) {
     return false;
 }
 
-bool draw_videos_check(const DrawVideos *videos, int width, int height, Error *error) {
+/* What the machine that encodes must have. */
+static bool check_place(const char *path, int width, int height, Error *error) {
+    if (!is_output(path)) return video_check(path, width, height, error);
+    return !isatty(STDOUT_FILENO) ||
+           error_input(error, "--video", "'-' writes a video to standard output, which is a terminal");
+}
+
+bool draw_videos_check(const DrawVideos *videos, int width, int height, bool of_merge, Error *error) {
     bool files = false;
     for (int i = 0; i < videos->count; i++) {
         const char *path = videos->paths[i];
         for (int k = 0; k < i; k++)
             if (strcmp(path, videos->paths[k]) == 0) return error_input(error, "--video", "'%s' twice", path);
-        if (is_output(path) && isatty(STDOUT_FILENO))
-            return error_input(error, "--video", "'-' writes a video to standard output, which is a terminal");
-        if (is_output(path)) continue;
-        if (!video_check(path, width, height, error)) return false;
-        files = true;
+        if (!is_output(path) && !video_check_format(path, width, height, error)) return false;
+        if (!of_merge && !check_place(path, width, height, error)) return false;
+        files = files || !is_output(path);
     }
-    return !files || video_check_programs(error);
+    return !files || of_merge || video_check_programs(error);
 }
 
-static bool draw(const Panels *panels, const RenderOptions *render, RenderResult *result, Error *error) {
+static bool draw(const Panels *panels, const RenderOptions *render, RenderStudy *study, RenderResult *result,
+                 Error *error) {
     const Progress *progress = progress_bar_begin("drawing");
     note_verbose("drawing %d panel%s, %d x %d pixels, at most %d process%s", panels->count, plural(panels->count),
                  render->width, render->height, render->jobs, render->jobs == 1 ? "" : "es");
-    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, progress, error);
+    bool ok =
+        render_study((const Trajectory *const *)panels->runs, panels->count, render, study, result, progress, error);
     progress_bar_end();
     return ok;
 }
@@ -87,10 +94,11 @@ static bool encode(const char *path, const RenderOptions *render, const RenderRe
     return ok;
 }
 
-bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderResult *result,
-                 Error *error) {
-    bool ok = draw(panels, render, result, error);
-    for (int i = 0; ok && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
+bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderStudy *study,
+                 RenderResult *result, Error *error) {
+    bool ok = draw(panels, render, study, result, error);
+    const bool shard = study != NULL && study->pieces.mode == PIECES_SHARD;
+    for (int i = 0; ok && !shard && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
     free(result->hashes);
     result->hashes = NULL;
     return ok;

@@ -3,6 +3,7 @@
 #include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/shard_option.h"
 #include "common/file.h"
 #include "npz/output_check.h"
 #include "paper/figures/illustrations.h"
@@ -14,15 +15,21 @@
 
 #include <stdio.h>
 
+typedef struct Options {
+    PaperOptions study;
+    const char *shard; /* or NULL */
+} Options;
+
 static const Option option_table[] = {
-    {"--output", 'o', "DIR", "Folder for tables, figures, networks and the report", OPTION_TEXT(PaperOptions, folder),
+    {"--output", 'o', "DIR", "Folder for tables, figures, networks and the report", OPTION_TEXT(Options, study.folder),
      .needed = "-o DIR is needed"},
     {"--scenes", 0, "DIR",
      "Folder with single.yaml, stack.yaml, pyramid.yaml and pyramid_settled.yaml (default: scenes, or the installed "
      "scenes)",
-     OPTION_TEXT(PaperOptions, scenes)},
-    {"--quick", 0, NULL, "Fewer networks, launches and iterations: under a minute", OPTION_FLAG(PaperOptions, quick)},
-    {"--seed", 0, "N", "Seed of launches, splits and initial weights (default: 1)", OPTION_SEED(PaperOptions, seed)},
+     OPTION_TEXT(Options, study.scenes)},
+    {"--quick", 0, NULL, "Fewer networks, launches and iterations: under a minute", OPTION_FLAG(Options, study.quick)},
+    {"--seed", 0, "N", "Seed of launches, splits and initial weights (default: 1)", OPTION_SEED(Options, study.seed)},
+    {OPTION_SHARD(Options, shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -51,10 +58,15 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 }
 
 bool command_paper(int argc, char **argv, Error *error) {
-    PaperOptions options = {.scenes = installed_path("scenes"), .seed = 1, .draw = draw_and_report};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!output_check_folder(options.folder, error)) return false;
-    const bool ok = paper_run(&options, progress_bar_begin("paper"), error);
+    Options options = {.study = {.scenes = installed_path("scenes"), .seed = 1, .draw = draw_and_report}};
+    PiecesRun run;
+    Pieces pieces = {0};
+    if (!options_parse(&spec, argc, argv, &options, error) ||
+        !shard_option_take(&run, options.shard, argc, argv, error) || !output_check_folder(options.study.folder, error))
+        return false;
+    options.study.run = &run;
+    const bool ok = paper_run(&options.study, &pieces, progress_bar_begin("paper"), error);
     progress_bar_end();
+    if (ok && pieces.mode == PIECES_SHARD) shard_option_print(&pieces, options.study.folder);
     return ok;
 }

@@ -7,7 +7,8 @@
 #include "cli/panel_costs.h"
 #include "cli/panels.h"
 #include "cli/picture_notes.h"
-#include "common/folder_reserve.h"
+#include "cli/render_shards.h"
+#include "cli/shard_option.h"
 #include "picture/caption_check.h"
 #include "picture/picture.h"
 #include "render/moments.h"
@@ -24,6 +25,9 @@ typedef struct Options {
     SceneSettings set;
     const char *costs;     /* FILE.csv, or NULL */
     const char *view_from; /* RUN.npz, or NULL */
+    const char *shard;     /* or NULL */
+    PiecesRun run;
+    PiecesMode mode;
 } Options;
 
 static OptionRead read_size, read_png, read_context, read_camera;
@@ -58,6 +62,7 @@ static const Option option_table[] = {
      OPTION_INT(Options, render.jobs, 1, RENDER_JOBS_MAX)},
     {"--context", 0, "osmesa|egl", "OpenGL without a display (default: the first that works); the frames are the same",
      OPTION_READ(read_context, Options, render.context)},
+    {OPTION_SHARD(Options, shard)},
     {OPTION_SET(Options, set)},
     {.help = "Look:"},
     {"--compare", 0, "KIND",
@@ -148,22 +153,47 @@ static bool check_moments(const RenderOptions *render, const Panels *panels, Err
     return true;
 }
 
+static bool draw_study(Options *options, const Panels *panels, RenderStudy *study, Error *error) {
+    RenderOptions *render = &options->render;
+    RenderResult result;
+    if ((options->mode != PIECES_WHOLE && !render_key(study->key, panels, &options->videos, options->costs, error)) ||
+        !draw_panels(panels, render, &options->videos, study, &result, error))
+        return false;
+    if (study->pieces.mode == PIECES_SHARD) {
+        shard_option_print(&study->pieces, render->directory);
+        return true;
+    }
+    print_result(options, &result);
+    return note_foreign_files(render->directory, &result, panels, error);
+}
+
 static bool render_panels(Options *options, const Panels *panels, Error *error) {
     RenderOptions *render = &options->render;
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PanelCosts costs;
-    RenderResult result;
+    StudyKey key = {0};
+    RunsPlace place = {panels, render->directory};
+    RenderStudy study = {.run = &options->run, .key = &key, .begin = render_store_runs, .context = &place};
     if (options->caption_count > panels->count)
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
                            panels->count == 1 ? "" : "s");
-    if (!check_moments(render, panels, error) ||
-        (options->costs != NULL && !panel_costs_read(&costs, options->costs, panels, &render->look, error)) ||
-        !picture_check(runs, panels->count, render, error) || !folder_reserve(render->directory, error) ||
-        !panels_store(panels, render->directory, error) ||
-        !draw_panels(panels, render, &options->videos, &result, error))
+    const bool ok =
+        check_moments(render, panels, error) &&
+        (options->costs == NULL || panel_costs_read(&costs, options->costs, panels, &render->look, error)) &&
+        picture_check(runs, panels->count, render, error) && draw_study(options, panels, &study, error);
+    study_key_free(&key);
+    return ok;
+}
+
+/* How the command is to run. The merge reads the inputs of shards once more. */
+static bool choose_mode(Options *options, int argc, char **argv, Error *error) {
+    if (!shard_option_take(&options->run, options->shard, argc, argv, error) ||
+        !pieces_find_mode(&options->mode, options->render.directory, false, &options->run, error))
         return false;
-    print_result(options, &result);
-    return note_foreign_files(render->directory, &result, panels, error);
+    bool ok = true;
+    for (int i = 0; ok && options->mode == PIECES_SHARD && i < options->input_count; i++)
+        ok = render_check_again(options->inputs[i], error);
+    return ok && (options->mode != PIECES_SHARD || render_check_again(options->view_from, error));
 }
 
 static bool check_texts(const Options *options, Error *error) {
@@ -177,7 +207,7 @@ static bool check_texts(const Options *options, Error *error) {
 bool command_render(int argc, char **argv, Error *error) {
     Options options = {.render = draw_panels_defaults(NULL), .frames = {0, -1}};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!check_texts(&options, error)) return false;
+    if (!check_texts(&options, error) || !choose_mode(&options, argc, argv, error)) return false;
     options.render.first = options.frames.first;
     options.render.last = options.frames.last;
     options.render.title_card = options.render.title != NULL;
@@ -187,7 +217,9 @@ bool command_render(int argc, char **argv, Error *error) {
     Trajectory *view_from;
     bool ok = camera_option_load(options.view_from, &look->view, &view_from, error);
     look->view_from = view_from;
-    ok = ok && draw_videos_check(&options.videos, options.render.width, options.render.height, error) &&
+    ok = ok &&
+         draw_videos_check(&options.videos, options.render.width, options.render.height, options.mode == PIECES_SHARD,
+                           error) &&
          panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
          render_panels(&options, &panels, error);
     panels_free(&panels);

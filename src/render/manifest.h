@@ -22,7 +22,7 @@ typedef struct Manifest {
     int out;               /* the journal; -1: none */
 } Manifest;
 
-/* Opens the manifest of these pictures in options->directory, which must exist. All pointers must outlive the
+/* Plans the manifest of these pictures in options->directory. All pointers must outlive the
    manifest. */
 bool manifest_open(Manifest *manifest, const Picture *picture, const RenderOptions *options, const MomentPlan *plan,
                    int first, int last, Error *error);
@@ -31,12 +31,14 @@ void manifest_close(Manifest *manifest);
 /* Reads the hashes of an earlier call with the same runs and options; otherwise sets `why`. */
 void manifest_recall(Manifest *manifest, char *why, size_t size);
 
+/* ERROR_INPUT if a file of its name or its journal's is not a manifest of twinbox. */
+bool manifest_check(const Manifest *manifest, Error *error);
+
 /* Starts the journal with the known pictures and removes a manifest of other pictures; if the sequence is a whole run,
-   also the frames of an earlier one that would remain (stale.h). ERROR_INPUT if a file of that name is not a manifest of
-   twinbox. */
+   also the frames of an earlier one that would remain (stale.h). Errors of manifest_check(), too. */
 bool manifest_begin(Manifest *manifest, bool whole, Error *error);
 
-/* Records a finished picture. */
+/* Records a finished picture; without a journal, in memory alone. */
 bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *error);
 
 /* Replaces the journal by manifest.json. */

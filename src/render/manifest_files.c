@@ -151,8 +151,12 @@ static bool check_overwritable(const char *path, Error *error) {
            error_input(error, path, "is not a manifest of twinbox; move it away or choose another folder");
 }
 
+bool manifest_check(const Manifest *manifest, Error *error) {
+    return check_overwritable(manifest->path, error) && check_overwritable(manifest->journal, error);
+}
+
 bool manifest_begin(Manifest *manifest, bool whole, Error *error) {
-    if (!check_overwritable(manifest->path, error) || !check_overwritable(manifest->journal, error)) return false;
+    if (!manifest_check(manifest, error)) return false;
     if (whole && !stale_remove(manifest, error)) return false;
     size_t size;
     char *text = file_print(manifest_print_journal, manifest, &size);
@@ -171,6 +175,7 @@ bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *er
     if (manifest->known[i] && old->pixels == hashes.pixels && old->file == hashes.file) return true;
     manifest->hashes[i] = hashes;
     manifest->known[i] = true;
+    if (manifest->out < 0) return true;
     size_t size;
     char *line = file_print(manifest_print_line, &(ManifestLine){manifest, index, hashes}, &size);
     if (line == NULL) return error_memory(error, manifest->journal);

@@ -5,6 +5,7 @@
 #include "common/progress.h"
 #include "image/image.h"
 #include "picture/render_options.h"
+#include "pieces/pieces.h"
 #include "trajectory/trajectory.h"
 
 /* Hashes of a picture's pixels and of its file (XXH3 of the bytes). */
@@ -32,6 +33,22 @@ typedef struct RenderResult {
    draws all others. If that call had other runs or options or was another version, it draws all. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
                      RenderResult *result, const Progress *progress, Error *error);
+
+/* A sequence that shards may draw (pieces/pieces.h). */
+typedef struct RenderStudy {
+    const PiecesRun *run;
+    StudyKey *key; /* of the inputs of a shard or a merge; what the manifest says of the pictures is added */
+    /* Called when the folder is reserved, before anything is written there; not for a shard. */
+    bool (*begin)(void *context, Error *error);
+    void *context;
+    Pieces pieces; /* set: what was done; it has no plan */
+} RenderStudy;
+
+/* render_sequence() as the whole, as a shard or as a merge; study NULL: as the whole. A piece is a range of consecutive
+   pictures. A shard writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge takes
+   the frames as the shards left them; a range of which a frame is missing or altered is missing. */
+bool render_study(const Trajectory *const *panels, int panel_count, const RenderOptions *options, RenderStudy *study,
+                  RenderResult *result, const Progress *progress, Error *error);
 
 typedef struct Renderer Renderer;
 

@@ -28,15 +28,23 @@ bool sink_frame_path(char *path, size_t size, const char *directory, int index) 
     return snprintf(path, size, "%s/%s", directory, name) < (int)size;
 }
 
-bool sink_frame_is(const char *directory, int index, uint64_t hash) {
+bool sink_frame_check(const char *directory, int index, uint64_t hash, bool *same, Error *error) {
     char path[PATH_MAX];
     size_t size;
-    Error ignored = {0};
-    if (!sink_frame_path(path, sizeof path, directory, index)) return false;
-    char *data = file_read(path, MAX_FILE_SIZE, &size, &ignored);
-    const bool same = data != NULL && hash_xxh3(data, size) == hash;
+    Error reason = {0};
+    *same = false;
+    if (!sink_frame_path(path, sizeof path, directory, index)) return true;
+    char *data = file_read(path, MAX_FILE_SIZE, &size, &reason);
+    *same = data != NULL && hash_xxh3(data, size) == hash;
     free(data);
-    return same;
+    if (data != NULL || reason.kind == ERROR_INPUT) return true;
+    *error = reason;
+    return false;
+}
+
+bool sink_frame_is(const char *directory, int index, uint64_t hash) {
+    bool same;
+    return sink_frame_check(directory, index, hash, &same, &(Error){0}) && same;
 }
 
 static bool write_png(void *context, int index, const Image *image, const bool *changed, const ImageText *texts,

@@ -11,7 +11,11 @@ void sink_frame_name(char name[SINK_NAME_SIZE], int index);
 /* The same with its folder; false if it does not fit in `size` bytes. */
 bool sink_frame_path(char *path, size_t size, const char *directory, int index);
 
-/* Whether the file of that picture exists and has these bytes (XXH3). */
+/* *same: whether the file of that picture exists and has these bytes (XXH3). False with error set if the system cannot
+   tell. */
+bool sink_frame_check(const char *directory, int index, uint64_t hash, bool *same, Error *error);
+
+/* The same; false if the system cannot tell. */
 bool sink_frame_is(const char *directory, int index, uint64_t hash);
 
 typedef struct FrameSink {

@@ -81,13 +81,15 @@ static bool check_destination(const char *path, Error *error) {
     return error_system(error, path, "cannot write there: %s", strerror(errno));
 }
 
-bool video_check(const char *path, int width, int height, Error *error) {
+bool video_check_format(const char *path, int width, int height, Error *error) {
     const VideoFormat *format = find_format(path);
     if (format == NULL) return error_input(error, path, "the name of a video must end in .mp4, .webm or .gif");
-    if (format->subsampled && (width % 2 != 0 || height % 2 != 0))
-        return error_input(error, path, "width and height must be even for this video format (got %dx%d)", width,
-                           height);
-    return check_destination(path, error);
+    return !format->subsampled || (width % 2 == 0 && height % 2 == 0) ||
+           error_input(error, path, "width and height must be even for this video format (got %dx%d)", width, height);
+}
+
+bool video_check(const char *path, int width, int height, Error *error) {
+    return video_check_format(path, width, height, error) && check_destination(path, error);
 }
 
 bool video_check_programs(Error *error) {

@@ -12,7 +12,10 @@ typedef struct VideoOptions {
     bool rate_is_chosen;         /* not just that of the run */
 } VideoOptions;
 
-/* Checks name and size of a video, and creates its folder if missing. ERROR_INPUT or ERROR_SYSTEM states the reason. */
+/* Checks name and size of a video. ERROR_INPUT states the reason. */
+bool video_check_format(const char *path, int width, int height, Error *error);
+
+/* The same, and creates its folder if missing. ERROR_INPUT or ERROR_SYSTEM. */
 bool video_check(const char *path, int width, int height, Error *error);
 
 /* Checks that ffmpeg and ffprobe can be run. */

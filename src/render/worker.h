@@ -8,8 +8,8 @@ typedef struct WorkerJob {
     const Picture *picture;
     const RenderOptions *options;
     const MomentPlan *plan;
-    const Manifest *manifest; /* of an earlier call: known pictures whose files are unchanged are kept */
-    int first, last;          /* pictures, inclusive */
+    Manifest *manifest; /* known pictures whose files are unchanged are kept */
+    int first, last;    /* pictures, inclusive */
 } WorkerJob;
 
 /* What a worker writes to its pipe: one report per picture, or a final one with an error. */

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The paper's study: tables, figures and report of a quick one, and one that is cut off.
+# The paper's study: tables, figures and report of a quick one, one that is cut off, and one in shards.
 . "$(dirname "$0")/checks.sh"
 
 tables="closed_loop laws networks rates study system_scores table1 transfer"
@@ -15,9 +15,9 @@ figures() {
     done
 }
 
-# await FOLDER PART: until the study in the background has done the part, or ended.
+# await FOLDER NUMBER: until the study in the background has done the part, or ended.
 await() {
-    until ls "$1"/parts-*/"$2" >/dev/null 2>&1; do
+    until ls "$1"/parts-*/0000/000000"$2" >/dev/null 2>&1; do
         kill -0 $study 2>/dev/null || break
         sleep 0.01
     done
@@ -35,7 +35,7 @@ run 3 paper -o /proc/none --quick --scenes "$scenes"
 # sees one begin and be interrupted, and every part of a study in tests/paper.
 "$twinbox" paper -o quick --quick --scenes "$scenes" >out 2>err </dev/null &
 study=$!
-await quick network-optimizer-lm
+await quick 7
 if sanitized; then
     kill -INT $study
     wait $study
@@ -104,24 +104,56 @@ assert all(os.path.getsize(f"quick/{page}") < 4 << 20 for page in pages)
 assert not re.search(r'(src|href)="(?!data:|#|https://doi.org/|figures/strip-)', html)
 PYTHON
 
-# A study continues from the parts that are done, to the same tables; also when it could not be drawn.
-kept=$(echo part/parts-*)
-sed -i 's/^table1:baseline,pair,adam,0,[^,]*/table1:baseline,pair,adam,0,0.5/' "$kept/network-baseline"
+# A study continues from the parts that are done, to the same tables; also when it could not be drawn. A network that is not
+# the one that was trained is trained again.
+equal "what was done first" "$(sed -n 's/^name //p' part/parts-*/0000/0000000)" network-baseline
+before=$(stat -c %i part/networks/baseline.npz)
+cp part/networks/baseline.npz part/networks/inputs-raw.npz
 run_undrawn paper -o part --quick --scenes "$scenes"
 run 0 paper -o part --quick --scenes "$scenes"
+equal "a network that was trained" "$(stat -c %i part/networks/baseline.npz)" "$before"
 figures quick >figures.csv
-figures part | diff - figures.csv >difference
-equal "figures changed by hand that stay" "$(grep -c '^< baseline,pair,adam,0,0.5,' difference)" 1
-equal "other differences" "$(grep -c '^[<>]' difference)" 2
+figures part | cmp - figures.csv || fail "other tables after an interruption"
+diff -r quick/networks part/networks || fail "other networks after an interruption"
+
+# Two shards: the one that rates the networks waits for those of the other. All that takes times is in one of them.
+for i in 1 2; do run 0 paper -o shards --quick --scenes "$scenes" --shard $i/2; done
+equal "files of shards" "$(echo $(ls shards))" "networks shards"
+run 1 merge shards
+complains "rates-"
+waiting=$(sed -n 's/^--array=//p' out)
+run 0 paper -o shards --quick --scenes "$scenes" --shard "${waiting%%[-,]*}/2"
+equal "a report before the merge" "$(ls shards/report.md 2>/dev/null)" ""
+rm shards/networks/baseline.npz
+run 1 merge shards
+complains "1 of 78 pieces are missing: network-baseline; run their shards (of 2) again: --array="
+run 0 paper -o shards --quick --scenes "$scenes" --shard "$(sed -n 's/^--array=//p' out)/2"
+run 0 merge shards
+says "report -> shards/report.md, shards/report.html"
+figures shards | cmp - figures.csv || fail "other tables by shards"
+diff -r quick/networks shards/networks || fail "other networks by shards"
+equal "files" "$(cd shards && find . -path ./shards -prune -o -type f -print | sort)" \
+    "$(cd quick && find . -type f | sort)"
+equal "figures of shards with other bytes" "$(cd shards/figures && sha256sum --quiet --strict --check "$hashes" 2>&1)" ""
+run 2 paper -o shards --quick --scenes "$scenes" --shard 1/2 --seed 2
+complains "shards of another study"
+run 2 paper -o shards --quick --scenes "$scenes"
+complains "belongs to shards of a study"
+timed=$(grep -l "^name closed-loop-stack" shards/shards/0000/*)
+sed -i '1,/^$/s/^cpu .*/cpu Another/' "$timed"
+run 2 merge shards
+complains "times were measured on different processors"
+run 2 merge shards --times first
+complains "a report needs times of one: delete those pieces"
 
 # An interrupted one keeps them.
 "$twinbox" paper -o cut --quick --scenes "$scenes" >out 2>err </dev/null &
 study=$!
-await cut network-baseline
+await cut 0
 kill -INT $study
 wait $study
 equal "exit status of an interrupted study" $? 130
 complains "stopped"
-ls cut/parts-*/network-baseline >/dev/null 2>&1 || fail "what was done is gone"
+ls cut/parts-*/0000/0000000 >/dev/null 2>&1 || fail "what was done is gone"
 [ -e cut/report.html ] && fail "an interrupted study has a report"
 finish

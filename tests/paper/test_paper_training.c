@@ -71,6 +71,30 @@ static void a_training_that_is_stopped_leaves_no_network(void **state) {
     }
 }
 
+static void lines_know_their_network(void **state) {
+    (void)state;
+    Error error = {0};
+    char *lines = NULL;
+    size_t used;
+    bool there;
+    FILE *out = open_memstream(&lines, &used);
+    assert_ok(paper_training_write(&training, out, NULL, &error), error);
+    assert_int_equal(fclose(out), 0);
+    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_true(there);
+    PaperTraining other = training;
+    other.seed++;
+    out = fopen("/dev/null", "w");
+    assert_ok(paper_training_write(&other, out, NULL, &error), error);
+    assert_int_equal(fclose(out), 0);
+    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_false(there);
+    assert_int_equal(remove(network_path()), 0);
+    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_false(there);
+    free(lines);
+}
+
 static void without_memory_there_is_no_accuracy(void **state) {
     (void)state;
     Error error = {0};
@@ -89,6 +113,7 @@ static void without_memory_there_is_no_accuracy(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_training_that_is_stopped_leaves_no_network),
+                                       cmocka_unit_test(lines_know_their_network),
                                        cmocka_unit_test(without_memory_there_is_no_accuracy)};
     return cmocka_run_group_tests(tests, begin, end);
 }

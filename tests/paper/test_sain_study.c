@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "paper/systems/sain_study.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 #include <unistd.h>

@@ -6,7 +6,7 @@
 #include "paper/study/paper_data.h"
 #include "paper/systems/subspace_study.h"
 #include "paper/systems/system.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 
@@ -15,19 +15,30 @@ static const char *folder(void) {
     return temporary_folder;
 }
 
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    (void)context, (void)piece;
+    snprintf(info->name, sizeof info->name, "single");
+    info->alone = true;
+}
+
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    (void)piece;
+    return system_part_write(context, results, progress, error);
+}
+
 /* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose nothing. */
 static void a_scene_has_a_row_for_each_engine_and_size(void **state) {
     (void)state;
-    StudyParts done = {.total = 1};
+    Pieces done;
     Error error = {0};
-    assert_ok(study_parts_open(&done, folder(), 1, &error), error);
+    static const CsvLayout *const layout = &subspace_study_layout;
     const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
-    SystemWork work = {&study, &system_subspace.parts[0]};
-    const StudyPart part = {"single", 1, system_part_write, &work};
-    assert_ok(study_parts_do(&done, &part, &error), error);
-    assert_ok(study_parts_table(&done, folder(), &subspace_study_layout, &error), error);
-    assert_ok(study_parts_remove(&done, &error), error);
-    study_parts_close(&done);
+    SystemWork part = {&study, &system_subspace.parts[0]};
+    const PiecePlan plan = {.count = 1, .describe = describe, .work = work, .context = &part};
+    assert_ok(pieces_open(&done, folder(), false, &(StudyKey){.value = 1}, NULL, &error), error);
+    assert_ok(pieces_do(&done, &plan, NULL, &error), error);
+    assert_ok(piece_tables_write(&done, folder(), &layout, 1, NULL, 0, &error), error);
+    assert_ok(pieces_end(&done, &error), error);
     CsvTable table;
     assert_ok(csv_table_read_from(&table, folder(), &subspace_study_layout, &error), error);
     assert_int_equal(table.count, 4);

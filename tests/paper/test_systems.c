@@ -6,7 +6,7 @@
 #include "paper/systems/system.h"
 #include "paper/systems/system_strips.h"
 #include "sanitized.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 
@@ -26,10 +26,10 @@ static bool write_part(const SystemStudy *study, int index, FILE *lines, const P
     (void)progress;
     parts_written++;
     const DoubleRow row = {index, study->quick ? 4 : 0.5 * index};
-    return study_parts_print(lines, &double_table, &row, error);
+    return piece_tables_print(lines, &double_table, -1, &row, error);
 }
 
-static const SystemPart parts[] = {{"one", 1, 1, 1, write_part}, {"ten", 1, 1, 10, write_part}, {0}};
+static const SystemPart parts[] = {{"one", 1, 1, 1, write_part, false}, {"ten", 1, 1, 10, write_part, false}, {0}};
 
 /* From the table and from the scores. */
 static bool claim(const Claims *claims, Error *error) {
@@ -64,17 +64,25 @@ static const char *folder(void) {
     return temporary_folder;
 }
 
+static const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .seed = 1};
+
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    (void)context;
+    snprintf(info->name, sizeof info->name, "%s", parts[piece].name != NULL ? parts[piece].name : "scores");
+    info->alone = true;
+}
+
+/* The parts, then the scores. */
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    SystemWork part = {&study, &parts[piece]};
+    return parts[piece].name != NULL ? system_part_write(&part, results, progress, error)
+                                     : system_scores_write(context, results, progress, error);
+}
+
 /* Does the study's parts in the folder; those that are there are not done again. */
-static void do_parts(StudyParts *done) {
+static void do_parts(Pieces *done, bool end) {
     Error error = {0};
-    *done = (StudyParts){.total = 1};
-    assert_ok(study_parts_open(done, folder(), 1, &error), error);
-    const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .seed = 1};
-    for (const SystemPart *own = parts; own->name != NULL; own++) {
-        SystemWork work = {&study, own};
-        const StudyPart part = {own->name, own->weight, system_part_write, &work};
-        assert_ok(study_parts_do(done, &part, &error), error);
-    }
+    static const CsvLayout *const layouts[] = {&double_table, &system_score_layout};
     SystemScoring scoring = {.systems = systems,
                              .scene = 1,
                              .path = SOURCE_DIR "/scenes/stack.yaml",
@@ -82,16 +90,16 @@ static void do_parts(StudyParts *done) {
                              .frames = 50,
                              .timed_frames = 5,
                              .repetitions = 1};
-    const StudyPart scores = {"scores", 1, system_scores_write, &scoring};
-    assert_ok(study_parts_do(done, &scores, &error), error);
-    assert_ok(study_parts_table(done, folder(), &double_table, &error), error);
-    assert_ok(study_parts_table(done, folder(), &system_score_layout, &error), error);
+    const PiecePlan plan = {.count = 3, .describe = describe, .work = work, .context = &scoring};
+    assert_ok(pieces_open(done, folder(), false, &(StudyKey){.value = 1}, NULL, &error), error);
+    assert_ok(pieces_do(done, &plan, NULL, &error), error);
+    assert_ok(piece_tables_write(done, folder(), layouts, 2, NULL, 0, &error), error);
+    if (end) assert_ok(pieces_end(done, &error), error);
 }
 
 static void write_study(void) {
-    StudyParts done;
-    do_parts(&done);
-    study_parts_close(&done);
+    Pieces done;
+    do_parts(&done, false);
 }
 
 static void parts_and_scores_are_done_once(void **state) {
@@ -99,14 +107,13 @@ static void parts_and_scores_are_done_once(void **state) {
     remove_temporary_folder();
     temporary_folder[0] = '\0';
     parts_written = 0;
-    StudyParts done;
-    do_parts(&done);
+    Pieces done;
+    do_parts(&done, false);
     assert_int_equal(parts_written, 2);
-    study_parts_close(&done);
     Error error = {0};
     CsvTable first, again;
     assert_ok(csv_table_read_from(&first, folder(), &system_score_layout, &error), error);
-    do_parts(&done); /* as after an interruption */
+    do_parts(&done, true); /* as after an interruption */
     assert_int_equal(parts_written, 2);
     assert_ok(csv_table_read_from(&again, folder(), &system_score_layout, &error), error);
     assert_int_equal(first.count, again.count);
@@ -114,8 +121,6 @@ static void parts_and_scores_are_done_once(void **state) {
         const SystemScoreRow *a = first.rows, *b = again.rows;
         assert_near(b[i].us_step, a[i].us_step, 0); /* the same measurement, not another */
     }
-    assert_ok(study_parts_remove(&done, &error), error);
-    study_parts_close(&done);
     csv_table_free(&first);
     csv_table_free(&again);
 }

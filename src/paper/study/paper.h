@@ -5,6 +5,7 @@
 #pragma once
 #include "common/error.h"
 #include "common/progress.h"
+#include "pieces/pieces.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -14,12 +15,14 @@ typedef struct PaperOptions {
     const char *folder; /* created if missing */
     bool quick;         /* fewer networks, launches, iterations */
     uint64_t seed;
+    const PiecesRun *run; /* whole, a shard, or a merge */
     /* Draws what the tables show, and writes the report. */
     bool (*draw)(const struct PaperOptions *study, Error *error);
 } PaperOptions;
 
 /* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, system_scores.csv,
-   system_NAME.csv of each system, systems.csv, study.csv and folder/networks/NAME.npz, then draws. Finished parts are kept in folder/parts-KEY until that is done: the same study, by the
-   same program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, ERROR_INTERRUPTED
-   if progress_report() stops it. */
-bool paper_run(const PaperOptions *options, const Progress *progress, Error *error);
+   system_NAME.csv of each system, systems.csv, study.csv and folder/networks/NAME.npz, then draws; a shard does its parts
+   only, and of the files writes the networks that it trains. Finished parts are kept: the same study, by the same program,
+   continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, and for a merge of times of different
+   processors; ERROR_INTERRUPTED if progress_report() stops it. *pieces tells what was done; it has no plan. */
+bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error);

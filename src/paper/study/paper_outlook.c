@@ -2,7 +2,7 @@
 #include "paper/study/paper_outlook.h"
 
 #include "paper/study/paper_tables.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,7 +29,7 @@ bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Erro
                   .test = result.test,
                   .constant = result.constant};
     memcpy(row.violation, result.violations.of, sizeof row.violation);
-    return study_parts_print(lines, &paper_law_layout, &row, error);
+    return piece_tables_print(lines, &paper_law_layout, -1, &row, error);
 }
 
 bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, Error *error) {
@@ -45,5 +45,5 @@ bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, 
     TransferResult result;
     if (!transfer_study_run(&data, study, &result, progress, error)) return false;
     const TransferRow row = {study->transfer, (double)study->seed, study->launches, result.error, result.constant};
-    return study_parts_print(lines, &paper_transfer_layout, &row, error);
+    return piece_tables_print(lines, &paper_transfer_layout, -1, &row, error);
 }

@@ -8,7 +8,7 @@
 #include "paper/study/paper_tables.h"
 #include "study/closed_loop.h"
 #include "study/meter.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +51,7 @@ static bool write_rates(const PaperScoring *scoring, int network, const PairRate
     for (row.definition = 0; row.definition < RATE_DEFINITIONS; row.definition++)
         for (row.phase = 0; row.phase < RATE_PHASES; row.phase++) {
             memcpy(row.share, rates->share[row.definition][row.phase], sizeof row.share);
-            if (!study_parts_print(lines, &paper_rate_layout, &row, error)) return false;
+            if (!piece_tables_print(lines, &paper_rate_layout, -1, &row, error)) return false;
         }
     return true;
 }
@@ -98,7 +98,7 @@ static bool time_network(const Scores *scores, int i, FILE *lines, Error *error)
     return method_of(scoring, i, &method, error) &&
            closed_loop_time(&method, &scores->launched.states[0], scoring->repetitions, &row.us_step,
                             &row.us_step_engine, error) &&
-           study_parts_print(lines, &paper_closed_loop_layout, &row, error);
+           piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
 }
 
 /* Sequentially, on one core. */

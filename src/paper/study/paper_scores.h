@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rates and closed-loop runs of the networks in one scene, as parts of the study (study_parts.h). */
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study (paper_plan.h). */
 #pragma once
 #include "paper/study/paper_data.h"
 #include "study/rollout.h"

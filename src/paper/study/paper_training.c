@@ -2,15 +2,19 @@
 #include "paper/study/paper_training.h"
 
 #include "common/file.h"
+#include "common/hash.h"
 #include "paper/study/paper_tables.h"
 #include "paper/study/whole_training.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double near_share = 0.05; /* of the outputs' range */
+
+enum { NOTE_SIZE = 64, NETWORK_MAX_SIZE = 1 << 26 };
 
 /* text: "10-10-2". */
 static void read_layers(const char *text, TrainingOptions *options) {
@@ -42,7 +46,7 @@ static void write_score(void *context, const TrainingScore *score) {
                           .train = score->train,
                           .constant = score->constant_test};
     writer->last = *score;
-    writer->ok = writer->ok && study_parts_print(writer->lines, &paper_score_layout, &row, writer->error);
+    writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
 }
 
 /* Label of output k: one of all changes, or the change of b's velocity relative to a's. */
@@ -109,14 +113,41 @@ static bool write_network(FILE *lines, const PaperNetwork *of, const Network *ne
                             .constant = score->constant_test,
                             .ratio = score->test / score->constant_test,
                             .accuracy = accuracy};
-    return study_parts_print(lines, &paper_trained_layout, &row, error);
+    return piece_tables_print(lines, &paper_trained_layout, -1, &row, error);
 }
 
-static bool store(const PaperTraining *training, Network *network, Error *error) {
-    char path[PAPER_PATH_SIZE];
-    if (!file_path(path, sizeof path, error, "%s/%s.npz", training->folder, training->network.name)) return false;
+static bool network_path(const PaperTraining *training, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", training->folder, training->network.name);
+}
+
+/* The note that tells a network from one of the same name. */
+static bool print_note(char note[NOTE_SIZE], const char *path, Error *error) {
+    size_t size;
+    char *data = file_read(path, NETWORK_MAX_SIZE, &size, error);
+    if (data == NULL) return false;
+    snprintf(note, NOTE_SIZE, "# network %016" PRIx64 "\n", hash_xxh3(data, size));
+    free(data);
+    return true;
+}
+
+bool paper_training_whole(const PaperTraining *training, const char *lines, bool *there, Error *error) {
+    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
+    Error reason = {0};
+    *there = false;
+    if (!network_path(training, path, error)) return false;
+    if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
+    if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
+    *error = reason;
+    return false;
+}
+
+static bool store(const PaperTraining *training, Network *network, FILE *lines, Error *error) {
+    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     snprintf(network->command, sizeof network->command, "twinbox paper: %s", training->network.name);
-    return network_write(network, path, error);
+    if (!network_path(training, path, error) || !network_write(network, path, error) || !print_note(note, path, error))
+        return false;
+    fputs(note, lines);
+    return true;
 }
 
 bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error) {
@@ -144,7 +175,7 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     score.iteration = iterations;
     double accuracy = NAN;
     ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
-         write_network(lines, of, network, &score, accuracy, error) && store(training, network, error);
+         write_network(lines, of, network, &score, accuracy, error) && store(training, network, lines, error);
     network_destroy(network);
     return ok;
 }

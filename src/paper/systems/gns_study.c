@@ -5,7 +5,7 @@
 #include "paper/figures/plot_parts.h"
 #include "paper/systems/gns_cost.h"
 #include "paper/systems/gns_rollout.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -67,14 +67,14 @@ static Scene *read_scene(const SystemStudy *study, const Place *place, Error *er
     return join(path, study->scenes, place->file, error) ? scene_read(path, error) : NULL;
 }
 
-/* Rollouts of all variants, one piece for each variant and launch. */
-typedef struct Pieces {
+/* Rollouts of all variants, each launch. */
+typedef struct Rollouts {
     const SystemStudy *study;
     const Scene *scene;
     const Launch *launches;
     int launch_count;
     GnsRollout *rollouts; /* [GNS_VARIANTS, launch_count] */
-} Pieces;
+} Rollouts;
 
 static bool roll(const SystemStudy *study, const Scene *scene, const Launch *launch, const GnsVariant *variant,
                  GnsRollout *rollout, Error *error) {
@@ -84,14 +84,14 @@ static bool roll(const SystemStudy *study, const Scene *scene, const Launch *lau
            gns_rollout_run(rollout, &launched, path, variant->settings, error);
 }
 
-static bool piece(void *context, int i, Error *error) {
-    const Pieces *pieces = context;
-    return roll(pieces->study, pieces->scene, &pieces->launches[i % pieces->launch_count],
-                &gns_variants[i / pieces->launch_count], &pieces->rollouts[i], error);
+static bool roll_one(void *context, int i, Error *error) {
+    const Rollouts *all = context;
+    return roll(all->study, all->scene, &all->launches[i % all->launch_count], &gns_variants[i / all->launch_count],
+                &all->rollouts[i], error);
 }
 
-static bool print_rollouts(const Pieces *pieces, const char *scene, int variant, FILE *lines, Error *error) {
-    const GnsRollout *runs = pieces->rollouts + (ptrdiff_t)variant * pieces->launch_count;
+static bool print_rollouts(const Rollouts *all, const char *scene, int variant, FILE *lines, Error *error) {
+    const GnsRollout *runs = all->rollouts + (ptrdiff_t)variant * all->launch_count;
     for (int t = 0; t < GNS_TIMES; t++) {
         GnsRow row = empty_row;
         row.measure = GNS_ROLLOUT;
@@ -100,11 +100,11 @@ static bool print_rollouts(const Pieces *pieces, const char *scene, int variant,
         row.seconds = gns_times[t];
         row.boxes = runs[0].boxes;
         row.error = row.shape = 0;
-        for (int i = 0; i < pieces->launch_count; i++) {
-            row.error += runs[i].error[t] / pieces->launch_count;
-            row.shape += runs[i].shape[t] / pieces->launch_count;
+        for (int i = 0; i < all->launch_count; i++) {
+            row.error += runs[i].error[t] / all->launch_count;
+            row.shape += runs[i].shape[t] / all->launch_count;
         }
-        if (!study_parts_print(lines, &gns_table_layout, &row, error)) return false;
+        if (!piece_tables_print(lines, &gns_table_layout, -1, &row, error)) return false;
     }
     return true;
 }
@@ -115,12 +115,12 @@ static bool write_rollouts(const SystemStudy *study, int index, FILE *lines, con
     if (count == 0) return true;
     Scene *scene = read_scene(study, place, error);
     Launch *launches = calloc((size_t)count, sizeof *launches);
-    Pieces pieces = {study, scene, launches, count, calloc((size_t)count * GNS_VARIANTS, sizeof *pieces.rollouts)};
-    bool ok = scene != NULL && ((launches != NULL && pieces.rollouts != NULL) || error_memory(error, place->name)) &&
+    Rollouts all = {study, scene, launches, count, calloc((size_t)count * GNS_VARIANTS, sizeof *all.rollouts)};
+    bool ok = scene != NULL && ((launches != NULL && all.rollouts != NULL) || error_memory(error, place->name)) &&
               launches_for_scoring(scene, count, launches, error) &&
-              parallel_for(&(ParallelWork){piece, &pieces}, count * GNS_VARIANTS, place->name, progress, error);
-    for (int v = 0; ok && v < GNS_VARIANTS; v++) ok = print_rollouts(&pieces, place->name, v, lines, error);
-    free(pieces.rollouts);
+              parallel_for(&(ParallelWork){roll_one, &all}, count * GNS_VARIANTS, place->name, progress, error);
+    for (int v = 0; ok && v < GNS_VARIANTS; v++) ok = print_rollouts(&all, place->name, v, lines, error);
+    free(all.rollouts);
     free(launches);
     scene_destroy(scene);
     return ok;
@@ -151,7 +151,7 @@ static bool write_large(const SystemStudy *study, int index, FILE *lines, const 
         row.ms_step += 1e3 * run.seconds_a_step / count;
         if (ok && !progress_report(progress, i + 1, count)) ok = error_interrupted(error, place->name, "stopped");
     }
-    ok = ok && study_parts_print(lines, &gns_table_layout, &row, error);
+    ok = ok && piece_tables_print(lines, &gns_table_layout, -1, &row, error);
     free(launches);
     scene_destroy(scene);
     return ok;
@@ -176,17 +176,17 @@ static bool write_cost(const SystemStudy *study, int index, FILE *lines, const P
         row.ms_step = 1e3 * costs[i].seconds_a_pass;
         row.ms_gradient = 1e3 * costs[i].seconds_a_gradient;
         row.hours = costs[i].hours;
-        if (!study_parts_print(lines, &gns_table_layout, &row, error)) return false;
+        if (!piece_tables_print(lines, &gns_table_layout, -1, &row, error)) return false;
     }
     return true;
 }
 
 static const SystemPart parts[] = {{"rollouts-single", .weight = 2, .quick_weight = 0.3, .write = write_rollouts},
-                                   {"rollouts-stack", 10, 0.7, 1, write_rollouts},
-                                   {"rollouts-pyramid", 30, 0, 2, write_rollouts},
-                                   {"large-66", 8, 0.5, 0, write_large},
-                                   {"large-171", 8, 0, 1, write_large},
-                                   {"cost", 8, 0.5, 0, write_cost},
+                                   {"rollouts-stack", 10, 0.7, 1, write_rollouts, false},
+                                   {"rollouts-pyramid", 30, 0, 2, write_rollouts, false},
+                                   {"large-66", 8, 0.5, 0, write_large, true},
+                                   {"large-171", 8, 0, 1, write_large, true},
+                                   {"cost", 8, 0.5, 0, write_cost, true},
                                    {0}};
 
 const PaperSystem system_gns = {.name = "gns",

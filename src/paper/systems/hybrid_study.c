@@ -2,7 +2,7 @@
 #include "paper/systems/hybrid_study.h"
 
 #include "paper/systems/hybrid_times.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 #include "tabulation_training/online_net.h"
 #include "tabulation_training/tabulation_training.h"
 
@@ -140,7 +140,7 @@ static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
     row.learning_ms = 1e3 * run->learned;
     row.saved_ms = 1e3 * run->saved;
     row.paid = run->paid;
-    return study_parts_print(run->lines, &hybrid_layout, &row, error);
+    return piece_tables_print(run->lines, &hybrid_layout, -1, &row, error);
 }
 
 static bool note(void *context, const TabulationLaunch *launch, Error *error) {
@@ -206,13 +206,13 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
 }
 
 const SystemPart hybrid_parts[] = {
-    {"single", .weight = 2, .quick_weight = 0.1, .index = 0, .write = write_learning},
-    {"stack", .weight = 20, .quick_weight = 0.2, .index = 1, .write = write_learning},
-    {"pyramid", .weight = 4, .quick_weight = 0.2, .index = 2, .write = write_learning},
-    {"pyramid_settled", .weight = 15, .quick_weight = 0.5, .index = 3, .write = write_learning},
-    {"single-change", .weight = 2, .quick_weight = 0.1, .index = 4, .write = write_learning},
-    {"stack-change", .weight = 7, .quick_weight = 0.2, .index = 5, .write = write_learning},
-    {"pyramid_settled-change", .weight = 15, .quick_weight = 0.5, .index = 6, .write = write_learning},
-    {"stack-narrow", .weight = 7, .quick_weight = 0.2, .index = 7, .write = write_learning},
-    {"stack-wide", .weight = 7, .quick_weight = 0.2, .index = 8, .write = write_learning},
+    {"single", .weight = 2, .quick_weight = 0.1, .index = 0, .write = write_learning, .timed = true},
+    {"stack", .weight = 20, .quick_weight = 0.2, .index = 1, .write = write_learning, .timed = true},
+    {"pyramid", .weight = 4, .quick_weight = 0.2, .index = 2, .write = write_learning, .timed = true},
+    {"pyramid_settled", .weight = 15, .quick_weight = 0.5, .index = 3, .write = write_learning, .timed = true},
+    {"single-change", .weight = 2, .quick_weight = 0.1, .index = 4, .write = write_learning, .timed = true},
+    {"stack-change", .weight = 7, .quick_weight = 0.2, .index = 5, .write = write_learning, .timed = true},
+    {"pyramid_settled-change", .weight = 15, .quick_weight = 0.5, .index = 6, .write = write_learning, .timed = true},
+    {"stack-narrow", .weight = 7, .quick_weight = 0.2, .index = 7, .write = write_learning, .timed = true},
+    {"stack-wide", .weight = 7, .quick_weight = 0.2, .index = 8, .write = write_learning, .timed = true},
     {0}};

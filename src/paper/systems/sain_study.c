@@ -5,7 +5,7 @@
 #include "paper/figures/plot_parts.h"
 #include "relation_training/relation_fit.h"
 #include "relation_training/relation_launches.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 
 #include <stdlib.h>
 #include <math.h>
@@ -134,7 +134,7 @@ static bool write_launches(const SystemStudy *study, int launches, FILE *lines, 
     bool ok = data.rows != NULL || error_memory(error, "sain");
     ok = ok && record_all(&data, &of_recording, error) &&
          parallel_for(&(ParallelWork){train_one, &data}, trainings, "trainings", &of_training, error);
-    for (int i = 0; ok && i < count; i++) ok = study_parts_print(lines, &sain_layout, &data.rows[i], error);
+    for (int i = 0; ok && i < count; i++) ok = piece_tables_print(lines, &sain_layout, -1, &data.rows[i], error);
     for (SainScene scene = 0; scene < SAIN_SCENES; scene++) impact_problems_free(&data.scored[scene]);
     impact_problems_free(&data.trained);
     free(data.rows);
@@ -173,10 +173,10 @@ int sain_most_launches(const CsvTable *table) {
 }
 
 static const SystemPart parts[] = {
-    {"launches-1", 7, 0.6, 1, write_launches},   {"launches-2", 7, 0.1, 2, write_launches},
-    {"launches-4", 7, 0.1, 4, write_launches},   {"launches-8", 7, 0.1, 8, write_launches},
-    {"launches-16", 8, 0.8, 16, write_launches}, {"launches-32", 8, 0.1, 32, write_launches},
-    {"launches-64", 9, 0.1, 64, write_launches}, {0}};
+    {"launches-1", 7, 0.6, 1, write_launches, false},   {"launches-2", 7, 0.1, 2, write_launches, false},
+    {"launches-4", 7, 0.1, 4, write_launches, false},   {"launches-8", 7, 0.1, 8, write_launches, false},
+    {"launches-16", 8, 0.8, 16, write_launches, false}, {"launches-32", 8, 0.1, 32, write_launches, false},
+    {"launches-64", 9, 0.1, 64, write_launches, false}, {0}};
 
 const PaperSystem system_sain = {.name = "sain",
                                  .methods =

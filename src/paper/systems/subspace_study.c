@@ -5,7 +5,7 @@
 #include "paper/figures/plot_parts.h"
 #include "paper/study/launched.h"
 #include "paper/systems/system.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 #include "study/timing.h"
 #include "subspace_training/subspace_training.h"
 
@@ -126,7 +126,7 @@ static bool write_rows(const Measured *measured, FILE *lines, const Progress *pr
                                 .linear_near = NAN};
         if (!(i < ENGINES ? fill_engine(measured, &row, progress, error)
                           : fill_subspace(measured, i - ENGINES, &row, error)) ||
-            !study_parts_print(lines, &subspace_study_layout, &row, error))
+            !piece_tables_print(lines, &subspace_study_layout, -1, &row, error))
             return false;
     }
     return true;
@@ -171,10 +171,10 @@ const CsvLayout subspace_study_layout =
     CSV_LAYOUT("system_subspace", columns, SubspaceStudyRow, .min_rows = 0, .max_rows = SUBSPACE_STUDY_ROWS_MAX);
 
 static const SystemPart parts[] = {
-    {"subspace-single", .weight = 1, .quick_weight = 0.1, .index = 0, .write = write_scene},
-    {"subspace-stack", .weight = 3, .quick_weight = 0.2, .index = 1, .write = write_scene},
-    {"subspace-pyramid", .weight = 15, .quick_weight = 0.5, .index = 2, .write = write_scene},
-    {"subspace-pyramid_settled", .weight = 20, .quick_weight = 0.8, .index = 3, .write = write_scene},
+    {"subspace-single", .weight = 1, .quick_weight = 0.1, .index = 0, .write = write_scene, .timed = true},
+    {"subspace-stack", .weight = 3, .quick_weight = 0.2, .index = 1, .write = write_scene, .timed = true},
+    {"subspace-pyramid", .weight = 15, .quick_weight = 0.5, .index = 2, .write = write_scene, .timed = true},
+    {"subspace-pyramid_settled", .weight = 20, .quick_weight = 0.8, .index = 3, .write = write_scene, .timed = true},
     {0}};
 
 const PaperSystem system_subspace = {

@@ -15,11 +15,11 @@
                                          .claim = claim,
                                          .plot = plot_NAME};
 
-      A part writes rows of the table with study_parts_print(lines, &table, &row, error) (study/study_parts.h). It is kept
+      A part writes rows of the table with piece_tables_print(lines, &table, -1, &row, error) (study/piece_tables.h). It is kept
       when it is done, and done once: a study that was cut off continues with the next part. So a part should take some
       seconds. The whole study of one system takes at most 90 s on two idle cores, the quick one 2 s; the quick one measures
       everything that claims need, with less. A part may use all threads (common/parallel.h); times are measured on one
-      (study/meter.h).
+      (study/meter.h), by parts that say so (timed).
    2. Write figures/plot_NAME.c, which draws folder/system_NAME.csv (figures/plot_parts.h). It becomes
       figures/system-NAME.png and .svg.
    3. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
@@ -51,6 +51,7 @@ typedef struct SystemPart {
     int index;                   /* handed to write */
     /* Writes rows of the system's table. False with error set; ERROR_INTERRUPTED if progress_report() stops it. */
     bool (*write)(const SystemStudy *study, int index, FILE *lines, const Progress *progress, Error *error);
+    bool timed; /* its rows have times */
 } SystemPart;
 
 typedef struct PaperSystem {
@@ -77,7 +78,7 @@ SYSTEMS(SYSTEM_DECLARED)
 /* The list; ends with NULL. */
 extern const PaperSystem *const paper_systems[];
 
-/* A part of a system's study as a part of the whole (study/study_parts.h). context: a SystemWork. */
+/* A part of a system's study as a part of the whole (paper/study/paper_plan.h). context: a SystemWork. */
 typedef struct SystemWork {
     const SystemStudy *study;
     const SystemPart *part;

@@ -6,7 +6,7 @@
 #include "paper/systems/system.h"
 #include "study/closed_loop.h"
 #include "study/statistics.h"
-#include "study/study_parts.h"
+#include "study/piece_tables.h"
 #include "study/timing.h"
 
 #include <math.h>
@@ -166,7 +166,7 @@ static bool write_method(const Scores *scores, Scored *method, FILE *lines, Erro
                           .us_step = step_cost_mean(method->closed, of->kind->description->no_contacts),
                           .us_step_engine = step_cost_mean(engine, false)};
     sum_loops(scores, method, &row);
-    return study_parts_print(lines, &system_score_layout, &row, error);
+    return piece_tables_print(lines, &system_score_layout, -1, &row, error);
 }
 
 bool system_scores_write(void *context, FILE *lines, const Progress *progress, Error *error) {
