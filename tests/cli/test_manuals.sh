@@ -17,7 +17,7 @@ pages=$folder/prefix/share/man
 commands=$("$twinbox" --help | awk '/^  [a-z]/ { print $1 }')
 formats=$(cut -d '|' -f 1 "$manuals/pages.txt")
 equal "formats with a page" "$(echo $formats | tr ' ' '\n' | sort | xargs)" \
-    "$(printf 'twinbox-%s\n' scene run problem dataset network json verdict rules report manifest | sort | xargs)"
+    "$(printf 'twinbox-%s\n' scene run problem dataset network json verdict rules report manifest shards | sort | xargs)"
 equal "pages of section 1" "$(cd "$pages/man1" && echo *)" "$(printf '%s\n' twinbox $(printf 'twinbox-%s\n' $commands) | sed 's/$/.1/' | LC_ALL=C sort | xargs)"
 equal "pages of section 5" "$(cd "$pages/man5" && echo *)" "$(printf '%s.5\n' $formats | sort | xargs)"
 

@@ -56,7 +56,7 @@ equal "files beside networks" "$(names nets)" "net.npz other.npz "
 
 # What a killed process left goes with the next file in the folder.
 run 0 render $(small) -o taken
-touch taken/.twinbox-1-2-3.tmp
+touch taken/.twinbox-0123456789abcdef.tmp
 run 0 render $(small) -o taken --resume
 equal "files after a kill" "$(names taken)" "$(names whole)"
 finish

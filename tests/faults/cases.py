@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command lines that are run with faults. SCENES stands for the folder of scenes."""
 
+# Three pieces, of which the first shard has two.
+SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,block"
+
 # What the cases start from, in one folder; made once per run of the driver.
 PREPARATION = [
     "simulate SCENES/single.yaml --frames 50 -o a.npz -q",
@@ -8,12 +11,20 @@ PREPARATION = [
     "export a.npz -o a.csv -q",
     "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 -q",
     "train pairs.npz -o net.npz --iterations 1 -q",
+    "dataset SCENES/single.yaml -o pieces.npz --bomb-x=0:4:1 --shard 1/2 -q",
+    "train --kind scene-net SCENES/stack.yaml -o network.npz --launches 10 --rounds 1 --iterations 1 --width 16"
+    " --shard 1/2 -q",
+    "train --kind scene-net SCENES/stack.yaml -o network.npz --launches 10 --rounds 1 --iterations 1 --width 16"
+    " --shard 2/2 -q",
     "problem SCENES/single.yaml --frame 45 -o problem.npz -q",
     "render a.npz -o expected --size 64x64 --frames 40:42 --jobs 1 -q",
     "render b.npz -o actual --size 64x64 --frames 41:43 --jobs 1 -q",
     "render a.npz -o equal --size 64x64 --frames 40:42 --jobs 1 -q",
     "render a.npz -o half --size 64x64 --frames 40:41 --jobs 1 -q",
     "compare expected actual --report report -q",
+    f"{SHARDED} -o sharded --shard 1/2 -q",
+    f"{SHARDED} -o sharded --shard 2/2 -q",
+    "render a.npz -o film --size 64x64 --frames 40:42 --jobs 1 --shard 1/2 -q",
 ]
 
 
@@ -60,7 +71,10 @@ SHORT = [
 # Take longer: the first call from each place fails.
 LONG = [
     Case("compare-report", "compare expected actual --report report", "expected actual report"),
-    Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz"),
+    Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz",
+         "out.npz.parts-*"),
+    Case("dataset-shard", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --shard 1/2", "", "out.npz.shards/*"),
+    Case("dataset-merge", "merge pieces.npz", "pieces.npz.shards pieces.npz=pairs.npz"),
     Case("train-pair-net", "train pairs.npz -o out.npz --iterations 2", "pairs.npz"),
     Case("train-from", "train pairs.npz -o net.npz --from net.npz --iterations 2", "pairs.npz net.npz"),
     Case("train-lm", "train pairs.npz -o out.npz --iterations 2 --layers 10-8-8-6 --optimizer lm", "pairs.npz"),
@@ -70,6 +84,9 @@ LONG = [
          " --width 16"),
     Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1", "",
          "out.npz.part"),
+    Case("train-shard", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1 --shard 1/2", "",
+         "out.npz.shards/*"),
+    Case("train-merge", "merge network.npz", "network.npz.shards"),
     Case("train-sain", "train --kind sain SCENES/single.yaml -o out.npz --launches 2 --rounds 1 --steps 3", "",
          "out.npz.part"),
     Case("train-hybrid", "train --kind hybrid SCENES/single.yaml -o out.npz --launches 2 --steps 3", "",
@@ -92,11 +109,15 @@ LONG = [
     Case("render-video", f"render a.npz -o out --frames 40:42 {SMALL} --video out.mp4 --video out.gif",
          "a.npz out.mp4=a.csv out.gif=a.csv", "out/manifest.json.part"),
     Case("render-output", f"render a.npz -o out --frames 40:42 {SMALL} --video -", "a.npz", "out/manifest.json.part"),
-    Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/*.part.csv"),
+    Case("render-shard", f"render a.npz -o out --frames 40:42 {SMALL} --shard 1/2", "a.npz", "out/shards/*"),
+    Case("render-merge", "merge film", "a.npz film", "film/manifest.json.part"),
+    Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/parts-*"),
     Case("chart-pages", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2 --pages", "",
-         "out/*.part.csv out/parts-*"),
+         "out/parts-*"),
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "",
-         "out/*.part.csv out/parts-*"),
+         "out/parts-*"),
+    Case("shard", f"{SHARDED} -o out --shard 1/2", "", "out/shards/*"),
+    Case("merge", "merge sharded", "sharded"),
     Case("stability-pages", "stability --scenes SCENES --quick --study speed_thickness --methods engine -o out --pages", "",
          "out/parts-*"),
     Case("paper", "paper -o out --quick --scenes SCENES", "", "out/parts-*", "rename:60", 100),

@@ -28,7 +28,14 @@
     TARGET(run)              \
     TARGET(network)          \
     TARGET(dataset)          \
-    TARGET(problem)
+    TARGET(problem)          \
+    TARGET(piece)            \
+    TARGET(record)           \
+    TARGET(scores)           \
+    TARGET(times)            \
+    TARGET(rows)             \
+    TARGET(samples)          \
+    TARGET(impacts)
 
 #define FUZZ_DECLARE(name) void fuzz_##name(const uint8_t *data, size_t size);
 FUZZ_TARGETS(FUZZ_DECLARE)

@@ -2,8 +2,17 @@
 """The command lines that are killed. SCENES stands for the folder of scenes."""
 import fnmatch
 
+SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 --rounds 1 --iterations 1 --width 16"
+IMPACTS = SCENE_NET.replace("net.npz", "impacts.npz")
+
+# Four pieces.
+PIECES = "dataset SCENES/single.yaml -o pieces.npz --random 200"
+
+# Three pieces, of which the first shard has two.
+SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,block"
+
 # What the cases start from, in one folder: how each file or folder is made, by a command of twinbox, which needs those
-# that it names, or of the shell (sh).
+# that it names, by several (" && "), or of the shell (sh).
 PREPARED = {
     "a.npz": "simulate SCENES/single.yaml --frames 8 -o a.npz",
     "b.npz": "simulate SCENES/single.yaml --frames 8 -m momentum -o b.npz",
@@ -12,6 +21,7 @@ PREPARED = {
     "expected": "render a.npz -o expected --size 64x64 --frames 0:5",
     "actual": "render b.npz -o actual --size 64x64 --frames 1:6",
     "older": "render b.npz -o older --size 64x64 --frames 0:8",
+    "film": "render a.npz -o film --size 64x64 --shard 1/2",
     "report": "compare expected actual --report report",
     "film.mp4": "render a.npz -o frames --size 64x64 --video film.mp4",
     "charts": "chart SCENES/single.yaml SCENES/stack.yaml -o charts --quick --methods engine:k=10,momentum:k=20",
@@ -19,7 +29,10 @@ PREPARED = {
     "small": "sh mkdir small && cp -r SCENES/networks small && for name in single stack pyramid; do "
              "sed 's/^frames: .*/frames: 60/' SCENES/$name.yaml >small/$name.yaml; done && "
              "cp small/stack.yaml small/pyramid_settled.yaml",
+    "pieces.npz.shards": f"{PIECES} --shard 1/2 && {PIECES} --shard 2/2",
+    "impacts.npz.shards": f"{IMPACTS} --shard 1/2 && {IMPACTS} --shard 2/2",
     "study": "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o study",
+    "sharded": f"{SHARDED} -o sharded --shard 1/2 && {SHARDED} -o sharded --shard 2/2",
 }
 
 
@@ -41,8 +54,6 @@ def render(name, options, inputs, most=16):
     return Case(name, command, "a.npz " + inputs, command + " --resume", most)
 
 
-SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 --rounds 1 --iterations 1 --width 16"
-
 CASES = [
     Case("paper", "paper -o out --quick --scenes small", "small", most=6,
          times="out/closed_loop.csv out/system*.csv out/figures/closed-loop.[ps]* out/figures/system-* "
@@ -55,17 +66,23 @@ CASES = [
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", most=16),
     Case("stability-pages", "stability --scenes SCENES --quick --study speed_thickness --methods engine -o out --pages",
          most=12),
+    Case("stability-shard", f"{SHARDED} -o out --shard 1/2", most=20),
+    Case("merge", "merge sharded", "sharded", most=16),
     Case("stability-renew", "stability --scenes SCENES --study heavy_on_one --methods engine:k=5 -o study", "study",
          most=12),
     render("render", "--jobs 1", ""),
     render("render-jobs", "--jobs 3", ""),
     render("render-over-older", "--jobs 2 --frames 0:5", "out=older"),
     render("video", "--jobs 1 --video film.mp4 --video film.gif", "film.mp4", most=16),
+    Case("render-shard", "render a.npz -o out --size 64x64 --hold 1 --shard 1/2", "a.npz"),
+    Case("render-merge", "merge film", "a.npz film", most=10),
     Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz", most=14,
          early="net.npz"),
     Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o net.npz --iterations 1 --bomb-x=1:2:1",
          most=10, early="net.npz"),
     Case("train-scene-net", SCENE_NET, most=12, early="net.npz"),
+    Case("train-shard", f"{IMPACTS} --shard 1/2", most=14),
+    Case("train-merge", "merge impacts.npz", "impacts.npz.shards", most=10, early="impacts.npz"),
     Case("train-interior-net", "train --kind interior-net -o net.npz --scenes 7 --rounds 2 --epochs 2", most=20),
     Case("train-sain", "train --kind sain SCENES/single.yaml -o net.npz --launches 4 --rounds 2 --steps 120", most=20),
     Case("train-hybrid", "train --kind hybrid SCENES/single.yaml -o net.npz --launches 60 --steps 3", most=20),
@@ -74,6 +91,8 @@ CASES = [
     Case("train-subspace", "train --kind subspace SCENES/single.yaml -o net.npz --launches 2 --epochs 2 --width 16",
          most=12),
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
+    Case("dataset-shard", f"{PIECES} --shard 1/2", most=20),
+    Case("dataset-merge", "merge pieces.npz", "pieces.npz.shards", most=14),
     Case("approve", "approve report --expected expected", "report expected actual", most=20),
     Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz",
          most=12),

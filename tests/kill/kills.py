@@ -29,7 +29,7 @@ INTERRUPTED = 130
 # What may differ between two runs: times in the tables, and what is drawn from them; gnuplot's time in a PDF.
 DATE = re.compile(rb"/CreationDate \(D:[^)]*\)")
 ENDS = {".html": b"</html>", ".md": b"", ".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>",
-        ".pdf": b"%%EOF", ".csv": b""}
+        ".pdf": b"%%EOF", ".csv": b"", ".txt": b""}
 
 
 class Finding(Exception):
@@ -176,13 +176,13 @@ def prepare(program, sources, folder, name):
     if command.startswith("sh "):
         subprocess.run(["sh", "-c", command[3:]], cwd=folder, check=True)
         return
-    words = command.split()
-    for word in words:
-        if word in PREPARED and word != name:
-            prepare(program, sources, folder, word)
-    done = subprocess.run([program, *words, "-q"], cwd=folder, stdout=subprocess.DEVNULL, check=False)
-    if done.returncode not in (0, 1):
-        sys.exit(f"{PREPARED[name]}: exit status {done.returncode}")
+    for words in map(str.split, command.split(" && ")):
+        for word in words:
+            if word in PREPARED and word != name:
+                prepare(program, sources, folder, word)
+        done = subprocess.run([program, *words, "-q"], cwd=folder, stdout=subprocess.DEVNULL, check=False)
+        if done.returncode not in (0, 1):
+            sys.exit(f"{' '.join(words)}: exit status {done.returncode}")
 
 
 def main():

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a merge reads from the pieces of a chart: their results are bytes. */
+#include "fuzz.h"
+
+#include "study/method_scores.h"
+#include "study/scene_times.h"
+
+#include <stdlib.h>
+
+static void check_scores(const MethodScores *scores) {
+    int64_t steps = 0;
+    for (int phase = 0; phase < PHASES; phase++) steps += scores->steps[PROTOCOL_CLOSED][phase].count;
+    if (scores->solves != steps || scores->unconverged < 0 || scores->unconverged > scores->solves)
+        fuzz_fail("%lld of %lld solves", (long long)scores->unconverged, (long long)scores->solves);
+}
+
+/* The first byte is the number of methods. */
+void fuzz_scores(const uint8_t *data, size_t size) {
+    Error error = {0};
+    StoredScores stored;
+    MethodScores scores = {0};
+    if (size == 0) return;
+    const int methods = data[0] % 8;
+    fuzz_begin();
+    bool ok = stored_scores_open(&stored, "launch", (const char *)data + 1, size - 1, methods, &error);
+    for (int i = 0; ok && i < methods; i++) ok = method_scores_add(&scores, &stored, i, &error);
+    fuzz_end(ok, &error, "launch");
+    if (ok) check_scores(&scores);
+    method_scores_free(&scores);
+}
+
+void fuzz_times(const uint8_t *data, size_t size) {
+    Error error = {0};
+    if (size == 0) return;
+    const SceneStudy study = {.contender_count = data[0] % 8};
+    fuzz_begin();
+    MethodTimes *times = scene_times_read(&study, "times", (const char *)data + 1, size - 1, &error);
+    fuzz_end(times != NULL, &error, "times");
+    for (int i = 0; times != NULL && i < study.contender_count; i++)
+        if (times[i].costs[PROTOCOL_CLOSED][PHASE_REST].solver < 0) fuzz_fail("a time below 0");
+    free(times);
+}
