@@ -24,6 +24,8 @@ stopped() {
     equal "exit status after Ctrl-C" $? "$1"
 }
 watch() {
+    : >watched # before the program begins: seen() must not read what an earlier one wrote
+    : >watched.err
     "$twinbox" compare "$@" --watch >watched 2>watched.err </dev/null &
     watching=$!
 }
