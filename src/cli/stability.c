@@ -51,8 +51,7 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Parameter of SCENE to vary, by default between its bounds; with STEP at every such value, up to 128; two "
-     "parameters "
-     "give their map, too",
+     "parameters give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},

@@ -20,5 +20,5 @@ typedef struct PieceHead {
 bool piece_file_write(const char *path, const PieceHead *head, const void *results, size_t size, Error *error);
 
 /* Returns the results, to be freed, with a NUL behind them that *size does not count. NULL with error set: ERROR_INPUT if
-   the file is damaged, cut off, or of another study or piece than the head says; *cpu is set. */
+   the file is damaged, cut off, or of another study or piece than the head says. The head's cpu is taken from the file. */
 char *piece_file_read(const char *path, PieceHead *head, size_t *size, Error *error);
