@@ -3,6 +3,7 @@
    accuracy is measured on it. Source: Catto, "Iterative Dynamics with Temporal Coherence" (2005) and "Fast and Simple
    Physics using Sequential Impulses" (GDC 2006). */
 #pragma once
+#include "common/error.h"
 #include "common/vec2.h"
 
 #include <stdbool.h>
@@ -40,7 +41,7 @@ typedef struct ContactPoint {
 
 typedef struct ContactProblem {
     int body_count, contact_count;
-    int bomb; /* body index, or -1 */
+    int marked; /* body that the caller of world_mark() chose: a scene marks its bomb; or -1 */
     float dt; /* s */
     const ProblemBody *bodies;
     const ContactPoint *contacts;
@@ -83,3 +84,7 @@ typedef struct ContactSolution {
     float momentum_error;
     NetworkFallbacks fallbacks; /* zeros for most methods */
 } ContactSolution;
+
+/* Solves a contact problem: fills the solution. False with error set only when memory is short or the problem cannot be
+   solved at all. Allocates nothing once the state has met a problem of that size. */
+typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);

@@ -10,9 +10,7 @@ typedef struct ContactSolverKind {
     MethodDescription description;
     /* Returns the solver's own state, NULL with error set if a setting is refused. */
     void *(*create)(const Settings *settings, Error *error);
-    /* Fills the solution. False with error set only when memory is short or the problem cannot be solved at all.
-       Allocates nothing once it has solved a problem of that size. */
-    bool (*solve)(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
+    ContactSolve *solve;
     void (*destroy)(void *state);
 } ContactSolverKind;
 

@@ -32,7 +32,7 @@ bool problem_bytes_take(ProblemBytes *bytes, void *items, size_t count, size_t s
 }
 
 void problem_bytes_write(const ContactProblem *problem, FILE *out) {
-    const Head head = {problem->body_count, problem->contact_count, problem->bomb, problem->dt};
+    const Head head = {problem->body_count, problem->contact_count, problem->marked, problem->dt};
     fwrite(&head, sizeof head, 1, out);
     stream_put(out, problem->bodies, sizeof *problem->bodies, (size_t)problem->body_count);
     stream_put(out, problem->contacts, sizeof *problem->contacts, (size_t)problem->contact_count);

@@ -21,7 +21,7 @@ static bool read_head(StoredProblem *stored, NpzFile *file, const char *path, Er
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)dt);
     stored->frame = frame;
     stored->problem.dt = dt;
-    stored->problem.bomb = bomb;
+    stored->problem.marked = bomb;
     return true;
 }
 
@@ -55,8 +55,8 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
     ContactProblem *problem = &stored->problem;
     problem->body_count = (int)bodies;
     problem->contact_count = (int)contacts[0];
-    if (problem->bomb < -1 || problem->bomb >= problem->body_count)
-        return error_input(error, path, "the bomb is body %d of %d", problem->bomb, problem->body_count);
+    if (problem->marked < -1 || problem->marked >= problem->body_count)
+        return error_input(error, path, "the bomb is body %d of %d", problem->marked, problem->body_count);
     if (!check_shapes(file, bodies, contacts[0], error)) return false;
     problem->bodies = stored->bodies = calloc((size_t)bodies, sizeof *stored->bodies);
     problem->contacts = stored->contacts = calloc((size_t)contacts[0] + 1, sizeof *stored->contacts);

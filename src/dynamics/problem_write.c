@@ -31,7 +31,7 @@ static void split_contact_heads(const ContactProblem *problem, int32_t (*pairs)[
 }
 
 bool problem_write(const ContactProblem *problem, const char *scene, int frame, const char *path, Error *error) {
-    int32_t version = PROBLEM_VERSION, frame_number = frame, bomb = problem->bomb;
+    int32_t version = PROBLEM_VERSION, frame_number = frame, bomb = problem->marked;
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     int32_t(*pairs)[2] = calloc(contacts + 1, sizeof *pairs);
     uint32_t *features = calloc(contacts + 1, sizeof *features);

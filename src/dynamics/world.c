@@ -12,7 +12,7 @@
    unchanged. */
 struct World {
     WorldDef def;
-    int body_count, bomb;
+    int body_count, marked;
     int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
     size_t body_capacity;
     Body *bodies, *moved; /* before and after the step in progress */
@@ -36,7 +36,7 @@ World *world_create(const WorldDef *def, Error *error) {
         return NULL;
     }
     world->def = *def;
-    world->bomb = world->problem.bomb = -1;
+    world->marked = world->problem.marked = -1;
     return world;
 }
 
@@ -101,13 +101,13 @@ void world_remove_last_body(World *world) {
     contact_set_forget(&world->last, body);
     /* A body added in its place must not reuse its box. */
     if (world->posed > body) world->posed = body;
-    if (world->bomb == body) world->bomb = -1;
+    if (world->marked == body) world->marked = -1;
 }
 
 bool world_copy(World *to, const World *from, Error *error) {
     to->def = from->def;
-    to->bomb = from->bomb;
-    to->problem = (ContactProblem){.bomb = -1};
+    to->marked = from->marked;
+    to->problem = (ContactProblem){.marked = -1};
     to->posed = 0;
     to->body_count = from->body_count;
     if (!reserve_bodies(to, (size_t)from->body_count) || !contact_set_copy(&to->last, &from->last)) {
@@ -122,7 +122,7 @@ bool world_copy(World *to, const World *from, Error *error) {
     return true;
 }
 
-void world_set_bomb(World *world, int body) { world->bomb = body; }
+void world_mark(World *world, int body) { world->marked = body; }
 int world_body_count(const World *world) { return world->body_count; }
 const Body *world_bodies(const World *world) { return world->bodies; }
 const ContactProblem *world_problem(const World *world) { return &world->problem; }
@@ -204,7 +204,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
     contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
     *problem = (ContactProblem){.body_count = world->body_count,
                                 .contact_count = world->next.contact_count,
-                                .bomb = world->bomb,
+                                .marked = world->marked,
                                 .dt = dt,
                                 .bodies = world->problem_bodies,
                                 .contacts = world->next.contacts};
@@ -232,9 +232,9 @@ bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
     return true;
 }
 
-bool world_step(World *world, const ContactSolver *solver, float dt, Error *error) {
+bool world_step(World *world, ContactSolve *solve, void *state, float dt, Error *error) {
     ContactProblem problem;
     ContactSolution *solution;
     return world_begin_step(world, dt, &problem, &solution, error) &&
-           solver->kind->solve(solver->state, &problem, solution, error) && world_end_step(world, error);
+           solve(state, &problem, solution, error) && world_end_step(world, error);
 }

@@ -6,7 +6,7 @@
 #pragma once
 #include "common/error.h"
 #include "dynamics/body.h"
-#include "dynamics/contact_solver.h"
+#include "dynamics/contact_problem.h"
 
 #include <stddef.h>
 
@@ -28,8 +28,8 @@ bool world_add_body(World *world, const BodyDef *def, Error *error);
 /* Removes the body added last, and its contacts; the other contacts keep their impulses. The world must have a body. */
 void world_remove_last_body(World *world);
 
-/* Tells the contact problem which body is the bomb (-1: none). */
-void world_set_bomb(World *world, int body);
+/* Marks a body (-1: none) for those who read the contact problem: a scene marks its bomb. The step makes no difference. */
+void world_mark(World *world, int body);
 
 /* Copies the state of `from` to `to`. False with error set when memory is short. */
 bool world_copy(World *to, const World *from, Error *error);
@@ -55,9 +55,9 @@ typedef struct BodyPose {
 /* The same, with the final poses [body_count] given, for steppers that integrate in substeps. */
 bool world_end_step_at(World *world, const BodyPose *poses, Error *error);
 
-/* Advances the world by dt seconds. On failure the world is unchanged; error names the first body whose state is NaN or
-   infinite, or is the solver's. */
-bool world_step(World *world, const ContactSolver *solver, float dt, Error *error);
+/* Advances the world by dt seconds with a solver and its state. On failure the world is unchanged; error names the first
+   body whose state is NaN or infinite, or is the solver's. */
+bool world_step(World *world, ContactSolve *solve, void *state, float dt, Error *error);
 
 int world_body_count(const World *world);
 const Body *world_bodies(const World *world);

@@ -230,7 +230,7 @@ SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *w
         return NULL;
     }
     const ContactProblem *problem = &samples->items[0].problem;
-    SlotShape shape = {problem->body_count, problem->bomb, 0, widths->state, widths->present,
+    SlotShape shape = {problem->body_count, problem->marked, 0, widths->state, widths->present,
                        widths->warm,        widths->hidden};
     Slot *slots = find_slots(samples, &shape.slot_count, error);
     SlotNetwork *network = slots != NULL ? slot_network_create(&shape, slots, error) : NULL;

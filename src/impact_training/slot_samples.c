@@ -133,7 +133,7 @@ static bool read_sample(SlotSamples *samples, ProblemBytes *bytes, int bodies, E
     ReferenceVelocity *velocities = malloc((size_t)bodies * sizeof *velocities);
     bool ok = velocities != NULL || error_memory(error, bytes->path);
     ok = ok && problem_bytes_take(bytes, place, 1, sizeof place, error) && problem_bytes_read(&problem, bytes, error);
-    if (ok && (place[0] < 0 || place[1] < 0 || problem.body_count != bodies || problem.bomb < 0))
+    if (ok && (place[0] < 0 || place[1] < 0 || problem.body_count != bodies || problem.marked < 0))
         ok = problem_bytes_refuse(bytes, error);
     ok = ok && problem_bytes_take(bytes, velocities, (size_t)bodies, sizeof *velocities, error) &&
          (slot_samples_add(samples, &problem, place[0], place[1]) || error_memory(error, bytes->path)) &&

@@ -46,7 +46,7 @@ static bool keep(Run *run, const ContactProblem *problem, bool impact, Error *er
 static bool run_world(Run *run, const Scene *scene, World *world, const ContactSolver *solver, Error *error) {
     for (int frame = 1; frame <= scene->frames; frame++) {
         Error failure = {0};
-        if (!world_step(world, solver, scene->dt, &failure))
+        if (!world_step(world, solver->kind->solve, solver->state, scene->dt, &failure))
             return failure.kind == ERROR_INPUT || (*error = failure, false);
         bool impact;
         const ContactProblem *problem = world_problem(world);

@@ -105,7 +105,7 @@ World *scene_world(const Scene *scene, Error *error);
 /* The bomb with its start velocity: the velocity law applied to its position. */
 BodyDef scene_bomb_body(const Scene *scene);
 
-/* Adds the bomb to a world of this scene and calls world_set_bomb(). */
+/* Adds the bomb to a world of this scene and marks it. */
 bool scene_add_bomb(const Scene *scene, World *world, Error *error);
 
 /* XXH3 of everything that determines a run: equal physics, equal hash. Gravity, dt, iterations, switches, bodies (and

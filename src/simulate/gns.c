@@ -140,7 +140,7 @@ static bool begin(Gns *gns, const World *world, const ContactProblem *problem, c
             continue;
         }
         const int at = gns->particles.bodies++;
-        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->bomb};
+        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->marked};
         gns->body[at] = i;
         if (gns->memory.known[i])
             take_past(gns, at, gns->place[i]);

@@ -156,10 +156,8 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
     return solved;
 }
 
-static const ContactSolverKind metered_kind = {.solve = solve_metered};
-
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
     if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
     MeteredSolver metered = {&stepper->solver, step};
-    return world_step(world, &(ContactSolver){&metered_kind, &metered}, step->scene->dt, error);
+    return world_step(world, solve_metered, &metered, step->scene->dt, error);
 }

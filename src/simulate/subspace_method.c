@@ -213,7 +213,7 @@ static bool reserve(Method *method, size_t bodies, Error *error) {
 
 /* The network's bodies must be those of the world: a caller may step any world of the scene. */
 static bool check_world(const Method *method, const Body *bodies, const ContactProblem *problem, Error *error) {
-    int moving = problem->bomb < 0;
+    int moving = problem->marked < 0;
     for (int i = 0; i < problem->body_count; i++) moving += bodies[i].inv_mass != 0;
     return moving == method->net->shape.bodies ||
            error_input(error, "subspace", "the world has %d bodies that move, with the bomb; the network is for %d",
@@ -231,7 +231,7 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
     if (!check_world(method, bodies, &problem, error)) return false;
     step_solving_begins(which);
     for (int i = 0; i < problem.body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
-    if (problem.bomb >= 0)
+    if (problem.marked >= 0)
         solution->fallbacks = predict(method, bodies, &problem, which);
     else
         repeat(method, bodies, problem.body_count, which->frame);
@@ -239,7 +239,7 @@ static bool step(void *state, World *world, const Step *which, Error *error) {
     step_solving_ends(which);
     solution->momentum_error = free_flight_momentum(&problem, solution, method->touched);
     if (!world_end_step_at(world, method->poses, error)) return false;
-    method->after_count = problem.bomb >= 0 ? problem.body_count : 0;
+    method->after_count = problem.marked >= 0 ? problem.body_count : 0;
     memcpy(method->after, world_bodies(world), (size_t)problem.body_count * sizeof *method->after);
     return true;
 }

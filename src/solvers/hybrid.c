@@ -116,13 +116,13 @@ bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWa
 static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
     const Tabulation *memory = hybrid->memory;
     const char *where = hybrid->path != NULL ? hybrid->path : "hybrid";
-    const int bodies = problem->bomb < 0 ? memory->body_count - 1 : memory->body_count;
+    const int bodies = problem->marked < 0 ? memory->body_count - 1 : memory->body_count;
     if (problem->body_count != bodies)
         return error_input(error, where, "the memory is of the scene %s of %d bodies; this one has %d", memory->scene,
                            bodies, problem->body_count);
-    if (problem->bomb < 0 || problem->bomb == memory->bomb) return true;
+    if (problem->marked < 0 || problem->marked == memory->bomb) return true;
     return error_input(error, where, "the memory is of the scene %s, with the bomb as body %d; here it is body %d",
-                       memory->scene, memory->bomb, problem->bomb);
+                       memory->scene, memory->bomb, problem->marked);
 }
 
 static bool reserve(Hybrid *hybrid, const ContactProblem *problem) {
@@ -143,7 +143,7 @@ static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *proble
     at += sizeof problem->dt;
     for (int i = 0; i < problem->contact_count; i++, at += sizeof(ContactWords)) {
         const ContactPoint *contact = &problem->contacts[i];
-        const bool of_bomb = contact->a == problem->bomb || contact->b == problem->bomb;
+        const bool of_bomb = contact->a == problem->marked || contact->b == problem->marked;
         const uint32_t feature = of_bomb ? scene_view_feature(problem, contact) : contact->feature;
         memcpy(at, &(ContactWords){contact->a, contact->b, feature, contact->friction}, sizeof(ContactWords));
     }
@@ -152,11 +152,11 @@ static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *proble
 
 /* Fills `others`, and the key if there is a memory. */
 static TabulationQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
-    const ProblemBody *bomb = &problem->bodies[problem->bomb];
+    const ProblemBody *bomb = &problem->bodies[problem->marked];
     float *others = hybrid->others;
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
-        if (i == problem->bomb) continue;
+        if (i == problem->marked) continue;
         tabulation_numbers(body, body->angle, problem->dt, others);
         others += TABULATION_NUMBERS;
     }
@@ -178,7 +178,7 @@ static void push_all(const ContactProblem *problem, ContactSolution *solution) {
 }
 
 static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
-    if (problem->bomb < 0) return false;
+    if (problem->marked < 0) return false;
     for (int i = 0; i < problem->contact_count; i++)
         solution->impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
     push_all(problem, solution);

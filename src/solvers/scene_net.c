@@ -139,14 +139,14 @@ static void *create(const Settings *chosen, Error *error) {
 
 /* Before the bomb appears there is one body less. */
 static bool fits(const SlotNetwork *network, const ContactProblem *problem, Error *error) {
-    const int bodies = problem->bomb < 0 ? network->body_count - 1 : network->body_count;
+    const int bodies = problem->marked < 0 ? network->body_count - 1 : network->body_count;
     if (problem->body_count != bodies)
         return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
                            network->scene, bodies, problem->body_count);
-    if (problem->bomb < 0 || problem->bomb == network->bomb) return true;
+    if (problem->marked < 0 || problem->marked == network->bomb) return true;
     return error_input(error, "scene-net",
                        "the network is for the scene %s, with the bomb as body %d; here it is body %d", network->scene,
-                       network->bomb, problem->bomb);
+                       network->bomb, problem->marked);
 }
 
 static int within(float speed) { return fabsf(speed) <= speed_max; }
@@ -196,7 +196,7 @@ static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route 
                          Error *error) {
     const SlotNetwork *network = solver->network;
     *route = ROUTE_MOMENTUM;
-    if (problem->bomb < 0) return true;
+    if (problem->marked < 0) return true;
     bool known = problem->bodies[network->bomb].inv_mass == network->bomb_inv_mass;
     if (!residual_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
         if (known) *route = ROUTE_CALM;

@@ -74,12 +74,12 @@ static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns /
 
 /* With the bomb rotated back by so many quarter turns. */
 static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
-    if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
-    return turn_feature(contact->feature, contact->a == problem->bomb, turns);
+    if (contact->a != problem->marked && contact->b != problem->marked) return contact->feature;
+    return turn_feature(contact->feature, contact->a == problem->marked, turns);
 }
 
 uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
-    const int bomb = problem->bomb;
+    const int bomb = problem->marked;
     return feature_of(problem, contact, bomb < 0 ? 0 : turns_modulo_4(turns_of(&problem->bodies[bomb])));
 }
 

@@ -108,7 +108,7 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
     const VerdictStep step = {.frame = frame,
                               .body_count = world_body_count(world),
                               .contact_count = problem->contact_count,
-                              .bomb = problem->bomb,
+                              .bomb = problem->marked,
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
     return verdict_watch_step(watch, &step, error);

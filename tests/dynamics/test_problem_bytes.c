@@ -58,7 +58,7 @@ static void written_is_read(void **state) {
     assert_int_equal(bytes.left, 0);
     assert_int_equal(problem.body_count, BODIES);
     assert_int_equal(problem.contact_count, CONTACTS);
-    assert_int_equal(problem.bomb, 2);
+    assert_int_equal(problem.marked, 2);
     assert_true(problem.dt == 0.01f);
     assert_memory_equal(problem.bodies, written.bodies, sizeof written.bodies);
     assert_memory_equal(problem.contacts, written.contacts, sizeof written.contacts);

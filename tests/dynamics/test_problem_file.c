@@ -59,7 +59,7 @@ static void written_is_read(void **state) {
     assert_ok(stored != NULL, error);
     assert_string_equal(stored->scene, "stack");
     assert_int_equal(stored->frame, 41);
-    assert_int_equal(stored->problem.bomb, 2);
+    assert_int_equal(stored->problem.marked, 2);
     assert_true(stored->problem.dt == example.problem.dt);
     assert_int_equal(stored->problem.body_count, BODIES);
     assert_int_equal(stored->problem.contact_count, CONTACTS);
@@ -75,13 +75,13 @@ static void a_problem_without_contacts_is_one(void **state) {
     make_example(&example);
     example.problem.contact_count = 0;
     example.problem.contacts = NULL;
-    example.problem.bomb = -1;
+    example.problem.marked = -1;
     Error error = {0};
     assert_ok(problem_write(&example.problem, "", 1, path, &error), error);
     StoredProblem *stored = problem_read(path, &error);
     assert_ok(stored != NULL, error);
     assert_int_equal(stored->problem.contact_count, 0);
-    assert_int_equal(stored->problem.bomb, -1);
+    assert_int_equal(stored->problem.marked, -1);
     problem_destroy(stored);
 }
 
@@ -109,8 +109,8 @@ static void bad_heads_are_refused(void **state) {
     REFUSE(problem.dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(problem.dt, -1, "dt must be");
     REFUSE(problem.dt, NAN, "dt must be");
-    REFUSE(problem.bomb, 3, "the bomb is body 3 of 3");
-    REFUSE(problem.bomb, -2, "the bomb is body -2 of 3");
+    REFUSE(problem.marked, 3, "the bomb is body 3 of 3");
+    REFUSE(problem.marked, -2, "the bomb is body -2 of 3");
     REFUSE(problem.body_count, 0, "0 bodies");
     Example example;
     make_example(&example);

@@ -22,8 +22,6 @@ static bool fake_solve(void *state, const ContactProblem *problem, ContactSoluti
     return !fake->fails || error_input(error, "fake", "told to fail");
 }
 
-static const ContactSolverKind fake_kind = {.description.name = "fake", .solve = fake_solve};
-
 static World *box_on_ground(bool warm_starting, bool position_correction, float height) {
     Error error = {0};
     const WorldDef def = {{0, -10}, warm_starting, position_correction};
@@ -38,8 +36,7 @@ static World *box_on_ground(bool warm_starting, bool position_correction, float 
 
 static void step(World *world, FakeSolver *fake) {
     Error error = {0};
-    ContactSolver solver = {&fake_kind, fake};
-    assert_ok(world_step(world, &solver, dt, &error), error);
+    assert_ok(world_step(world, fake_solve, fake, dt, &error), error);
 }
 
 /* A unit box of mass 3 (inertia m (1 + 1) / 12 = 0.5) whose corners are 0.5 m below and beside its centre:
@@ -48,12 +45,12 @@ static void a_contact_problem_holds_what_the_step_froze(void **state) {
     (void)state;
     World *world = box_on_ground(true, true, 0.47f);
     FakeSolver fake = {0};
-    world_set_bomb(world, 1);
+    world_mark(world, 1);
     step(world, &fake);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->body_count, 2);
     assert_int_equal(problem->contact_count, 2);
-    assert_int_equal(problem->bomb, 1);
+    assert_int_equal(problem->marked, 1);
     assert_near(problem->dt, dt, 0);
     assert_near(problem->bodies[1].velocity.y, -10 * dt, 1e-6);
     assert_near(problem->bodies[0].velocity.y, 0, 0);
@@ -119,8 +116,7 @@ static void fail_step(World *world, FakeSolver *fake, const char *message) {
     Body before[2];
     memcpy(before, world_bodies(world), sizeof before);
     Error error = {0};
-    ContactSolver solver = {&fake_kind, fake};
-    assert_false(world_step(world, &solver, dt, &error));
+    assert_false(world_step(world, fake_solve, fake, dt, &error));
     assert_error(error, ERROR_INPUT, message);
     assert_memory_equal(world_bodies(world), before, sizeof before);
 }
@@ -197,7 +193,7 @@ static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
     (void)state;
     World *world = two_boxes_on_ground(vec2(1, 1));
     FakeSolver fake = {.impulse = 7};
-    world_set_bomb(world, 2);
+    world_mark(world, 2);
     step(world, &fake);
     world_remove_last_body(world);
     assert_int_equal(world_body_count(world), 2);

@@ -64,7 +64,7 @@ static void slots_are_contacts_of_at_least_three_samples(void **state) {
         assert_true(samples_with(slot->a, slot->b, slot->feature) >= 3);
     }
     assert_int_equal(network->body_count, samples.items[0].problem.body_count);
-    assert_int_equal(network->bomb, samples.items[0].problem.bomb);
+    assert_int_equal(network->bomb, samples.items[0].problem.marked);
 }
 
 static void caps_are_the_largest_warm_impulses_at_the_touch(void **state) {

@@ -72,8 +72,8 @@ static bool bomb_touches(const ContactProblem *problem) {
     bool touches = false;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        const int other = contact->a == problem->bomb ? contact->b : contact->a;
-        touches |= (contact->a == problem->bomb || contact->b == problem->bomb) && problem->bodies[other].inv_mass > 0;
+        const int other = contact->a == problem->marked ? contact->b : contact->a;
+        touches |= (contact->a == problem->marked || contact->b == problem->marked) && problem->bodies[other].inv_mass > 0;
     }
     return touches;
 }
@@ -88,9 +88,9 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
     int found = 0;
     for (int frame = 0, since = -1; since < IMPACT_STEPS - 1 && frame <= scene->frames; frame++) {
         if (frame == scene->bomb.frame) assert_ok(scene_add_bomb(scene, world, &error), error);
-        assert_ok(world_step(world, solver, scene->dt, &error), error);
+        assert_ok(world_step(world, solver->kind->solve, solver->state, scene->dt, &error), error);
         const ContactProblem *problem = world_problem(world);
-        if (since >= 0 || (problem->bomb >= 0 && bomb_touches(problem))) since++;
+        if (since >= 0 || (problem->marked >= 0 && bomb_touches(problem))) since++;
         if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
         assert_int_equal(samples[found].since, since);
         assert_same_problem(&samples[found++].problem, problem);

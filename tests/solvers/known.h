@@ -35,7 +35,7 @@ static inline void make_known(Known *known, uint32_t *seed, int run, float share
         slot_network_destroy(known->network);
         known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
     }
-    known->random.problem.bomb = known->network->bomb;
+    known->random.problem.marked = known->network->bomb;
     let_know(known);
 }
 

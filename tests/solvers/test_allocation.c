@@ -107,7 +107,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     ContactImpulse impulses[CONTACTS_MAX];
     ContactSolution solution = {velocities, impulses, 0, {0}};
     SlotNetwork *network = make_slot_problem(&random, &seed, 20, 0.5f, 0.7f);
-    random.problem.bomb = network->bomb;
+    random.problem.marked = network->bomb;
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
     network->sweeps = 6;
     let_know_all(network);

@@ -85,17 +85,17 @@ static void another_scene_is_refused(void **state) {
     make_known(&known, &seed, 7, 1);
     ContactProblem *problem = &known.random.problem;
     const int bomb = known.network->bomb, bodies = problem->body_count;
-    problem->bomb = bomb == 0 ? 1 : 0;
+    problem->marked = bomb == 0 ? 1 : 0;
     snprintf(text, sizeof text, "scene-net: error: the network is for the scene random, with the bomb as body %d",
              bomb);
     assert_refused(&known, text);
-    problem->bomb = bomb;
+    problem->marked = bomb;
     known.network->body_count = bodies + 1;
     snprintf(text, sizeof text, "scene random of %d bodies; this one has %d", bodies + 1, bodies);
     assert_refused(&known, text);
     known.network->body_count = bodies;
     /* Before the bomb comes there is one body less. */
-    problem->bomb = -1;
+    problem->marked = -1;
     snprintf(text, sizeof text, "scene random of %d bodies; this one has %d", bodies - 1, bodies);
     assert_refused(&known, text);
     free_known(&known);
@@ -187,7 +187,7 @@ static void pushes_that_cancel_are_no_answer(void **state) {
         known.random.contacts[k] = (ContactPoint){
             .a = k, .b = k + 1, .normal = {1, 0}, .mass_normal = 1, .mass_tangent = 1, .feature = (uint32_t)k};
     known.random.problem.contact_count = 2;
-    known.random.problem.bomb = 1;
+    known.random.problem.marked = 1;
     known.network = make_slot_network(&shape, slots, &seed);
     let_know(&known);
     known.network->biases[0] = known.network->biases[2] = 1e9f;

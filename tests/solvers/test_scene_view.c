@@ -176,10 +176,10 @@ static void other_features_stay(void **state) {
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 1, .feature = 0x01020304}), 0x01020304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x00ff0304}), 0x00ff0304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x01020304);
-    problem.bomb = 0;
+    problem.marked = 0;
     bodies[0] = bodies[2];
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x04010401);
-    problem.bomb = -1;
+    problem.marked = -1;
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x04010304);
 }
 

@@ -61,5 +61,5 @@ static inline void add_ground(World *world, float friction) {
 
 static inline void run(World *world, const ContactSolver *solver, int steps) {
     Error error = {0};
-    for (int i = 0; i < steps; i++) assert_ok(world_step(world, solver, world_dt, &error), error);
+    for (int i = 0; i < steps; i++) assert_ok(world_step(world, solver->kind->solve, solver->state, world_dt, &error), error);
 }

@@ -45,7 +45,7 @@ static void add(void *world, const RivalBox *box) {
 static void step(void *world) {
     Error error = {0};
     Engine *engine = world;
-    check(world_step(engine->world, &engine->solver, 1.0f / 60.0f, &error), &error);
+    check(world_step(engine->world, engine->solver.kind->solve, engine->solver.state, 1.0f / 60.0f, &error), &error);
 }
 
 static void destroy(void *world) {

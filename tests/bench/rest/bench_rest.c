@@ -50,7 +50,7 @@ static Scene *read_scene(int i) {
 
 static void step(Method *method, float dt) {
     Error error = {0};
-    if (!world_step(method->world, &method->solver, dt, &error)) give_up(&error);
+    if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error)) give_up(&error);
 }
 
 static Method settle(int k, const Scene *scene) {
