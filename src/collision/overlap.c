@@ -51,7 +51,7 @@ static void cut(OverlapSpan *span, const Box *a, const Box *b, Vec2 axis, double
 
 OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation) {
     const Vec2 axes[] = {a->rotation.column1, a->rotation.column2, b->rotation.column1, b->rotation.column2};
-    const double radius = hypot((double)b->half.x, (double)b->half.y), limit = depth + rounding(a, b);
+    const double radius = vec2_distance(b->half, vec2(0, 0)), limit = depth + rounding(a, b);
     OverlapSpan span = {-INFINITY, INFINITY};
     for (int i = 0; i < (any_rotation ? 2 : 4); i++)
         cut(&span, a, b, axes[i], reach(a, axes[i]) + (any_rotation ? radius : reach(b, axes[i])), limit);

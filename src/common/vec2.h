@@ -27,6 +27,12 @@ static inline float vec2_cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 /* v x (s out of the plane): for a unit normal and s = 1 the tangent, a quarter turn clockwise. */
 static inline Vec2 vec2_cross_scalar(Vec2 v, float s) { return vec2(s * v.y, -s * v.x); }
 
+/* Not hypot: square roots are the same on every machine, and squares of floats do not overflow a double. */
+static inline double vec2_distance(Vec2 a, Vec2 b) {
+    const double x = (double)a.x - (double)b.x, y = (double)a.y - (double)b.y;
+    return sqrt(x * x + y * y);
+}
+
 /* (s out of the plane) x v: the velocity that spin s gives to a point at lever arm v. */
 static inline Vec2 scalar_cross_vec2(float s, Vec2 v) { return vec2(-s * v.y, s * v.x); }
 

@@ -31,7 +31,7 @@ static Vec2 impulse_of(const TrajectoryContact *contact) {
                     vec2_scale(contact->tangent_impulse, tangent));
 }
 
-double impulse_magnitude(const TrajectoryContact *contact) { return point_distance(impulse_of(contact), vec2(0, 0)); }
+double impulse_magnitude(const TrajectoryContact *contact) { return vec2_distance(impulse_of(contact), vec2(0, 0)); }
 
 bool contact_is_finite(const TrajectoryContact *contact) {
     Vec2 impulse = impulse_of(contact);

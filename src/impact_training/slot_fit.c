@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_training/slot_fit.h"
 
+#include "learning/adam.h"
+
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -11,25 +13,18 @@
 /* A batch has a fixed number of parts, so that the order of sums does not depend on the number of threads. */
 enum { BATCH = 32, PARTS = 4, PART = BATCH / PARTS };
 
-static const double pi = 3.14159265358979323846;
-static const double decay = 0.9, square_decay = 0.999; /* of Adam (Kingma, Ba 2015) */
-
 typedef struct Fitter {
     SlotNetwork *network;
     const SlotSamples *samples;
     const SlotFit *fit;
     float *gradients;     /* [PARTS, parameter_count] */
-    float *mean, *square; /* [parameter_count] of Adam */
+    float *mean, *square; /* [parameter_count] moments of Adam; in double they would need twice the memory */
     double factors[SLOT_SWEEPS_MAX], factor_mean[SLOT_SWEEPS_MAX], factor_square[SLOT_SWEEPS_MAX];
     double by_factors[PARTS][SLOT_SWEEPS_MAX], losses[PARTS];
     SlotLoss loss[PARTS];
+    Adam adam;  /* of the factors; its steps are those of all parameters */
     int *order; /* [samples] */
-    int steps;
 } Fitter;
-
-typedef struct Step {
-    double rate, mean_correction, square_correction; /* bias corrections of Adam */
-} Step;
 
 static SlotTask task_of(const Fitter *fitter, int epoch) {
     const bool impulses_only = epoch < fitter->fit->impulse_epochs;
@@ -62,14 +57,7 @@ static bool do_batch(Fitter *fitter, const SlotTask *task, const int *items, int
     return ok;
 }
 
-/* Updates the moments of one parameter; returns its step. */
-static double adam(double gradient, double *mean, double *square, const Step *step) {
-    *mean = decay * *mean + (1 - decay) * gradient;
-    *square = square_decay * *square + (1 - square_decay) * gradient * gradient;
-    return -step->rate * *mean * step->mean_correction / (sqrt(*square * step->square_correction) + 1e-8);
-}
-
-static void step_parameters(Fitter *fitter, int count, const Step *step) {
+static void step_parameters(Fitter *fitter, int count, const AdamStep *step) {
     const int64_t parameters = (int64_t)fitter->network->parameter_count;
 #pragma omp parallel for schedule(static)
     for (int64_t p = 0; p < parameters; p++) {
@@ -79,7 +67,7 @@ static void step_parameters(Fitter *fitter, int count, const Step *step) {
             fitter->gradients[part * parameters + p] = 0;
         }
         double mean = (double)fitter->mean[p], square = (double)fitter->square[p];
-        fitter->network->parameters[p] += (float)adam((double)sum / count, &mean, &square, step);
+        fitter->network->parameters[p] -= (float)adam_change(step, (double)sum / count, &mean, &square);
         fitter->mean[p] = (float)mean;
         fitter->square[p] = (float)square;
     }
@@ -87,14 +75,14 @@ static void step_parameters(Fitter *fitter, int count, const Step *step) {
 }
 
 /* Factors are clamped to 0 .. 2: extrapolating further than two sweeps gains nothing. */
-static void step_factors(Fitter *fitter, int count, const Step *step) {
+static void step_factors(Fitter *fitter, int count, const AdamStep *step) {
     for (int s = 1; s < fitter->network->sweeps; s++) {
         double sum = 0;
         for (int part = 0; part < PARTS; part++) {
             sum += fitter->by_factors[part][s];
             fitter->by_factors[part][s] = 0;
         }
-        fitter->factors[s] += adam(sum / count, &fitter->factor_mean[s], &fitter->factor_square[s], step);
+        fitter->factors[s] -= adam_change(step, sum / count, &fitter->adam.mean[s], &fitter->adam.square[s]);
         fitter->factors[s] = fmin(fmax(fitter->factors[s], 0), 2);
     }
 }
@@ -107,9 +95,7 @@ static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
         const int first = batch * BATCH, size = count - first < BATCH ? count - first : BATCH;
         if (!do_batch(fitter, &task, fitter->order + first, size)) return false;
         const double done = (epoch + (double)batch / batches) / fitter->fit->epochs;
-        fitter->steps++;
-        const Step step = {fitter->fit->rate * (1 + cos(pi * done)) / 2, 1 / (1 - pow(decay, fitter->steps)),
-                           1 / (1 - pow(square_decay, fitter->steps))};
+        const AdamStep step = adam_next(&fitter->adam, fitter->fit->rate * adam_cosine(done));
         step_parameters(fitter, size, &step);
         if (fitter->fit->learn_factors && task.velocity_weight > 0) step_factors(fitter, size, &step);
     }
@@ -126,6 +112,8 @@ static bool begin(Fitter *fitter) {
     fitter->mean = fitter->gradients + PARTS * parameters;
     fitter->square = fitter->mean + parameters;
     for (int s = 0; s < fitter->network->sweeps; s++) fitter->factors[s] = (double)fitter->network->factors[s];
+    fitter->adam = adam_over(fitter->factors, fitter->factor_mean, fitter->factor_square, fitter->network->sweeps, 0,
+                             ADAM_SQUARE_DECAY);
     for (int i = 0; i < fitter->samples->count; i++) fitter->order[i] = i;
     return true;
 }

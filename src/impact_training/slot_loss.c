@@ -77,7 +77,7 @@ static bool velocity_loss(SlotLoss *loss, const SlotSample *sample, const SlotTa
     int counted;
     const double sum = velocity_error(sample, loss->unrolled.velocities, by_velocity, &counted);
     score->error = counted > 0 ? sqrt(sum / counted) : 0;
-    const double root = hypot(score->error, least_error);
+    const double root = sqrt(score->error * score->error + least_error * least_error);
     score->loss += task->velocity_weight * root;
     if (!back) return true;
     for (int i = 0; i < 3 * sample->problem.body_count; i++) by_velocity[i] *= task->velocity_weight / (counted * root);

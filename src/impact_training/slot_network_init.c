@@ -73,7 +73,7 @@ static bool find_scales(SlotNetwork *network, const SlotSamples *samples) {
             const int contact = sample->view.contacts[k], slot = sample->view.slots.slots[k];
             const double normal = (double)(sample->goal[contact].normal - sample->view.base[contact].normal);
             const double tangent = (double)(sample->goal[contact].tangent - sample->view.base[contact].tangent);
-            sums[slot] += sqrt(hypot(normal, tangent));
+            sums[slot] += sqrt(sqrt(normal * normal + tangent * tangent));
             counts[slot]++;
         }
     }
@@ -134,7 +134,8 @@ static void find_units(const SlotSamples *samples, bool bomb, int count, float *
             squares += x * x;
         }
         const double mean = sum / samples->count, variance = fmax(squares / samples->count - mean * mean, 0);
-        units[k] = (float)(1 / hypot(sqrt(variance), least[k % SLOT_BODY_NUMBERS]));
+        const double small = least[k % SLOT_BODY_NUMBERS];
+        units[k] = (float)(1 / sqrt(variance + small * small));
     }
 }
 

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "learning/adam.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double decay = 0.9, epsilon = 1e-8; /* Kingma and Ba */
 
 bool adam_create(Adam *adam, int64_t count, double square_decay, Error *error) {
     double *numbers = calloc(3 * (size_t)count, sizeof *numbers);
@@ -24,7 +21,7 @@ void adam_free(Adam *adam) {
 /* Not pow(): its last bit depends on the maths library. */
 Adam adam_over(double *weights, double *mean, double *square, int64_t count, int64_t steps, double square_decay) {
     Adam adam = {count, weights, mean, square, steps, square_decay, 1, 1};
-    for (int64_t i = 0; i < steps; i++) adam.mean_left *= decay, adam.square_left *= square_decay;
+    for (int64_t i = 0; i < steps; i++) adam.mean_left *= ADAM_DECAY, adam.square_left *= square_decay;
     return adam;
 }
 
@@ -34,15 +31,20 @@ void adam_restart(Adam *adam) {
     *adam = adam_over(adam->weights, adam->mean, adam->square, adam->count, 0, adam->square_decay);
 }
 
-void adam_step(Adam *adam, const double *slopes, double rate) {
+AdamStep adam_next(Adam *adam, double rate) {
     adam->steps++;
-    adam->mean_left *= decay;
+    adam->mean_left *= ADAM_DECAY;
     adam->square_left *= adam->square_decay;
-    const double over_mean = 1 / (1 - adam->mean_left), over_square = 1 / (1 - adam->square_left),
-                 square_decay = adam->square_decay;
-    for (int64_t i = 0; i < adam->count; i++) {
-        adam->mean[i] = decay * adam->mean[i] + (1 - decay) * slopes[i];
-        adam->square[i] = square_decay * adam->square[i] + (1 - square_decay) * slopes[i] * slopes[i];
-        adam->weights[i] -= rate * adam->mean[i] * over_mean / (sqrt(adam->square[i] * over_square) + epsilon);
-    }
+    return (AdamStep){rate, 1 / (1 - adam->mean_left), 1 / (1 - adam->square_left), adam->square_decay};
+}
+
+double adam_cosine(double done) {
+    const double pi = 3.14159265358979323846;
+    return (1 + (double)(float)cos(pi * done)) / 2;
+}
+
+void adam_step(Adam *adam, const double *slopes, double rate) {
+    const AdamStep step = adam_next(adam, rate);
+    for (int64_t i = 0; i < adam->count; i++)
+        adam->weights[i] -= adam_change(&step, slopes[i], &adam->mean[i], &adam->square[i]);
 }

@@ -4,10 +4,12 @@
 #pragma once
 #include "common/error.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define ADAM_SQUARE_DECAY 0.999 /* Kingma and Ba */
+#define ADAM_DECAY 0.9 /* Kingma and Ba, as the others */
+#define ADAM_SQUARE_DECAY 0.999
 
 typedef struct Adam {
     int64_t count;                   /* of weights */
@@ -16,6 +18,11 @@ typedef struct Adam {
     double square_decay;
     double mean_left, square_left; /* decay to the power `steps`: what the moments lack at the start */
 } Adam;
+
+/* What the weights share in a step. */
+typedef struct AdamStep {
+    double rate, over_mean, over_square, square_decay; /* over: the bias corrections */
+} AdamStep;
 
 /* All weights and moments 0. */
 bool adam_create(Adam *adam, int64_t count, double square_decay, Error *error);
@@ -26,6 +33,21 @@ Adam adam_over(double *weights, double *mean, double *square, int64_t count, int
 
 /* Forgets the moments, and keeps the weights. */
 void adam_restart(Adam *adam);
+
+/* Counts a step whose loop is the caller's. */
+AdamStep adam_next(Adam *adam, double rate);
+
+/* Updates the moments of one weight; returns what to subtract from the weight. */
+static inline double adam_change(const AdamStep *step, double slope, double *mean, double *square) {
+    const double epsilon = 1e-8;
+    *mean = ADAM_DECAY * *mean + (1 - ADAM_DECAY) * slope;
+    *square = step->square_decay * *square + (1 - step->square_decay) * slope * slope;
+    return step->rate * *mean * step->over_mean / (sqrt(*square * step->over_square) + epsilon);
+}
+
+/* The share of the first rate after this share of the steps: half a cosine from 1 to 0 (Loshchilov, Hutter, "SGDR",
+   2017). Rounded to float, so that the bits do not depend on the maths library. */
+double adam_cosine(double done);
 
 /* One step; slopes[count] are d loss / d weights. */
 void adam_step(Adam *adam, const double *slopes, double rate);

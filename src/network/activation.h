@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sigmoid, tanh and ReLU in a fixed sequence of operations, so that the bits do not depend on maths library, compiler
+/* Sigmoid, tanh, ReLU and e^y in a fixed sequence of operations, so that the bits do not depend on maths library, compiler
    or instruction set, and without calls or branches, so that the compiler vectorises loops over them.
 
    float32 for inference: within 3 units in the last place of a normal result (a sigmoid below 2^-127 is 0). In double a
@@ -46,6 +46,12 @@ static inline double exp_parts(double y, double *power) {
     return r + r2 * (g0 + r4 * (g4 + r4 * g8));
 }
 
+/* e^y for y in [-700, 700], within 1.25 units in the last place; NaN stays NaN. */
+static inline double exponential(double y) {
+    double power, q = exp_parts(y, &power);
+    return power * (1.0 + q);
+}
+
 /* Comparisons are written so that NaN propagates. */
 static inline float sigmoid_float(float x) {
     float y = -x > 88.8f ? 88.8f : -x, power, q = exp_parts_float(y, &power), e = power * (1.0f + q);
@@ -53,7 +59,7 @@ static inline float sigmoid_float(float x) {
 }
 
 static inline double sigmoid(double x) {
-    double y = -x > 700.0 ? 700.0 : -x, power, q = exp_parts(y, &power), e = power * (1.0 + q);
+    double e = exponential(-x > 700.0 ? 700.0 : -x);
     return 1.0 / (1.0 + (x > 700.0 ? 0.0 : e));
 }
 

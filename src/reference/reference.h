@@ -44,7 +44,7 @@ typedef struct Reference {
     struct {
         ReferencePoint *points;
         Vec4 *moved;
-        double log_target;
+        double target;
     } kept[2];          /* interior points to go back to */
     double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
     int most;           /* factorizations that a solve may use */

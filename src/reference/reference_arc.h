@@ -5,6 +5,7 @@
    the point, which is natural inside of bounds. Source: Allgower, Georg, "Numerical Continuation Methods" (1990):
    Euler-Newton with orientation by the determinant. */
 #pragma once
+#include "network/activation.h"
 #include "reference/reference_point.h"
 
 enum { CORRECTIONS = 3, CORRECTIONS_FIRST = 20, GOOD_STEPS = 3 };
@@ -13,11 +14,12 @@ static const double arc_share = 0.9;                          /* of the way to t
 static const double near_path = 0.5, nearer = 0.25, lost = 3; /* distances from the path, in its length */
 static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
 
-static const double log_end = -23; /* of 1e-10 (m/s)^2 */
+static const double target_end = 1e-10; /* (m/s)^2 */
 
 typedef struct Tracker {
     Reference *r;
-    double log_target, length; /* of the next step along the path */
+    double target; /* (m/s)^2 */
+    double length; /* of the next step along the path */
     double near, off_before;
     int corrections, good;
     bool found; /* has been on the path */
@@ -59,11 +61,14 @@ static double find_directions(Reference *r, double target) {
 
 /* Back to the last point on the path, for shorter steps. */
 static void go_back(Tracker *tracker) {
-    tracker->log_target = return_to(tracker->r, KEPT_ON_PATH);
+    tracker->target = return_to(tracker->r, KEPT_ON_PATH);
     tracker->length *= 0.25;
     tracker->corrections = 0;
     tracker->off_before = INFINITY;
 }
+
+/* The target after its logarithm has changed; NaN after a change that only a lost path makes. */
+static double grown(double target, double by) { return fabs(by) <= 700 ? target * exponential(by) : NAN; }
 
 /* Newton's step plus `by` times the derivative. Returns the share of it that the bounds allow. */
 static double advance(Tracker *tracker, double by) {
@@ -72,7 +77,7 @@ static double advance(Tracker *tracker, double by) {
     for (int k = 0; k < r->lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
     const double limit = arc_share * step_room(r), share = limit < 1 ? limit : 1;
     move(r, share);
-    tracker->log_target += share * by;
+    tracker->target = grown(tracker->target, share * by);
     return share;
 }
 
@@ -91,12 +96,12 @@ static bool is_lost(Tracker *tracker, double off) {
 
 static void track(Tracker *tracker) {
     Reference *r = tracker->r;
-    const double newton = find_directions(r, exp(tracker->log_target)), along = product(r, false);
+    const double newton = find_directions(r, tracker->target), along = product(r, false);
     const double norm = product(r, true) + 1, squared = newton - along * along / norm;
     const double off = squared > 0 ? sqrt(squared) : squared <= 0 ? 0 : INFINITY;
     const bool forward = goes_forward(r), on_path = off <= tracker->near;
     if (on_path) {
-        keep(r, KEPT_ON_PATH, tracker->log_target);
+        keep(r, KEPT_ON_PATH, tracker->target);
         tracker->found = true;
         tracker->corrections = 0;
         tracker->off_before = INFINITY;
@@ -116,17 +121,17 @@ static void track(Tracker *tracker) {
 static bool pass_fold(Reference *r, bool to_end) {
     return_to(r, KEPT_ON_WAY);
     Tracker tracker = {.r = r,
-                       .log_target = log(mean_product(r)),
+                       .target = mean_product(r),
                        .length = length_first,
                        .near = to_end ? nearer : near_path,
                        .off_before = INFINITY};
-    keep(r, KEPT_ON_PATH, tracker.log_target);
-    while (r->left > 0 && (to_end ? tracker.log_target > log_end : tracker.good < GOOD_STEPS)) {
+    keep(r, KEPT_ON_PATH, tracker.target);
+    while (r->left > 0 && (to_end ? tracker.target > target_end : tracker.good < GOOD_STEPS)) {
         track(&tracker);
-        if (!isfinite(tracker.log_target) || tracker.length < length_least ||
+        if (!(tracker.target > 0 && tracker.target < INFINITY) || tracker.length < length_least ||
             (!tracker.found && tracker.corrections == 0))
             return false;
     }
-    keep(r, KEPT_ON_WAY, tracker.log_target);
+    keep(r, KEPT_ON_WAY, tracker.target);
     return true;
 }

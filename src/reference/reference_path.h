@@ -77,7 +77,7 @@ static bool follow(Reference *r, int most, bool carefully) {
         if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);
         if (length >= good && forward) {
-            keep(r, KEPT_ON_WAY, log(mean));
+            keep(r, KEPT_ON_WAY, mean);
             begun = true;
         }
         stuck = length < short_step || !forward ? stuck + 1 : 0;

@@ -199,17 +199,17 @@ static void move(Reference *r, double share) {
     }
 }
 
-static void keep(Reference *r, int place, double log_target) {
+static void keep(Reference *r, int place, double target) {
     for (int i = 0; i < r->group_count; i++) r->kept[place].points[i] = r->groups[i].now;
     memcpy(r->kept[place].moved, r->moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
-    r->kept[place].log_target = log_target;
+    r->kept[place].target = target;
 }
 
 static double return_to(Reference *r, int place) {
     for (int i = 0; i < r->group_count; i++) r->groups[i].now = r->kept[place].points[i];
     memcpy(r->moved, r->kept[place].moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
     look(r);
-    return r->kept[place].log_target;
+    return r->kept[place].target;
 }
 
 /* The sign of the determinant, from the diagonal of the factors: it changes where the path turns back. */

@@ -13,7 +13,7 @@ static double height(const Body *body, Vec2 gravity, double pull) {
 /* Adds the potential energy of new bodies. The first dynamic bodies determine the lowest height. */
 static void add_potential(EnergyBalance *balance, const Body *bodies, int count) {
     const Vec2 gravity = balance->gravity;
-    double pull = hypot((double)gravity.x, (double)gravity.y), lowest = INFINITY;
+    double pull = vec2_distance(gravity, vec2(0, 0)), lowest = INFINITY;
     if (pull == 0) return;
     for (int i = 0; i < count; i++)
         if (bodies[i].inv_mass != 0) lowest = fmin(lowest, height(&bodies[i], gravity, pull));

@@ -143,7 +143,7 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     reading.drift = 0;
     reading.gained = watch->energy - watch->rested;
     for (int i = 0; i < watch->rested_count && i < watch->body_count; i++)
-        reading.drift = fmax(reading.drift, verdict_distance(watch->bodies[i].rested, watch->bodies[i].last));
+        reading.drift = fmax(reading.drift, vec2_distance(watch->bodies[i].rested, watch->bodies[i].last));
     return reading;
 }
 

@@ -16,7 +16,6 @@ int verdict_steps(double seconds, float dt) {
     return steps > 1 ? (int)steps : 1;
 }
 
-double verdict_distance(Vec2 a, Vec2 b) { return hypot((double)a.x - b.x, (double)a.y - b.y); }
 static double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
 
 bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
@@ -34,7 +33,7 @@ bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
         most = square;
         fastest = i;
     }
-    watch->speed = fastest >= 0 ? verdict_distance(step->bodies[fastest].velocity, vec2(0, 0)) : 0;
+    watch->speed = fastest >= 0 ? vec2_distance(step->bodies[fastest].velocity, vec2(0, 0)) : 0;
     return true;
 }
 
@@ -157,8 +156,7 @@ void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
         if (step->bodies[i].inv_mass == 0) continue;
         if (passes_any(watch, step, watched->outside, now)) {
             if (passes_any(watch, step, now, now)) continue;
-            verdict_note(watch, VERDICT_TUNNELS, i, verdict_distance(watched->last, now) / (double)watch->run.dt,
-                         "m/s");
+            verdict_note(watch, VERDICT_TUNNELS, i, vec2_distance(watched->last, now) / (double)watch->run.dt, "m/s");
         }
         watched->outside = now;
     }
@@ -211,7 +209,7 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step) {
         note_contact(watch, step->contacts[i].b);
     }
     const bool judged = judges_falls(watch, step->bomb);
-    const double pull = verdict_distance(watch->run.gravity, vec2(0, 0));
+    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         WatchedBody *watched = &watch->bodies[i];
@@ -235,7 +233,7 @@ void check_creep(VerdictWatch *watch, const VerdictStep *step) {
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *watched = &watch->bodies[i];
         Vec2 *sample = &watched->sample[watched->samples % VERDICT_CREEP_SECONDS], now = step->bodies[i].position;
-        double way = watched->samples >= VERDICT_CREEP_SECONDS ? verdict_distance(*sample, now) : 0;
+        double way = watched->samples >= VERDICT_CREEP_SECONDS ? vec2_distance(*sample, now) : 0;
         *sample = now;
         watched->samples++;
         if (way <= most || (i == step->bomb && !run->stands)) continue;

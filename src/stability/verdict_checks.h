@@ -17,6 +17,3 @@ void check_calm(VerdictWatch *watch, const VerdictStep *step);
 
 /* Seconds rounded to whole steps; at least one. */
 int verdict_steps(double seconds, float dt);
-
-/* m */
-double verdict_distance(Vec2 from, Vec2 to);

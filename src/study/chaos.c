@@ -64,8 +64,8 @@ static bool measure(void *context, int frame, const World *world, Error *error) 
     double largest = 0;
     for (int i = 0; i < world_body_count(world); i++)
         largest =
-            fmax(largest, point_distance(bodies[i].position,
-                                         unshifted->position[(size_t)frame * (size_t)unshifted->bodies + (size_t)i]));
+            fmax(largest, vec2_distance(bodies[i].position,
+                                        unshifted->position[(size_t)frame * (size_t)unshifted->bodies + (size_t)i]));
     watch->chaos->distance[frame] = largest;
     return progress_stage(&watch->stage, frame, unshifted->frames) ||
            error_interrupted(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);

@@ -54,17 +54,11 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
     log->fallen_back += fell_back(&world_solution(world)->fallbacks);
 }
 
-static double distance(const Vec2 *a, const Vec2 *b) { return hypot((double)(a->x - b->x), (double)(a->y - b->y)); }
-
-static double separation(const Vec2 *a, const Vec2 *b) {
-    return hypot((double)a->x - (double)b->x, (double)a->y - (double)b->y);
-}
-
 static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
     const size_t row = (size_t)frame * (size_t)log->bodies;
-    double apart = separation(&log->bomb[frame], &other->bomb[frame]);
+    double apart = vec2_distance(log->bomb[frame], other->bomb[frame]);
     for (int i = 0; i < log->bodies; i++)
-        apart = fmax(apart, separation(&log->position[row + (size_t)i], &other->position[row + (size_t)i]));
+        apart = fmax(apart, vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]));
     return apart;
 }
 
@@ -80,7 +74,7 @@ double run_log_moved(const RunLog *log, const Scene *scene) {
     const Vec2 *after = log->position + (size_t)log->end_frame * (size_t)log->bodies;
     for (int i = 0; i < log->bodies; i++) {
         if (scene->bodies[i].fixed) continue;
-        moved += log->frames < log->end_frame || distance(&before[i], &after[i]) > moved_distance;
+        moved += log->frames < log->end_frame || vec2_distance(before[i], after[i]) > moved_distance;
     }
     return moved;
 }
@@ -91,7 +85,7 @@ static double mean_distance(const RunLog *log, const RunLog *other, const Scene 
     size_t row = (size_t)frame * (size_t)log->bodies;
     for (int i = 0; i < log->bodies; i++) {
         if (scene->bodies[i].fixed) continue;
-        sum += distance(&log->position[row + (size_t)i], &other->position[row + (size_t)i]);
+        sum += vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]);
         count++;
     }
     return count > 0 ? sum / count : NAN;

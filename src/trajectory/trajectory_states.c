@@ -8,11 +8,6 @@ static size_t pose(const Trajectory *t, int frame, int body) {
     return (size_t)frame * (size_t)t->bodies + (size_t)body;
 }
 
-double point_distance(Vec2 a, Vec2 b) {
-    double x = (double)a.x - b.x, y = (double)a.y - b.y;
-    return sqrt(x * x + y * y);
-}
-
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
 
 static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, size_t k) {
@@ -33,10 +28,10 @@ StateDifference trajectory_state_difference(const Trajectory *a, const Trajector
     StateDifference d = {.in_a = trajectory_has(a, frame, body), .in_b = trajectory_has(b, frame, body)};
     if (!d.in_a || !d.in_b) return d;
     size_t i = pose(a, frame, body), k = pose(b, frame, body);
-    d.distance = point_distance(a->position[i], b->position[k]);
+    d.distance = vec2_distance(a->position[i], b->position[k]);
     d.angle = fabs((double)a->angle[i] - b->angle[k]);
     if (!trajectory_both_move(a, b)) return d;
-    d.speed = point_distance(a->velocity[i], b->velocity[k]);
+    d.speed = vec2_distance(a->velocity[i], b->velocity[k]);
     d.spin = fabs((double)a->angular_velocity[i] - b->angular_velocity[k]);
     return d;
 }

@@ -3,9 +3,6 @@
 #pragma once
 #include "trajectory/trajectory.h"
 
-/* m. Not hypot: square roots are the same on every machine, and squares of floats do not overflow a double. */
-double point_distance(Vec2 a, Vec2 b);
-
 /* True if the velocities of both are known; else only poses are compared. */
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b);
 

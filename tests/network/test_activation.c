@@ -47,6 +47,36 @@ static void double_is_relatively_exact(void **state) {
     }
 }
 
+static void exponential_stays_within_its_last_places(void **state) {
+    (void)state;
+    double before = 0;
+    for (int i = -700000; i <= 700000; i++) {
+        const double y = i * 1e-3, found = exponential(y);
+        const long double exact = expl((long double)y);
+        int exponent;
+        frexpl(exact, &exponent);
+        assert_true(fabsl((long double)found - exact) <= ldexpl(1.25L, exponent - 53));
+        assert_true(found > before);
+        assert_near(log(found), y, 4e-16 + 3e-16 * fabs(y));
+        before = found;
+    }
+    assert_true(exponential(0) == 1 && exponential(-0.0) == 1 && isnan(exponential(NAN)));
+}
+
+/* Double after double, where the power of two changes: odd multiples of ln 2 / 2. */
+static void exponential_never_falls(void **state) {
+    (void)state;
+    for (int k = -1999; k < 2000; k += 2) {
+        double y = k * 0.34657359027997264 - 1e-12, before = exponential(y);
+        for (int i = 0; i < 500; i++) {
+            y += 4e-15;
+            const double found = exponential(y);
+            assert_true(found >= before);
+            before = found;
+        }
+    }
+}
+
 /* Float after float, where the power of two changes and where the functions end: multiples of ln 2 / 2. The sigmoid
    never falls; tanh, a quotient of two rounded numbers, may by its error. */
 static void sigmoid_never_falls(void **state) {
@@ -151,6 +181,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_stays_within_three_last_places),
         cmocka_unit_test(double_is_relatively_exact),
+        cmocka_unit_test(exponential_stays_within_its_last_places),
+        cmocka_unit_test(exponential_never_falls),
         cmocka_unit_test(sigmoid_never_falls),
         cmocka_unit_test(limits_are_exact),
         cmocka_unit_test(tanh_is_odd),

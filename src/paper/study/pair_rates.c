@@ -203,7 +203,7 @@ static bool rate_snapshot(Rating *rating, const Snapshot *snapshot, Error *error
 }
 
 static bool is_right(const Rating *rating, RateDefinition definition, Vec2 error) {
-    if (definition == RATE_ABSOLUTE) return hypot((double)error.x, (double)error.y) <= near_velocity;
+    if (definition == RATE_ABSOLUTE) return vec2_distance(error, vec2(0, 0)) <= near_velocity;
     return fabs((double)error.x) <= near_share * (double)(rating->most[0] - rating->least[0]) &&
            fabs((double)error.y) <= near_share * (double)(rating->most[1] - rating->least[1]);
 }

@@ -59,15 +59,13 @@ static bool step_learned(Rollouts *runs, int frame, Error *error) {
     return frame != runs->scene->bomb.frame || scene_add_bomb(runs->scene, runs->learned, error);
 }
 
-static double distance(Vec2 a, Vec2 b) { return hypot((double)a.x - (double)b.x, (double)a.y - (double)b.y); }
-
 static double mean_distance(const Rollouts *runs) {
     const Body *a = world_bodies(runs->taught), *b = world_bodies(runs->learned);
     double sum = 0;
     int count = 0;
     for (int i = 0; i < world_body_count(runs->taught); i++) {
         if (!(a[i].inv_mass > 0)) continue;
-        sum += distance(a[i].position, b[i].position);
+        sum += vec2_distance(a[i].position, b[i].position);
         count++;
     }
     return count > 0 ? sum / count : 0;
@@ -83,7 +81,8 @@ static void note_start(Rollouts *runs) {
 
 static double count_moved(const World *world, const Vec2 *start, int count) {
     int moved = 0;
-    for (int i = 0; i < count; i++) moved += distance(world_bodies(world)[i].position, start[i]) > far_enough ? 1 : 0;
+    for (int i = 0; i < count; i++)
+        moved += vec2_distance(world_bodies(world)[i].position, start[i]) > far_enough ? 1 : 0;
     return moved;
 }
 
