@@ -68,7 +68,7 @@ static bool fit_keys(Trainer *trainer, Error *error) {
         return error_input(error, trainer->scene->name, "no launch has an impact whose residual reaches the gate");
     const ContactProblem *first = &asked->items[0].problem;
     Tabulation *memory = trainer->memory =
-        tabulation_create(first->body_count, first->bomb, trainer->training->components, error);
+        tabulation_create(first->body_count, first->marked, trainer->training->components, error);
     if (memory == NULL) return false;
     memory->gate = hybrid_gate;
     memory->tolerance = trainer->training->tolerance;
