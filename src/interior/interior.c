@@ -25,7 +25,8 @@ static double larger(double x, double y) { return x > y ? x : y; }
 
 static double scale_of(const Interior *s, double least_scale) { return scale_of_residual * s->residual + least_scale; }
 
-double interior_begin(Interior *s, const InteriorRule *rule, double least_scale) {
+/* Moves the start to the inside of all bounds and returns the first tau^2. */
+static double begin(Interior *s, const InteriorRule *rule, double least_scale) {
     const double scale = scale_of(s, least_scale);
     const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
     for (int i = 0; i < s->group_count; i++) {
@@ -40,7 +41,7 @@ double interior_begin(Interior *s, const InteriorRule *rule, double least_scale)
             g->q[k] = larger(slip, 0) + beyond;
         }
     }
-    return s->first_target = rule->first * scale * scale;
+    return rule->first * scale * scale;
 }
 
 static bool is_jammed(const Interior *s) {
@@ -56,7 +57,7 @@ static bool is_jammed(const Interior *s) {
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
                       double lost, double near, int most) {
     const double too_large = lost * (scale_of(s, least_scale) + 0.1);
-    double target = interior_begin(s, rule, least_scale), estimate = 0;
+    double target = begin(s, rule, least_scale), estimate = 0;
     for (s->iterations = 0; s->iterations < most;) {
         const double next = larger(rule->shrink * target, rule->follow * estimate * estimate);
         target = next < target ? next : target;

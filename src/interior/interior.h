@@ -36,7 +36,6 @@
 #pragma once
 #include "dynamics/contact_problem.h"
 #include "interior/block_lu.h"
-#include "network/interior_net.h"
 #include "sweeps/sweeps.h"
 
 enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
@@ -79,14 +78,12 @@ typedef struct Interior {
     /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused. changes: of the
        first solve of an iteration; corrected: of the second */
     Vec4 *velocities, *start, *masses, *inverses, *changes, *corrected;
-    int32_t *bodies;        /* [lu.count] */
-    int32_t *nodes;         /* [body_count] -1 for bodies without contact */
-    BlockEdge *edges;       /* [pair_count] */
-    int32_t *edge_of;       /* [pair_count] -1 for a pair with a body that does not move */
-    double residual;        /* m/s, of the answer */
-    int iterations;         /* of the last solve */
-    double first_target;    /* (m/s)^2, tau^2 before the first iteration */
-    const InteriorNet *net; /* the caller's; NULL: no network */
+    int32_t *bodies;  /* [lu.count] */
+    int32_t *nodes;   /* [body_count] -1 for bodies without contact */
+    BlockEdge *edges; /* [pair_count] */
+    int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
+    double residual;  /* m/s, of the answer */
+    int iterations;   /* of the last solve */
     size_t group_capacity, pair_capacity, velocity_capacity, start_capacity, mass_capacity, inverse_capacity,
         change_capacity, corrected_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
 } Interior;
@@ -138,9 +135,6 @@ typedef struct InteriorRule {
 static const double interior_impulse_max = 0.1 * 0x1p24;
 
 extern const InteriorRule interior_quick, interior_gentle;
-
-/* A part of interior_iterate(), for training: moves the start to the inside of all bounds and returns the first tau^2. */
-double interior_begin(Interior *interior, const InteriorRule *rule, double least_scale);
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. The residual is infinite or NaN if the iterations broke down.

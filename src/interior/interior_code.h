@@ -2,7 +2,7 @@
 /* The numbers of the iterations; included once by each interior_*.c. The compiler may use wider registers, but not
    change the order of operations. */
 #include "interior/block_lu_code.h"
-#include "interior/interior_consult.h"
+#include "interior/interior_contacts.h"
 
 #include <math.h>
 
@@ -52,13 +52,11 @@ static void begin_blocks(const Interior *s, BlockLu *lu) {
 /* The matrix and the right-hand side. */
 static void assemble(Interior *s, double target, Vec4 *right) {
     begin_blocks(s, &s->lu);
-    const bool consulted = s->net != NULL && s->residual > INTERIOR_NET_UNTIL;
-    if (consulted) consult(s, target);
     momentum_left(s, right);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
-        aim(g, all4(target) * (consulted ? g->aim_normal : all4(1)));
+        aim(g, target);
         linearise(g);
         push(pairs, right_side(g), right);
         for (int half = 0; half < GROUP_PAIRS; half++) {

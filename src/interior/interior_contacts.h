@@ -2,7 +2,13 @@
 /* What an iteration does with the contacts of a group, between the solves: targets, linearisation, correction, limits.
    Included by interior_code.h. The compiler may use wider registers, but not change the order of operations. */
 #include "interior/interior.h"
-#include "interior/interior_constants.h"
+
+/* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its bounds. */
+static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
+/* The targets of friction, as a multiple of those of normal impulses. */
+static const double slip_aim = 4;
+/* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
+static const double stiffest = 1e12;
 
 typedef long long Mask4 __attribute__((vector_size(32), aligned(16), may_alias));
 
@@ -14,7 +20,7 @@ static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
 static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
 /* The targets of the products. */
-static inline void aim(InteriorGroup *g, Vec4 tau2) {
+static inline void aim(InteriorGroup *g, double tau2) {
     const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
     g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
     g->aim_tangent =

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "network/file_floats.h"
 
-#include "network/momentum_schedule.h"
-
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +8,7 @@
 const FloatRange float_any = {-FLT_MAX, FLT_MAX, "finite"};
 const FloatRange float_positive = {FLT_TRUE_MIN, FLT_MAX, "finite and greater than 0"};
 const FloatRange float_not_negative = {0, FLT_MAX, "finite and not negative"};
-const FloatRange float_momentum = {0, MOMENTUM_MAX_FACTOR, "from 0 to 2"};
+const FloatRange float_momentum = {0, 2, "from 0 to 2"};
 
 NpzArray file_floats_array(const FileFloats *floats) {
     return (NpzArray){floats->name, NPZ_FLOAT32, floats->rank, {floats->shape[0], floats->shape[1]}, floats->numbers};

@@ -118,5 +118,5 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 bool slot_network_write(const SlotNetwork *network, const char *path, Error *error);
 
 /* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, or holds a NaN
-   or infinite number, a negative scale, cap, gate or mass, or factors out of the bounds of momentum_schedule.h. */
+   or infinite number, a negative scale, cap, gate or mass, or momentum factors that are not from 0 to 2. */
 SlotNetwork *slot_network_read(const char *path, Error *error);

@@ -2,6 +2,7 @@
 /* Runs launches of a scene with a given solver and records contact problems with their converged velocities: all impact
    frames, and some of those after and of those at rest. */
 #pragma once
+#include "common/progress.h"
 #include "dynamics/contact_solver.h"
 #include "impact_training/impact_problems.h"
 #include "scene/launch.h"

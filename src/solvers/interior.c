@@ -25,7 +25,6 @@
 #include "interior/interior.h"
 
 #include "solvers/central_path.h"
-#include "solvers/interior_net.h"
 #include "solvers/large_islands.h"
 #include "solvers/momentum.h"
 #include "solvers/residual.h"
@@ -36,7 +35,7 @@
 
 enum {
     REST_SWEEPS = 2,
-    IMPACT_SWEEPS = INTERIOR_IMPACT_SWEEPS,
+    IMPACT_SWEEPS = 6,    /* with momentum, at the start of a step that is not at rest */
     MANY_BODIES = 128,    /* more: an iteration takes as long as 15 sweeps or more, */
     MANY_SWEEPS = 12,     /* and these save more than they cost */
     MANY_LOOPS = 64,      /* of an island among many bodies: more are never at rest */
@@ -48,7 +47,7 @@ enum {
 /* m/s. A step is at rest if all bodies move by less than `rest_below` relative to each other where they touch; a step of
    gravity makes 0.17, and 1 at 10 Hz. Not their mean: it is small if a bomb strikes one of many boxes. At rest the
    tolerance is at most `rest_near`. */
-static const float rest_below = INTERIOR_REST_BELOW, rest_near = 1e-4f;
+static const float rest_below = 1.2f, rest_near = 1e-4f;
 /* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which exceed
    the residual more than those of iterations. */
 static const float trusted = 0.3f;
@@ -69,11 +68,12 @@ typedef struct Attempt {
 
 enum { ATTEMPTS = 2, FEW_BODIES = 32 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
+#define IMPACT_SCALE 0.01                      /* m/s, `least_scale` of the first attempt */
 static const Attempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-6, hasty, 10}, {&interior_gentle, 0.1, hasty, 40}},
-                     at_impact[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, hasty, 20},
+                     at_impact[ATTEMPTS] = {{&interior_quick, IMPACT_SCALE, hasty, 20},
                                             {&interior_gentle, 10, hasty, 25}};
 /* Those of stacks find back after many jumps. */
-static const Attempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, INTERIOR_IMPACT_SCALE, patient, 30}, {0}};
+static const Attempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, IMPACT_SCALE, patient, 30}, {0}};
 /* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
 static const Attempt at_impact_of_many[ATTEMPTS] = {{&interior_gentle, 1, hasty, 25}, {0}};
 
@@ -82,8 +82,7 @@ typedef struct State {
     LargeIslands large;
     Momentum momentum;
     CentralPath path;
-    InteriorNet net; /* of interior-net */
-    float near;      /* m/s */
+    float near; /* m/s */
     float start_factors[IMPACT_SWEEPS], many_factors[MANY_SWEEPS], factors[FALLBACK_SWEEPS],
         more_factors[FALLBACK_MORE];
 } State;
@@ -187,32 +186,6 @@ static bool fall_back(State *solver, bool finite, const ContactProblem *problem,
            momentum_solve(&solver->momentum, problem, solver->factors, FALLBACK_SWEEPS, solution, error);
 }
 
-bool interior_net_make(ContactSolver *solver, const InteriorNet *net, Error *error) {
-    const Settings none = {0};
-    State *state = create(&none, error);
-    if (state == NULL) return false;
-    state->net = *net;
-    state->interior.net = &state->net;
-    *solver = (ContactSolver){&solver_interior_net, state};
-    return true;
-}
-
-static void *create_net(const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, "interior-net", "the scene names no network for it: use interior-net:network=FILE");
-        return NULL;
-    }
-    State *solver = create(chosen, error);
-    if (solver == NULL) return NULL;
-    if (!interior_net_read(&solver->net, path, error)) {
-        destroy(solver);
-        return NULL;
-    }
-    solver->interior.net = &solver->net;
-    return solver;
-}
-
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Sweeps *sweeps = &solver->momentum.sweeps;
@@ -246,24 +219,5 @@ const ContactSolverKind solver_interior = {
                     .chart_quick = METHOD_NO_RUNS,
                     .stability_place = 2},
     .create = create,
-    .solve = solve,
-    .destroy = destroy};
-
-static const SettingSpec net_settings[] = {{"near", "residual at which iterations stop, m/s (default: 0.02)"},
-                                           {"network", "file of the network (default: the scene's)"},
-                                           {NULL, NULL}};
-
-const ContactSolverKind solver_interior_net = {
-    .description = {.name = "interior-net",
-                    .summary = "interior with a network that places each contact before an iteration",
-                    .caption = "interior-point steps with a network",
-                    .look = {METHOD_VERMILION, METHOD_INVERTED_TRIANGLE},
-                    .settings = net_settings,
-                    .needs_network = true,
-                    .twin = "interior",
-                    .chart = METHOD_RUNS("near=0.02", "near=0.001"),
-                    .chart_quick = METHOD_NO_RUNS,
-                    .stability = METHOD_NO_RUNS},
-    .create = create_net,
     .solve = solve,
     .destroy = destroy};

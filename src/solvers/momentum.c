@@ -82,7 +82,8 @@ void momentum_free(Momentum *momentum) {
     *momentum = (Momentum){0};
 }
 
-bool momentum_read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
+/* Without a stopping rule momentum_solve() has `count` sweeps. */
+static bool read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
     StoppingRule *rule = &momentum->rule;
     if (!stopping_read(rule, chosen, error)) return false;
     if (rule->more == 0) return true;
@@ -143,7 +144,7 @@ static void *create(const Settings *chosen, Error *error) {
         return NULL;
     }
     solver->sweep_count = sweep_count;
-    if (momentum_read_rule(&solver->momentum, chosen, error)) return solver;
+    if (read_rule(&solver->momentum, chosen, error)) return solver;
     destroy(solver);
     return NULL;
 }

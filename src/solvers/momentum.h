@@ -29,10 +29,6 @@ typedef struct Momentum {
     float *more_factors; /* [rule.more] */
 } Momentum;
 
-/* Sets the stopping rule; without it momentum_solve() has `count` sweeps. False with error set for refused settings, or
-   when memory is short. */
-bool momentum_read_rule(Momentum *momentum, const Settings *chosen, Error *error);
-
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
    on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
    ones. False when memory is short. */

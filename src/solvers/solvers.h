@@ -11,7 +11,6 @@
     SOLVER(engine)                \
     SOLVER(over_relaxation)       \
     SOLVER(momentum)              \
-    SOLVER(learned_momentum)      \
     SOLVER(block)                 \
     SOLVER(nncg)                  \
     STEPPING(substepping)         \
@@ -25,7 +24,6 @@
     STEPPING(soft_step)           \
     STEPPING(avbd)                \
     SOLVER(interior)              \
-    SOLVER(interior_net)          \
     SOLVER(sain)                  \
     SOLVER(hybrid)                \
     STEPPING(gns)                 \

@@ -34,8 +34,7 @@
     TARGET(scores)           \
     TARGET(times)            \
     TARGET(rows)             \
-    TARGET(samples)          \
-    TARGET(impacts)
+    TARGET(samples)
 
 #define FUZZ_DECLARE(name) void fuzz_##name(const uint8_t *data, size_t size);
 FUZZ_TARGETS(FUZZ_DECLARE)

@@ -3,9 +3,7 @@
 #include "fuzz.h"
 
 #include "fuzz_archive.h"
-#include "interior_training/net_state.h"
 #include "learning/fit_state.h"
-#include "network/momentum_schedule.h"
 #include "network/network.h"
 #include "network/slot_network.h"
 #include "particles/gns_net.h"
@@ -59,32 +57,9 @@ static void read_slot_network(const char *path) {
     slot_network_destroy(network);
 }
 
-static void read_schedules(const char *path) {
-    MomentumSchedules schedules;
-    Error error = {0};
-    fuzz_begin();
-    const bool ok = momentum_schedules_read(&schedules, path, &error);
-    fuzz_end(ok, &error, path);
-    if (!ok) return;
-    for (int i = 0; i < schedules.count; i++)
-        for (int sweep = 0; sweep < schedules.sweeps[i]; sweep++)
-            if (!(schedules.factors[i][sweep] >= 0 && schedules.factors[i][sweep] <= MOMENTUM_MAX_FACTOR))
-                fuzz_fail("a factor of %g", (double)schedules.factors[i][sweep]);
-    momentum_schedules_free(&schedules);
-}
-
 static void check_weights(const double *weights, int count) {
     for (int i = 0; i < count; i++)
         if (!isfinite(weights[i])) fuzz_fail("weight %d is NaN or infinite", i);
-}
-
-static void read_interior_net(const char *path) {
-    InteriorNet net;
-    Error error = {0};
-    fuzz_begin();
-    const bool ok = interior_net_read(&net, path, &error);
-    fuzz_end(ok, &error, path);
-    if (ok) check_weights(net.weights, INTERIOR_NET_WEIGHTS);
 }
 
 static void read_gns_net(const char *path) {
@@ -96,18 +71,6 @@ static void read_gns_net(const char *path) {
     for (int i = 0; ok && i < net.layout.parameters; i++)
         if (!isfinite(net.parameters[i])) fuzz_fail("parameter %d is NaN or infinite", i);
     gns_net_free(&net);
-}
-
-/* No error: of another command. */
-static void read_state(const char *path) {
-    static NetState state;
-    Error error = {0};
-    fuzz_begin();
-    const bool ok = net_state_read(&state, path, "train", &error);
-    fuzz_end(ok || error.kind == ERROR_NONE, &error, path);
-    if (!ok) return;
-    check_weights(state.weights, INTERIOR_NET_WEIGHTS);
-    if (state.round < 0 || state.round >= NET_ROUNDS_MAX) fuzz_fail("round %d", (int)state.round);
 }
 
 static void read_fit(const char *path) {
@@ -189,9 +152,8 @@ static void read_subspace(const char *path) {
 
 /* The first byte chooses the kind of network. */
 void fuzz_network(const uint8_t *data, size_t size) {
-    static void (*const readers[])(const char *path) = {
-        read_network, read_slot_network, read_schedules, read_interior_net, read_state,
-        read_fit,     read_memory,       read_sain,      read_subspace,     read_gns_net};
+    static void (*const readers[])(const char *path) = {read_network, read_slot_network, read_fit,    read_memory,
+                                                        read_sain,    read_subspace,     read_gns_net};
     enum { READERS = sizeof readers / sizeof *readers };
     if (size == 0 || data[0] < 'a' || data[0] >= 'a' + READERS) return;
     readers[data[0] - 'a'](fuzz_archive(data + 1, size - 1));

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Results of pieces that hold binary numbers: rows of a dataset, samples of scene-net, problems of interior-net. Their files have
-   a hash, so these bytes would have been written with it. */
+/* Results of pieces that hold binary numbers: rows of a dataset, and samples of scene-net. Their files have a
+   hash, so these bytes would have been written with it. */
 #include "fuzz.h"
 
 #include "common/memory_stream.h"
 #include "dataset/dataset_pieces.h"
-#include "impact_training/impact_problems.h"
 #include "impact_training/slot_samples.h"
 
 #include <stdlib.h>
@@ -54,18 +53,4 @@ void fuzz_samples(const uint8_t *data, size_t size) {
     if (out != NULL) slot_samples_write(&samples, out);
     if (ok) compare(out, &written, &length, data + 1, left);
     slot_samples_free(&samples);
-}
-
-void fuzz_impacts(const uint8_t *data, size_t size) {
-    Error error = {0};
-    ImpactProblems problems = {0};
-    char *written = NULL;
-    size_t length = 0;
-    fuzz_begin();
-    const bool ok = impact_problems_read(&problems, (const char *)data, size, "impacts", &error);
-    fuzz_end(ok, &error, "impacts");
-    FILE *out = ok ? memory_stream(&written, &length) : NULL;
-    if (out != NULL) impact_problems_write(&problems, out);
-    if (ok) compare(out, &written, &length, data, size);
-    impact_problems_free(&problems);
 }

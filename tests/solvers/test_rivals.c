@@ -3,7 +3,6 @@
 #include "consistent.h"
 #include "kernels.h"
 
-#include "network/momentum_schedule.h"
 #include "worlds.h"
 
 #include <math.h>
@@ -188,38 +187,6 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_settings_refused(&solver_over_relaxation, "omega=2", "omega");
     assert_settings_refused(&solver_over_relaxation, "omega=nan", "omega");
     assert_settings_refused(&solver_engine, "warm=maybe", "warm");
-    assert_settings_refused(&solver_learned_momentum, "", "names no factors");
-}
-
-static const char *write_schedules(void) {
-    Error error = {0};
-    MomentumSchedules schedules = {0};
-    float factors[20];
-    for (int s = 0; s < 20; s++) factors[s] = momentum_factor_tuned(s, 20);
-    assert_ok(momentum_schedules_add(&schedules, 5, factors, &error), error);
-    assert_ok(momentum_schedules_add(&schedules, 20, factors, &error), error);
-    const char *path = temporary_path("schedules.npz");
-    assert_ok(momentum_schedules_write(&schedules, path, &error), error);
-    momentum_schedules_free(&schedules);
-    return path;
-}
-
-static void learned_factors_are_those_of_the_file(void **state) {
-    (void)state;
-    char text[300];
-    const char *path = write_schedules();
-    snprintf(text, sizeof text, "k=20,network=%s", path);
-    World *world = make_crash();
-    const ContactProblem *problem = world_problem(world);
-    ContactSolution learned = make_solution(problem), by_hand = make_solution(problem);
-    solve_with(&solver_learned_momentum, text, problem, &learned);
-    solve_with(&solver_momentum, "k=20", problem, &by_hand);
-    assert_same_bits(problem, &learned, &by_hand, "factors from a file");
-    free_solution(&learned);
-    free_solution(&by_hand);
-    world_destroy(world);
-    snprintf(text, sizeof text, "k=10,network=%s", path);
-    assert_settings_refused(&solver_learned_momentum, text, "has no factors for k=10; it has them for 5, 20");
 }
 
 int main(void) {
@@ -228,7 +195,6 @@ int main(void) {
                                        cmocka_unit_test(a_box_that_leaves_the_ground_is_not_held),
                                        cmocka_unit_test(a_cold_engine_starts_from_zero),
                                        cmocka_unit_test(numbers_that_overflow_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(settings_out_of_range_are_refused),
-                                       cmocka_unit_test(learned_factors_are_those_of_the_file)};
+                                       cmocka_unit_test(settings_out_of_range_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,14 +6,12 @@
 #include "pieces/pieces.h"
 
 /* The first is the default of --kind. */
-#define TRAIN_KINDS(KIND)   \
-    KIND(pair_net)          \
-    KIND(momentum_schedule) \
-    KIND(scene_net)         \
-    KIND(interior_net)      \
-    KIND(sain)              \
-    KIND(hybrid)            \
-    KIND(gns)               \
+#define TRAIN_KINDS(KIND) \
+    KIND(pair_net)        \
+    KIND(scene_net)       \
+    KIND(sain)            \
+    KIND(hybrid)          \
+    KIND(gns)             \
     KIND(subspace)
 
 /* What to train, as on the command line. */

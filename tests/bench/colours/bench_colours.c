@@ -7,7 +7,10 @@
 
 #include "solvers/momentum.h"
 #include "reference/solution_error.h"
+#include "common/parse.h"
 #include "impact_training/impact_problems.h"
+#include "simulate/phases.h"
+#include "simulate/simulate.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +20,7 @@ enum { PASSES = 20 }; /* per sample: one pass takes less than a millisecond */
 
 static const char *const scenes[SCENES] = {"stack", "pyramid_settled"};
 static const char *const orders[ORDERS] = {"order of colours", "order given"};
+static const double converged = 1e-3;            /* m/s: far below the residuals after the sweeps */
 static const FloatRange bomb_x = {-4.5, 1.6, 6}; /* m: never 0, where a bomb on a stack is an exact tie */
 
 typedef struct Ratios {
@@ -36,23 +40,41 @@ static void give_up(const char *reason) {
     exit(3);
 }
 
-/* Moves the impact problems to the front, in the order of the steps, and returns their number. The few whose reference
-   does not converge are left out. */
-static size_t record(ImpactProblems *problems, const char *name) {
+typedef struct Recording {
+    ImpactProblems problems;
+    Reference reference;
+    PhaseTracker tracker;
+} Recording;
+
+/* Leaves out the few problems whose reference does not converge. */
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    Recording *recording = context;
+    const ContactProblem *problem = world_problem(world);
+    if (phase_next(&recording->tracker, problem, frame) != PHASE_IMPACT) return true;
+    if (!reference_solve(&recording->reference, problem, NULL, error)) return false;
+    return recording->reference.residual > converged ||
+           impact_problems_add(&recording->problems, problem, recording->reference.velocities, true) ||
+           error_memory(error, "recording");
+}
+
+/* The impact problems of the engine's runs, in the order of the steps. */
+static ImpactProblems record(const char *name) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
+    Method engine;
     Scene *scene = scene_read(path, &error);
-    if (scene == NULL || !impact_problems_record(problems, scene, &bomb_x, NULL, &error)) give_up(error.message);
-    scene_destroy(scene);
-    size_t count = 0;
-    for (size_t i = 0; i < problems->count; i++) {
-        if (!problems->items[i].impact) continue;
-        ImpactProblem impact = problems->items[i];
-        problems->items[i] = problems->items[count];
-        problems->items[count++] = impact;
+    if (scene == NULL || !method_parse(&engine, "engine", &error)) give_up(error.message);
+    Recording recording = {0};
+    for (int i = 0; i < bomb_x.count; i++) {
+        Scene launch = *scene;
+        launch.bomb.body.position.x = range_value(&bomb_x, i);
+        recording.tracker = (PhaseTracker){.impact_frames = scene->bomb.impact_frames};
+        if (!simulate_observed(&launch, &engine, &(StepObserver){observe, &recording}, &error)) give_up(error.message);
     }
-    return count;
+    scene_destroy(scene);
+    reference_free(&recording.reference);
+    return recording.problems;
 }
 
 static void solver_begin(Solver *solver, int order, const ImpactProblem *items, size_t count) {
@@ -101,17 +123,16 @@ static double mean_error(Solver *solver, const ImpactProblem *items, size_t coun
 }
 
 static Ratios measure(const char *name) {
-    ImpactProblems problems;
-    const size_t count = record(&problems, name);
+    ImpactProblems problems = record(name);
     Solver solvers[ORDERS];
     Samples errors[ORDERS] = {0}, times[ORDERS] = {0}, ratios = {0};
     for (int k = 0; k < ORDERS; k++) {
-        solver_begin(&solvers[k], k, problems.items, count);
-        samples_add(&errors[k], mean_error(&solvers[k], problems.items, count));
+        solver_begin(&solvers[k], k, problems.items, problems.count);
+        samples_add(&errors[k], mean_error(&solvers[k], problems.items, problems.count));
     }
     for (int i = 0; i < SAMPLES; i++) {
         for (int k = 0; k < ORDERS; k++)
-            samples_add(&times[k], microseconds_a_step(&solvers[k], problems.items, count));
+            samples_add(&times[k], microseconds_a_step(&solvers[k], problems.items, problems.count));
         samples_add(&ratios, times[0].values[i] / times[1].values[i]);
     }
     char figure[64];
