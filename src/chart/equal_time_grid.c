@@ -20,9 +20,9 @@ static const char *twin_of(const RivalCurves *curves, int family) {
 static int find_twin(const RivalCurves *curves, int family) {
     char method[CHART_NAME_SIZE], name[CHART_FAMILY_SIZE];
     const char *twin = twin_of(curves, family), *colon = twin == NULL ? NULL : strchr(twin, ':');
-    if (twin == NULL) return -1;
-    snprintf(method, sizeof method, "%.*s", colon == NULL ? (int)strlen(twin) : (int)(colon - twin), twin);
-    const ChartRow row = {.method = method, .setting = colon == NULL ? "" : colon + 1};
+    if (colon == NULL) return -1;
+    snprintf(method, sizeof method, "%.*s", (int)(colon - twin), twin);
+    const ChartRow row = {.method = method, .setting = colon + 1};
     chart_row_family(&row, name);
     for (int i = 0; i < curves->family_count; i++)
         if (i != family && strcmp(curves->families[i].name, name) == 0) return i;
@@ -43,16 +43,11 @@ static void add(Columns *columns, int family, bool joined) {
 }
 
 static void order_columns(Columns *columns, const RivalCurves *curves) {
-    for (int i = 0; i < curves->family_count; i++) {
-        if (twin_of(curves, i) != NULL) continue;
-        add(columns, i, false);
-        for (int k = 0; k < curves->family_count; k++)
-            if (find_twin(curves, k) == i) add(columns, k, true);
-    }
+    for (int i = 0; i < curves->family_count; i++)
+        if (twin_of(curves, i) == NULL) add(columns, i, false);
     for (int i = 0; i < curves->family_count; i++) {
         const int twin = find_twin(curves, i);
         if (twin_of(curves, i) == NULL || is_silenced(curves, i)) continue;
-        if (twin >= 0 && twin_of(curves, twin) == NULL) continue; /* beside its twin already */
         add(columns, i, false);
         if (twin >= 0) add(columns, twin, true);
     }

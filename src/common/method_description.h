@@ -65,7 +65,7 @@ typedef struct MethodDescription {
                             (simulate/stepping.h), not the whole step's */
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
-    const char *twin;   /* of a learned method: its ablation, as on the command line ("momentum"); it takes the same
+    const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
                             settings otherwise. NULL: nothing is learned */
     const char *own_settings; /* those that hold where none are given, "k=10"; NULL: k is the scene's iterations */
     const char *shipped;      /* the setting in common use, which charts mark; NULL: none */

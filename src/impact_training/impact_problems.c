@@ -32,7 +32,7 @@ bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem
     if (body_copy == NULL || contact_copy == NULL || item.reference == NULL) return false;
     memcpy(body_copy, problem->bodies, bodies * sizeof *body_copy);
     memcpy(contact_copy, problem->contacts, contacts * sizeof *contact_copy);
-    if (reference != NULL) memcpy(item.reference, reference, bodies * sizeof *reference);
+    memcpy(item.reference, reference, bodies * sizeof *reference);
     return true;
 }
 

@@ -3,8 +3,6 @@
 #pragma once
 #include "reference/reference.h"
 
-enum { AFTER_STEP = 6 }; /* all impact frames (simulate/phases.h) and every sixth frame after */
-
 typedef struct ImpactProblem {
     ContactProblem problem; /* owns its arrays */
     ReferenceVelocity *reference;
@@ -18,7 +16,7 @@ typedef struct ImpactProblems {
 
 void impact_problems_free(ImpactProblems *problems);
 
-/* Appends a copy. reference: [body_count]; False when memory is short. */
+/* Appends a copy. reference: [body_count]. False when memory is short. */
 bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem, const ReferenceVelocity *reference,
                          bool impact);
 

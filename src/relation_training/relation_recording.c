@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/* Every so many frames at rest; they differ little. */
-enum { REST_EVERY = 30, FACTORIZATIONS_MAX = 120 /* 95% of the impacts on pyramids take fewer */ };
+/* Every so many frames after the impact and at rest; they differ little. */
+enum { AFTER_STEP = 6, REST_EVERY = 30, FACTORIZATIONS_MAX = 120 /* 95% of the impacts on pyramids take fewer */ };
 
 static const double converged = 1e-6; /* m/s */
 

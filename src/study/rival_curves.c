@@ -76,16 +76,9 @@ double rival_curves_error(const RivalCurves *curves, int family, Phase phase, Cu
     return count == 0 ? NAN : error_curve_at(curves->points, error_curve_front(curves->points, count), us, reach);
 }
 
-/* Whether a text such as "momentum" or "momentum:k=20" is of this method. */
-static bool is_of(const char *text, const char *method) {
-    const size_t length = strlen(method);
-    return text != NULL && strncmp(text, method, length) == 0 && (text[length] == '\0' || text[length] == ':');
-}
-
 static bool is_rival(const CurveFamily *family, const CurveFamily *other) {
     if (strcmp(family->method, other->method) == 0) return false;
-    if (other->description != NULL && other->description->twin != NULL) return false;
-    return family->description == NULL || !is_of(family->description->twin, other->method);
+    return other->description == NULL || other->description->twin == NULL;
 }
 
 BestRival rival_curves_best(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic, double us) {

@@ -66,7 +66,7 @@ twinbox simulate -m pair-net:netw<TAB>|twinbox simulate -m pair-net:network=
 twinbox simulate -m pair-net:network=eng<TAB>|twinbox simulate -m pair-net:network=engine.npz 
 twinbox simulate --method=engine:acc<TAB>|twinbox simulate --method=engine:accumulate=
 twinbox solve p.npz -m engine:warm=on,acc<TAB>|twinbox solve p.npz -m engine:warm=on,accumulate=
-twinbox chart --methods engine:k=5,interior-<TAB>|twinbox chart --methods engine:k=5,interior-net 
+twinbox chart --methods engine:k=5,soft-<TAB>|twinbox chart --methods engine:k=5,soft-step 
 twinbox render --theme d<TAB>|twinbox render --theme dark 
 twinbox render --camera=div<TAB>|twinbox render --camera=divergence 
 twinbox render --show ghosts,tr<TAB>|twinbox render --show ghosts,trails 

@@ -216,20 +216,8 @@ for network in net lm six relu lawful-net; do
 done
 cmp -s net.hash lm.hash && fail "two networks, one run"
 
-run 0 train --kind momentum-schedule single.yaml -o schedule.npz --iterations 5 --bomb-x=1:3:0.5
-says "schedule.npz"
-run 0 train --kind momentum-schedule single.yaml -o schedule2.npz --iterations 5 --bomb-x=1:3:0.5
-run 0 simulate single.yaml --method learned-momentum:k=5,network=schedule.npz --hash schedule.hash
-run 0 simulate single.yaml --method learned-momentum:k=5,network=schedule2.npz --hash again.hash
-cmp -s schedule.hash again.hash || fail "a schedule is not repeatable"
-run 2 simulate single.yaml --method learned-momentum:k=7,network=schedule.npz
-complains "schedule.npz: error: has no factors for k=7; it has them for 5, 10, 20, 50"
-run 2 simulate single.yaml --method learned-momentum:network=net.npz
-complains "net.npz: error: not a file of kind 'momentum-schedules'"
 run 2 train --kind magic single.yaml -o x.npz
 complains "--kind"
-run 2 train --kind momentum-schedule nowhere.yaml -o x.npz
-complains "nowhere.yaml"
 
 run 2 dataset single.yaml -o x.npz --bomb-x=0:1
 complains "--bomb-x"

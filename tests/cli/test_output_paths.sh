@@ -21,7 +21,7 @@ refused() {
     complains "$message"
     equal "output of $*" "$(<out)" ""
 }
-trainings=("pairs.npz" "--kind scene-net stack.yaml" "--kind momentum-schedule stack.yaml" "--kind interior-net" "--kind sain stack.yaml" "--kind hybrid stack.yaml" "--kind gns")
+trainings=("pairs.npz" "--kind scene-net stack.yaml" "--kind sain stack.yaml" "--kind hybrid stack.yaml" "--kind gns")
 for training in "${trainings[@]}"; do
     refused 3 "nowhere/x.npz: error: cannot write: 'nowhere/' is not a folder that takes files" train $training -o nowhere/x.npz
     refused 3 "/proc/x.npz: error: cannot write" train $training -o /proc/x.npz

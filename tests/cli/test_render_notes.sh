@@ -25,11 +25,11 @@ done <commands
 equal "panels of both" "$(ls both/*.npz | wc -l)" 2
 
 # Other networks, no family, no bomb, none of these.
-cp wall.yaml interior.yaml
-echo "networks: {interior-net: $scenes/networks/interior-net.npz}" >>interior.yaml
-draw interior.yaml
-complains "interior.yaml names no pair-net, so only the engine is drawn. To draw a network beside it:"
-complains "    twinbox simulate interior.yaml --method interior-net -o network.npz"
+cp wall.yaml sain.yaml
+echo "networks: {sain: $scenes/networks/sain.npz}" >>sain.yaml
+draw sain.yaml
+complains "sain.yaml names no pair-net, so only the engine is drawn. To draw a network beside it:"
+complains "    twinbox simulate sain.yaml --method sain -o network.npz"
 sed '/^bomb:/,/^$/d; s/^  bomb_mass.*//' wall.yaml >bare.yaml
 draw bare.yaml
 complains "bare.yaml names no network, so only the engine is drawn; to train one for it, give it a bomb with a family"

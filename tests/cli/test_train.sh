@@ -8,12 +8,9 @@ run 0 train --help
 listed() { sed -n "/^ $1/,/^\$/p" out | sed -nE 's/^      --([a-z-]+).*/\1/p' | sort | tr '\n' ' '; }
 equal "options of pair-net" "$(listed 'pair-net (default): ')" \
     "from hidden iterations laws layers loss optimizer output-activation scale seed "
-equal "options of momentum-schedule" "$(listed 'momentum-schedule: ')" "bomb-x iterations seed "
 equal "options of scene-net" "$(listed 'scene-net: ')" \
     "iterations launches momentum rounds seed shard smallest sweeps width within "
 says "  or:  twinbox train [OPTION...] --kind scene-net SCENE"
-equal "options of interior-net" "$(listed 'interior-net: ')" "epochs rounds scenes seed shard "
-says "  or:  twinbox train [OPTION...] --kind interior-net"
 equal "options of sain" "$(listed 'sain: ')" "launches rounds seed steps with "
 equal "options of hybrid" "$(listed 'hybrid: ')" "launches limit seed steps tolerance "
 equal "options of gns" "$(listed 'gns: ')" "batch launches noise radius rate rounds scenes seed steps width "
@@ -22,27 +19,27 @@ equal "options of subspace" "$(listed 'subspace: ')" "epochs launches seed width
 # Refused before a file is read; the kind may come first or last.
 run 2 train --kind scene-net nowhere.yaml -o x.npz --optimizer lm
 complains "--optimizer: error: is an option of pair-net, not of scene-net"
-run 2 train nowhere.yaml -o x.npz --bomb-x=0:1:1 --kind scene-net
-complains "--bomb-x: error: is an option of momentum-schedule, not of scene-net"
+run 2 train nowhere.yaml -o x.npz --limit 1 --kind scene-net
+complains "--limit: error: is an option of hybrid, not of scene-net"
 run 2 train nowhere.npz -o x.npz --smallest
 complains "--smallest: error: is an option of scene-net, not of pair-net"
 run 2 train --kind pair-net nowhere.npz -o x.npz --sweeps 16
 complains "--sweeps: error: is an option of scene-net, not of pair-net"
 run 2 train --kind magic nowhere.npz -o x.npz
-complains "--kind: error: 'magic' is not a kind; known: pair-net, momentum-schedule, scene-net, interior-net, sain, hybrid, gns, subspace"
-run 2 train --kind momentum-schedule nowhere.yaml -o x.npz --seed 2 --iterations 1
+complains "--kind: error: 'magic' is not a kind; known: pair-net, scene-net, sain, hybrid, gns, subspace"
+run 2 train --kind hybrid nowhere.yaml -o x.npz --seed 2 --launches 3
 complains "nowhere.yaml"
 run 2 train -o x.npz
 complains "pair-net: error: a file to train on is needed: DATA.npz"
-run 2 train --kind interior-net nowhere.yaml -o x.npz
-complains "nowhere.yaml: error: interior-net takes no file to train on"
+run 2 train --kind gns nowhere.yaml -o x.npz
+complains "nowhere.yaml: error: gns takes no file to train on"
 run 2 train --kind gns -o x.npz --width 24
 complains "--width: error: 24 is not a multiple of 16"
 run 2 train --kind gns -o x.npz --scenes ,
 complains "--scenes: error: no scene is given"
 run 2 train --kind gns -o x.npz --scenes nowhere.yaml
 complains "nowhere.yaml: error: cannot"
-run 3 train --kind interior-net -o nowhere/x.npz
+run 3 train --kind gns -o nowhere/x.npz
 complains "nowhere/x.npz: error: cannot write"
 run 2 train one.npz two.npz -o x.npz
 complains "only 1 file can be given ('two.npz' is one more)"
@@ -52,9 +49,7 @@ sed 's/^frames:.*/frames: 60/' "$scenes/single.yaml" >single.yaml
 sed '/scene-net:/d; s/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
 run 0 dataset single.yaml -o pairs.npz --bomb-x=-2:2:1
 run 0 train --loss smooth-l1 pairs.npz --iterations 3 -o pair.npz --hidden tanh
-run 0 train single.yaml --bomb-x=1:2:1 --iterations 1 -o schedule.npz --kind momentum-schedule
 run 0 train --kind scene-net stack.yaml -o scene.npz --launches 10 --rounds 1 --iterations 1 --width 16
-run 0 train --kind interior-net -o interior.npz --scenes 7 --rounds 1 --epochs 1
 run 0 train --kind sain stack.yaml --with single.yaml -o sain.npz --launches 2 --rounds 1 --steps 4
 run 0 train --kind hybrid stack.yaml -o memory.npz --launches 3 --steps 4 --limit 0.03
 says "  full"
@@ -63,12 +58,8 @@ says "would take"
 stored() { /usr/bin/python3 -c "import numpy; print(numpy.load('$1')['command'])"; }
 equal "command of pair-net" "$(stored pair.npz)" \
     "twinbox train pairs.npz -o pair.npz --layers 10-10-2 --optimizer adam --iterations 3 --seed 1 --hidden tanh --loss smooth-l1"
-equal "command of momentum-schedule" "$(stored schedule.npz)" \
-    "twinbox train --kind momentum-schedule single.yaml -o schedule.npz --iterations 1 --seed 1 --bomb-x=1:2:1"
 equal "command of scene-net" "$(stored scene.npz)" \
     "twinbox train --kind scene-net stack.yaml -o scene.npz --launches 10 --rounds 1 --iterations 1 --width 16 --sweeps 14 --momentum on --seed 1"
-equal "command of interior-net" "$(stored interior.npz)" \
-    "twinbox train --kind interior-net -o interior.npz --scenes 7 --rounds 1 --epochs 1 --seed 1"
 equal "command of sain" "$(stored sain.npz)" \
     "twinbox train --kind sain stack.yaml -o sain.npz --with single.yaml --launches 2 --rounds 1 --steps 4 --seed 1"
 equal "command of hybrid" "$(stored memory.npz)" \
@@ -76,16 +67,15 @@ equal "command of hybrid" "$(stored memory.npz)" \
 run 0 simulate "$scenes/stack.yaml" --method hybrid:network=memory.npz -o run.npz
 run 2 simulate "$scenes/single.yaml" --method hybrid:network=memory.npz
 complains "memory.npz: error: the memory is of the scene stack of 12 bodies; this one has 3"
-run 2 simulate "$scenes/stack.yaml" --method hybrid:network=interior.npz
-complains "interior.npz: error: "
+run 2 simulate "$scenes/stack.yaml" --method hybrid:network=gns.npz
+complains "gns.npz: error: "
 run 0 simulate "$scenes/stack.yaml" --method sain:network=sain.npz,engine=shuffled -o run.npz
-run 2 simulate "$scenes/stack.yaml" --method sain:network=interior.npz
-complains "interior.npz: error: "
+run 2 simulate "$scenes/stack.yaml" --method sain:network=gns.npz
+complains "gns.npz: error: "
 run 2 train --kind sain stack.yaml --with nowhere.yaml -o x.npz
 complains "nowhere.yaml"
 equal "command of gns" "$(stored gns.npz)" \
     "twinbox train --kind gns -o gns.npz --scenes single.yaml --launches 2 --width 16 --rounds 1 --radius 0.6 --noise 0.1 --steps 20 --batch 8 --rate 0.005 --seed 1"
-run 0 simulate "$scenes/stack.yaml" --method interior-net:network=interior.npz -o run.npz
 run 0 simulate "$scenes/stack.yaml" --method gns:network=gns.npz --frames 5 -o run.npz
 
 # Of a short run with few windows; the state goes when the network is stored.
@@ -100,6 +90,6 @@ equal "command of subspace" "$(stored subspace.npz)" \
 run 0 simulate single.yaml --method subspace:network=subspace.npz,components=8 -o run.npz
 run 2 simulate stack.yaml --method subspace:network=subspace.npz -o run.npz
 complains "subspace.npz: error: the network is for scene single with 2 bodies that move; scene stack has 11"
-run 2 simulate stack.yaml --method subspace:network=interior.npz -o run.npz
-complains "interior.npz: error: "
+run 2 simulate stack.yaml --method subspace:network=gns.npz -o run.npz
+complains "gns.npz: error: "
 finish

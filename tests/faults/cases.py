@@ -79,13 +79,10 @@ LONG = [
     Case("train-from", "train pairs.npz -o net.npz --from net.npz --iterations 2", "pairs.npz net.npz"),
     Case("train-lm", "train pairs.npz -o out.npz --iterations 2 --layers 10-8-8-6 --optimizer lm", "pairs.npz"),
     Case("train-bfgs", "train pairs.npz -o out.npz --iterations 2 --optimizer bfgs", "pairs.npz"),
-    Case("train-momentum", "train --kind momentum-schedule SCENES/single.yaml -o out.npz --iterations 1 --bomb-x=1:2:1"),
     Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1"
          " --width 16"),
-    Case("train-interior-net", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1", "",
-         "out.npz.part"),
-    Case("train-shard", "train --kind interior-net -o out.npz --scenes 7 --rounds 1 --epochs 1 --shard 1/2", "",
-         "out.npz.shards/*"),
+    Case("train-shard", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1"
+         " --width 16 --shard 1/2", "", "out.npz.shards/*"),
     Case("train-merge", "merge network.npz", "network.npz.shards"),
     Case("train-sain", "train --kind sain SCENES/single.yaml -o out.npz --launches 2 --rounds 1 --steps 3", "",
          "out.npz.part"),

@@ -164,8 +164,8 @@ static void damaged_files_are_refused(void **state) {
     free(whole);
     FigureSpec spec = spec_for(path);
     expect_kind_refused("network", &spec, "cut.npz: error:");
-    spec.network = NETWORKS "momentum-stack.npz";
-    expect_kind_refused("network", &spec, "momentum-stack.npz: error: contains no network with layers");
+    spec.network = NETWORKS "sain.npz";
+    expect_kind_refused("network", &spec, "sain.npz: error: contains no network with layers");
     spec.network = temporary_path("nowhere.npz");
     expect_kind_refused("network", &spec, "nowhere.npz");
     spec = spec_for(NETWORKS "contact-net.npz");

@@ -139,10 +139,6 @@ def make_npz():
         "slot_feature": Array("<u4", (slots,), struct.pack(f"<{slots}I", *range(slots))),
         "state_rows": Array("<f4", (255 * 6, 16)), "present_rows": Array("<f4", (slots, 16)),
         "warm_rows": Array("<f4", (2 * slots, 16)), "last_rows": Array("<f4", (2 * slots, 1024))}, PADDING))
-    save("momentum.npz", zip_of({
-        **head("momentum-schedules", 1), "sweeps": Array("<i4", (1,), struct.pack("<i", 20)),
-        "factors": Array("<f4", (40 * MiB,))}, PADDING))
-    save("interior.npz", zip_of({**head("interior-net", 1), "hidden_weights": Array("<f4", (6000, 6000))}, PADDING))
 
 
 # --- PNG ---

@@ -70,7 +70,7 @@ working TERM simulate "$scenes/pyramid.yaml" --frames 500000 -o new.npz --verdic
 complains "stopped after step"
 working INT page "$scenes/pyramid.yaml" -o new.html
 working INT dataset "$scenes/pyramid.yaml" --random 5000 -o new.npz
-working TERM train --kind momentum-schedule "$scenes/stack.yaml" -o new.npz --iterations 100000
+working TERM train --kind scene-net "$scenes/stack.yaml" -o new.npz --iterations 100000
 [ -e new.json ] && fail "an interrupted run has a verdict"
 working TERM paper -o paper --scenes "$scenes"
 [ -e paper/report.html ] && fail "an interrupted study has a report"

@@ -7,7 +7,7 @@
 #include "render/runs.h"
 
 static const char *const methods[RENDER_PANELS_MAX] = {
-    "engine", "momentum:k=20", "pair-net:network=nets/small.npz", "interior", "learned-momentum:k=20", "contact-net"};
+    "engine", "momentum:k=20", "pair-net:network=nets/small.npz", "interior", "longest-of-names:k=20", "contact-net"};
 static const MethodDescription description = {.name = "any", .caption = "some words on what the method does"};
 static const MethodDescription *describe(const char *method) { return (void)method, &description; }
 

@@ -171,9 +171,9 @@ static void other_networks_are_refused(void **state) {
     assert_null(stepper_create(&method, &scene, &error));
     assert_error(error, ERROR_INPUT, "needs a network");
     error = (Error){0};
-    assert_ok(method_with_network(&method, "gns", SOURCE_DIR "/scenes/networks/interior-net.npz", &error), error);
+    assert_ok(method_with_network(&method, "gns", SOURCE_DIR "/scenes/networks/sain.npz", &error), error);
     assert_null(stepper_create(&method, &scene, &error));
-    assert_error(error, ERROR_INPUT, "interior-net.npz: error: not a file of kind 'gns'");
+    assert_error(error, ERROR_INPUT, "sain.npz: error: not a file of kind 'gns'");
 }
 
 int main(void) {

@@ -106,9 +106,9 @@ static void titles_are_cut_in_the_settings(void **state) {
         size_t most;
     } cases[] = {{"engine", "", "engine", 20},
                  {"engine", "k=10,warm=off", "engine:k=10,warm=off", 20},
-                 {"learned-momentum", "k=10,warm=off", "learned-momentum:k=10,w...", 26},
-                 {"learned-momentum", "k=10,warm=off", "learned-momentum:...", 20},
-                 {"learned-momentum", "", "learned...", 10},
+                 {"longest-of-names", "k=10,warm=off", "longest-of-names:k=10,w...", 26},
+                 {"longest-of-names", "k=10,warm=off", "longest-of-names:...", 20},
+                 {"longest-of-names", "", "longest...", 10},
                  {"scene-net", "network=../of/networks/a-b.npz,k=4", "scene-net:network=a-b.npz,k=4", 40},
                  {"scene-net", "k=4,network=<it's>.npz", "scene-net:k=4,network=?it?s?.npz", 40},
                  {"pair-net", "network=a-long-name-of-a-network.npz", "pair-net:network=a-long-name-...", 32}};

@@ -128,8 +128,7 @@ static void every_learned_method_names_its_twin(void **state) {
         assert_int_equal(method->twin != NULL, method->needs_network && method->role == METHOD_COMPETES);
         learned += method->twin != NULL;
     }
-    assert_int_equal(learned, 9); /* pair-net, contact-net, scene-net, learned-momentum, interior-net, sain, hybrid,
-                                      gns, subspace */
+    assert_int_equal(learned, 7); /* pair-net, contact-net, scene-net, sain, hybrid, gns, subspace */
 }
 
 /* What is left out is reported. */

@@ -14,9 +14,8 @@
 
 static const char chart[] = IMPACT("engine", "k=10", "4", "2", "1", "4") IMPACT("engine", "k=40", "16", "1", "0.5", "2")
     IMPACT("momentum", "k=20", "8", "0.8", "0.4", "1.6") IMPACT("momentum", "k=50", "20", "0.2", "0.1", "0.4")
-        IMPACT("learned-momentum", "k=20", "8", "0.4", "0.2", "0.8") IMPACT("scene-net", "", "10", "0.1", "0.05", "0.2")
-            IMPACT("scene-net", "net=off", "10", "0.5", "0.25", "1")
-                IMPACT("interior", "near=0.02", "16", "0.01", "0.005", "0.02")
+        IMPACT("scene-net", "", "10", "0.1", "0.05", "0.2") IMPACT("scene-net", "net=off", "10", "0.5", "0.25", "1")
+            IMPACT("interior", "near=0.02", "16", "0.01", "0.005", "0.02")
     /* What no method may be compared with. */
     IMPACT("reference", "", "2", "0.0001", "0.0001", "0.0001") IMPACT("playback", "", "1", "0.01", "0.01", "0.01")
         IMPACT("block", "k=5", "1", "0.01", "0.01", "0.01") DRIFT("block", "k=5", "0.6") DRIFT("engine", "k=10", "0.4");
@@ -40,7 +39,6 @@ static const Expected expected[] = {
     /* On the line from (4, 2) to (16, 1), halfway: sqrt(2). */
     {"momentum", "k=20", "engine", CURVE_WITHIN, 1.41421356237, 0.565685424949, 1, 8},
     {"momentum", "k=50", "interior", CURVE_BEYOND, 0.01, 20, 2.5, 2},
-    {"learned-momentum", "k=20", "engine", CURVE_WITHIN, 1.41421356237, 0.282842712475, 1, 4},
     /* Between momentum's (8, 0.8) and (20, 0.2). */
     {"scene-net", "", "momentum", CURVE_WITHIN, 0.570782694569, 0.175198023611, 1.25, 1},
     {"scene-net", "net=off", "momentum", CURVE_WITHIN, 0.570782694569, 0.875990118057, 1.25, 5},
@@ -62,8 +60,8 @@ static void every_setting_meets_its_best_rival_at_its_time(void **state) {
     EqualTime table;
     Error error = {0};
     /* The line of logarithms from (8, 0.8) to (20, 0.2), at 10 and at 16. */
-    assert_near(0.8 * pow(0.25, log(1.25) / log(2.5)), expected[5].rival_error, 1e-11);
-    assert_near(0.8 * pow(0.25, log(2) / log(2.5)), expected[7].rival_error, 1e-11);
+    assert_near(0.8 * pow(0.25, log(1.25) / log(2.5)), expected[4].rival_error, 1e-11);
+    assert_near(0.8 * pow(0.25, log(2) / log(2.5)), expected[6].rival_error, 1e-11);
     assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
     assert_int_equal(table.count, CURVE_STATISTICS * (int)(sizeof expected / sizeof *expected));
     for (int i = 0; i < table.count; i++) {
@@ -92,13 +90,9 @@ static void methods_are_compared_at_one_time(void **state) {
         const char *method, *rival;
         double error, ratio;
     } methods[] = {
-        {"engine", "interior", 1, 100},
-        {"momentum", "interior", 0.2, 20},
-        {"learned-momentum", "interior", 0.4, 40},
-        {"scene-net", "interior", 0.1, 10},
-        {"scene-net:net=off", "interior", 0.5, 50},
-        {"interior", "momentum", 0.01, 0.05},
-        {"block", "interior", NAN, NAN}, /* lost the scene */
+        {"engine", "interior", 1, 100},       {"momentum", "interior", 0.2, 20},
+        {"scene-net", "interior", 0.1, 10},   {"scene-net:net=off", "interior", 0.5, 50},
+        {"interior", "momentum", 0.01, 0.05}, {"block", "interior", NAN, NAN}, /* lost the scene */
     };
     ChartTable rows = read_chart();
     EqualTime table;

@@ -7,6 +7,7 @@
 
 #include "solvers/momentum.h"
 #include "reference/solution_error.h"
+#include "common/parse.h"
 #include "impact_training/impact_problems.h"
 #include "simulate/phases.h"
 #include "simulate/simulate.h"
