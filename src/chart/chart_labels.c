@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "chart/chart_labels.h"
+#include "chart/chart_layout.h"
 
 #include "sketch/label_place.h"
 #include "type/type.h"

@@ -36,6 +36,13 @@ void chart_lay_out_legend(ChartLayout *layout);
 
 void chart_draw_legend(const ChartLayout *layout, Sketch *sketch);
 
+/* The corners of the Pareto front: marks on the front by time, each with less error than all faster ones. Returns
+   their number and fills order[panel->count] with their indices. */
+int chart_pareto_corners(const ChartPanel *panel, int *order);
+
+/* Draws the labels of a panel's marks: at both ends of each line, where there is room. False if out of memory. */
+bool chart_draw_labels(const ChartLayout *layout, int panel, Sketch *sketch);
+
 /* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
 void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
 
-#include "chart/chart_labels.h"
+#include "chart/chart_layout.h"
 #include "common/file.h"
 #include "sketch/sketch_files.h"
 

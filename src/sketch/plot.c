@@ -43,8 +43,12 @@ double plot_bottom_margin(double points) { return tick + (label_drop + 0.7) * po
 static void draw_number(Sketch *sketch, const PlotTick *number, Point at, const TextStyle *style) {
     if (number->digit > 0)
         sketch_power_of_ten(sketch, at, style, number->digit, number->power);
-    else if (number->text[0] != '\0')
-        sketch_text(sketch, at, style, "%s", number->text);
+    else if (number->text[0] != '\0') {
+        const int first = (int)strcspn(number->text, "\n");
+        sketch_text(sketch, at, style, "%.*s", first, number->text);
+        at.y -= 1.15 * style->points * MM_PER_POINT;
+        if (number->text[first] != '\0') sketch_text(sketch, at, style, "%s", number->text + first + 1);
+    }
 }
 
 static double outside_of(const PlotAxis *axis) { return axis->outside ? tick : 0; }

@@ -79,7 +79,7 @@ double plot_tick_width(const PlotTick *tick, double points) {
 
 /* mm: between the middles of two numbers one above the other, and between two side by side. */
 static bool is_crowded(const PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    const double em = points * MM_PER_POINT, between = across ? 0.75 * em : 1.35 * em;
+    const double em = points * MM_PER_POINT, between = across ? 0.4 * em : 1.35 * em;
     const PlotTick *before = NULL;
     for (int i = 0; i < ticks->count; i++) {
         const PlotTick *tick = &ticks->items[i];

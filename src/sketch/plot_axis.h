@@ -13,8 +13,8 @@ void plot_range_include(PlotRange *range, double value); /* ignores NaN, infinit
 
 typedef struct PlotTick {
     double value;
-    bool minor; /* short, without a number */
-    char text[48];
+    bool minor;       /* short, without a number */
+    char text[48];    /* may have two lines */
     int digit, power; /* digit > 0: the number is digit · 10^power instead of the text */
 } PlotTick;
 

@@ -73,8 +73,8 @@ static const struct {
     int corners;
     double first, radius;
 } polygons[METHOD_SYMBOLS] = {
-    [METHOD_CIRCLE] = {24, 0, 1},    [METHOD_SQUARE] = {4, 45, 1.25},   [METHOD_TRIANGLE] = {3, 90, 1.35},
-    [METHOD_DIAMOND] = {4, 90, 1.3}, [METHOD_PENTAGON] = {5, 90, 1.15}, [METHOD_INVERTED_TRIANGLE] = {3, -90, 1.35}};
+    [METHOD_CIRCLE] = {24, 0, 1},     [METHOD_SQUARE] = {4, 45, 1.25},   [METHOD_TRIANGLE] = {3, 90, 1.35},
+    [METHOD_DIAMOND] = {4, 90, 1.27}, [METHOD_PENTAGON] = {5, 90, 1.15}, [METHOD_INVERTED_TRIANGLE] = {3, -90, 1.35}};
 
 static void draw_polygon(Sketch *sketch, Point at, int symbol, double radius, const Pen *pen) {
     Point corners[24];
@@ -97,8 +97,9 @@ static void draw_strokes(Sketch *sketch, Point at, const PlotStyle *style, doubl
 }
 
 static void draw_bar(Sketch *sketch, Point at, const PlotStyle *style, double radius) {
-    const double along = 1.85 * radius, across = 0.4 * radius;
-    const double x = style->symbol == PLOT_LEVEL ? along : across, y = style->symbol == PLOT_LEVEL ? across : along;
+    const double across = 0.4 * radius; /* an upright bar is seen behind a dot */
+    const double x = style->symbol == PLOT_LEVEL ? 1.4 * radius : across;
+    const double y = style->symbol == PLOT_LEVEL ? across : 2 * radius;
     sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
                      &(Pen){style->colour, 1, NO_COLOUR, 0, NULL});
 }

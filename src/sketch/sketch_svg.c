@@ -11,6 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The fonts of texts, best first. */
+#define SVG_FONTS "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif"
+
 static void write_glyph(FILE *file, const Glyph *glyph) {
     static const char letters[] = "MLC";
     fprintf(file, "<path id=\"g%u\" d=\"", glyph->index);
@@ -147,7 +150,7 @@ static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark
 }
 
 /* For texts; and the font, so that browsers show the same letters on every machine. */
-void svg_write_font(FILE *file, FontFile font) {
+static void write_font(FILE *file, FontFile font) {
     fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
     base64_put(file, (const char *)font.bytes, font.size);
     fprintf(file, ")}</style>\n");
@@ -166,7 +169,7 @@ static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *out
         fprintf(file, "</title>\n");
     }
     if (output->outlines) return write_glyphs(file, sketch);
-    svg_write_font(file, sketch_font(sketch));
+    write_font(file, sketch_font(sketch));
     return true;
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The renderer's font, built in: as files, for gnuplot, PDF and SVG, and as outlines.
+# The renderer's font, built in: as files, for PDF and SVG, and as outlines.
 set(font_folder ${PROJECT_SOURCE_DIR}/src/gl/font)
 twinbox_embed(twinbox_type embedded_fonts.c type/embedded_fonts.h "unsigned char" font_ ${font_folder}
               Inter-Regular-subset.otf Inter-Regular.otf)

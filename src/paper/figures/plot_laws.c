@@ -82,6 +82,7 @@ static PlotLook look_of(const void *of, int series) {
     if (series == REFERENCE) return plot_look_dashed("predicting the mean / the engine");
     PlotLook look = plot_look(series == LAW_SET_ALL ? 0 : series + 1, names[series]);
     look.seeds = true;
+    look.above = series == LAW_SET_ALL;
     return look;
 }
 

@@ -71,6 +71,7 @@ static PlotLook look_of(const void *of, int series) {
     if (series < PAPER_OPTIMIZERS) return plot_look(series, optimizers[series]);
     PlotLook look = plot_look(7, "the paper's Table 1");
     look.style.colour = look.style.ink = 0x000000;
+    look.above = true;
     return look;
 }
 

@@ -66,6 +66,7 @@ static PlotLook look_of(const void *of, int series) {
     if (series < NETWORKS) {
         PlotLook look = plot_look(series, networks[series]);
         look.stems = true;
+        look.line = 2.5;
         return look;
     }
     if (series == BAND) return (PlotLook){.name = "the paper's 60 to 91%", .style = {.colour = 0xE4E4E4}, .band = true};
@@ -103,7 +104,7 @@ static void keep_shown(Rates *rates, RateRow *rows, int count) {
 }
 
 static void make_ticks(Rates *rates) {
-    static const char *const names[PAPER_SCENES] = {"single", "stack", "pyramid", "settled"};
+    static const char *const names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid,\nsettled"};
     char text[8];
     for (int scene = 0; scene < PAPER_SCENES; scene++) plot_tick_add(&rates->scenes, scene, false, names[scene]);
     for (int share = 0; share <= 100; share += 20) {
