@@ -41,5 +41,6 @@ static inline bool has_alpha(const Image *image) {
     return false;
 }
 
-/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. */
-char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error);
+/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone, which
+   take a tenth to a quarter less room without filters. */
+char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, Error *error);

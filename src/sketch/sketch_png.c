@@ -188,6 +188,12 @@ static void draw_mark(Painter *painter, const SketchMark *mark) {
     }
 }
 
+static bool has_images(const Sketch *sketch) {
+    for (size_t i = 0; i < sketch->mark_count; i++)
+        if (sketch->marks[i].kind == MARK_IMAGE) return true;
+    return false;
+}
+
 char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
     if (!sketch_check_pixels(sketch->width, sketch->height, output->dpi, error)) return NULL;
     const double scale = output->dpi / 25.4;
@@ -202,7 +208,7 @@ char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *si
         if (painter.raster.failed)
             error_memory(error, "figure");
         else
-            data = picture_as_png(painter.page, output->dpi, size, error);
+            data = picture_as_png(painter.page, output->dpi, !has_images(sketch), size, error);
     } else if (painter.page != NULL)
         error_memory(error, "figure");
     raster_free(&painter.raster);

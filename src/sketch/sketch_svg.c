@@ -136,7 +136,7 @@ static void write_link(FILE *file, const Sketch *sketch, const SketchMark *mark)
 
 static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
     size_t size;
-    char *png = picture_as_png(mark->image, 0, &size, error);
+    char *png = picture_as_png(mark->image, 0, false, &size, error);
     if (png == NULL) return false;
     const double height = mark->width * mark->image->height / mark->image->width;
     fprintf(file,
