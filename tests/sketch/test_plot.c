@@ -112,8 +112,7 @@ static void linear_ticks_are_round_and_do_not_touch(void **state) {
     expect_numbers(plot_linear_axis(0, 1030, ""), 45, true, 0, "0 200 400 600 800 1000 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 10, true, 0, "0 1000 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 9, false, 0, "0 500 1000 ");
-    expect_numbers(plot_linear_axis(-2e-5, 3e-5, ""), 60, true, 0,
-                   "−0.00002 0.00000 0.00002 ");
+    expect_numbers(plot_linear_axis(-2e-5, 3e-5, ""), 60, true, 0, "−0.00002 0.00000 0.00002 ");
     expect_numbers(plot_linear_axis(-1e30, 1e30, ""), 60, true, 0, "-1e+30 -5e+29 0 5e+29 1e+30 ");
     expect_numbers(plot_linear_axis(7, 7, ""), 60, true, 0, "7 ");
     PlotAxis doubling = plot_linear_axis(0.8, 160, "");
