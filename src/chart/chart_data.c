@@ -60,7 +60,7 @@ static int find_line(const Chart *chart, const char *key) {
 
 static bool add_lines(Chart *chart, const ChartTable *table, const char *path, Error *error) {
     const MethodDescription *methods[CHART_MAX_LINES];
-    ChartStyle styles[CHART_MAX_LINES];
+    PlotStyle styles[CHART_MAX_LINES];
     char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
     for (int i = 0; i < table->count; i++) {
         name_row(&table->rows[i], key, label);
@@ -74,7 +74,7 @@ static bool add_lines(Chart *chart, const ChartTable *table, const char *path, E
         line->no_push_out = method != NULL && method->no_push_out;
         line->competes = method == NULL || method->role == METHOD_COMPETES;
     }
-    chart_method_styles(methods, chart->line_count, styles);
+    plot_method_styles(methods, chart->line_count, styles);
     for (int i = 0; i < chart->line_count; i++) chart->lines[i].style = styles[i];
     return true;
 }

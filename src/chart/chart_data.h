@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data of a chart of one scene: marks joined to lines, in two panels. */
 #pragma once
-#include "chart/chart_style.h"
+#include "sketch/plot_style.h"
 #include "study/chart_rows.h"
 
 #include <stdbool.h>
@@ -17,14 +17,14 @@ enum {
    their own beside those with a fixed number of sweeps. */
 typedef struct ChartLine {
     char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
-    char name[CHART_TEXT_SIZE];        /* safe for gnuplot, truncated */
+    char name[CHART_TEXT_SIZE];        /* plain, truncated */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
     bool competes;                     /* or unknown; baselines and the reference do not */
     int beyond;                        /* number of marks left out because they are far from all that compete, and */
     double beyond_us[2], beyond_error[2]; /* their ranges, from least to most */
-    ChartStyle style;
+    PlotStyle style;
 } ChartLine;
 
 typedef struct ChartMark {
@@ -49,11 +49,11 @@ typedef struct Chart {
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS];                   /* impact frames and the frames after; closed loop */
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
-    char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; safe for gnuplot */
+    char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
 } Chart;
 
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
-   letters, digits, spaces and -_.,:=+/()*[]; other characters become '?', so that gnuplot cannot interpret them.
+   letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (study/pareto.h) are drawn
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
@@ -62,8 +62,8 @@ typedef struct Chart {
 bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
-/* Replaces characters that are not safe for gnuplot, or that the font lacks, by '?'. */
+/* Replaces characters that names do not have (csv_plain_length), or that the font lacks, by '?'. */
 void chart_make_plain(char *text);
 
-/* Copies a text, made safe for gnuplot and truncated to fit. */
+/* Copies a text, made plain and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_html.h"
 
-#include "chart/chart_script.h"
+#include "chart/chart_layout.h"
 #include "common/file.h"
 #include "common/house_page.h"
 #include "common/html_text.h"

@@ -1,23 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "chart/chart_labels.h"
+#include "chart/chart_layout.h"
 
-#include "chart/chart_script.h"
-#include "chart/chart_style.h"
 #include "sketch/label_place.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* mm; Inter's mean advance is 0.56 em. */
-static const double character_width = LABEL_POINTS * 0.3528 * 0.56, label_height = LABEL_POINTS * 0.3528 * 0.9;
+static const double label_height = LABEL_POINTS * MM_PER_POINT * 0.9;
 
 typedef struct Labels {
     const Chart *chart;
     const ChartPanel *panel;
-    const LogAxis *x, *y;
+    const PlotPanel *plot;
     LabelField field;
-    FILE *script;
+    Sketch *sketch;
 } Labels;
 
 int chart_pareto_corners(const ChartPanel *panel, int *order) {
@@ -38,23 +36,20 @@ int chart_pareto_corners(const ChartPanel *panel, int *order) {
     return corners;
 }
 
-static double mark_x(const Labels *labels, int i) { return log_axis_place(labels->x, labels->panel->marks[i].us); }
-
-static double mark_y(const Labels *labels, int i) { return log_axis_place(labels->y, labels->panel->marks[i].error); }
-
-static PageBox box_around(double x, double y, double radius) {
-    return (PageBox){x - radius, y - radius, x + radius, y + radius};
+static Point mark_at(const Labels *labels, int i) {
+    return plot_place(labels->plot, labels->panel->marks[i].us, labels->panel->marks[i].error);
 }
 
 static void add_obstacles(Labels *labels) {
     const ChartMark *marks = labels->panel->marks;
     for (int i = 0; i < labels->panel->count; i++) {
-        double x = mark_x(labels, i), y = mark_y(labels, i);
-        label_add_box(&labels->field, box_around(x, y, marks[i].shipped ? RING_RADIUS : MARK_RADIUS));
-        label_add_segment(&labels->field, (Segment){log_axis_place(labels->x, marks[i].us_q1), y,
-                                                    log_axis_place(labels->x, marks[i].us_q3), y});
+        const Point at = mark_at(labels, i), before = mark_at(labels, i > 0 ? i - 1 : i);
+        const double radius = marks[i].shipped ? RING_RADIUS : MARK_RADIUS;
+        label_add_box(&labels->field, (PageBox){at.x - radius, at.y - radius, at.x + radius, at.y + radius});
+        label_add_segment(&labels->field, (Segment){plot_axis_place(&labels->plot->x, marks[i].us_q1), at.y,
+                                                    plot_axis_place(&labels->plot->x, marks[i].us_q3), at.y});
         if (i > 0 && marks[i - 1].line == marks[i].line)
-            label_add_segment(&labels->field, (Segment){mark_x(labels, i - 1), mark_y(labels, i - 1), x, y});
+            label_add_segment(&labels->field, (Segment){before.x, before.y, at.x, at.y});
     }
 }
 
@@ -64,37 +59,35 @@ static bool add_front(Labels *labels) {
     if (order == NULL) return false;
     int corners = chart_pareto_corners(labels->panel, order);
     for (int i = 0; i < corners; i++) {
-        double x = mark_x(labels, order[i]), y = mark_y(labels, order[i]);
-        double above = i > 0 ? mark_y(labels, order[i - 1]) : labels->y->to;
-        double right = i + 1 < corners ? mark_x(labels, order[i + 1]) : labels->x->to;
-        label_add_segment(&labels->field, (Segment){x, above, x, y});
-        label_add_segment(&labels->field, (Segment){x, y, right, y});
+        const Point at = mark_at(labels, order[i]);
+        const double above = i > 0 ? mark_at(labels, order[i - 1]).y : labels->plot->y.to;
+        const double right = i + 1 < corners ? mark_at(labels, order[i + 1]).x : labels->plot->x.to;
+        label_add_segment(&labels->field, (Segment){at.x, above, at.x, at.y});
+        label_add_segment(&labels->field, (Segment){at.x, at.y, right, at.y});
     }
     free(order);
     return true;
 }
 
 /* A thin line from a mark's ring to its label, if they are apart. */
-static void write_leader(FILE *script, double x, double y, const PageBox *box) {
-    double near_x = fmin(fmax(x, box->left), box->right), near_y = fmin(fmax(y, box->bottom), box->top);
-    double distance = sqrt((near_x - x) * (near_x - x) + (near_y - y) * (near_y - y));
+static void draw_leader(Sketch *sketch, Point at, const PageBox *box) {
+    const Point near = {fmin(fmax(at.x, box->left), box->right), fmin(fmax(at.y, box->bottom), box->top)};
+    const double distance = hypot(near.x - at.x, near.y - at.y), share = RING_RADIUS / distance;
     if (distance < RING_RADIUS + 1) return;
-    double share = RING_RADIUS / distance;
-    fprintf(script, "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lw 0.8 lc rgb 'black' front\n",
-            (x + share * (near_x - x)) / CHART_WIDTH, (y + share * (near_y - y)) / CHART_HEIGHT, near_x / CHART_WIDTH,
-            near_y / CHART_HEIGHT);
+    const Pen pen = pen_line(0x000000, 0.8, NULL);
+    sketch_line(sketch, (Point){at.x + share * (near.x - at.x), at.y + share * (near.y - at.y)}, near, &pen);
 }
 
-static void write_label(Labels *labels, int i, const char *text, bool must) {
+static void draw_label(Labels *labels, int i, const char *text, bool must) {
     PageBox box;
     const ChartMark *mark = &labels->panel->marks[i];
-    double x = mark_x(labels, i), y = mark_y(labels, i), width = character_width * (double)strlen(text);
-    double distance = (mark->shipped ? RING_RADIUS : MARK_RADIUS) + 0.4;
-    if (!label_place(&labels->field, x, y, distance, width, label_height, must, &box)) return;
-    if (must) write_leader(labels->script, x, y, &box);
-    fprintf(labels->script, "set label '%s' at screen %.5f,%.5f center font ',%g' tc rgb '%s'\n", text,
-            (box.left + box.right) / 2 / CHART_WIDTH, (box.bottom + box.top) / 2 / CHART_HEIGHT, LABEL_POINTS,
-            labels->chart->lines[mark->line].style.ink);
+    const Point at = mark_at(labels, i);
+    const double width = type_width(text, LABEL_POINTS);
+    const double distance = (mark->shipped ? RING_RADIUS : MARK_RADIUS) + 0.4;
+    if (!label_place(&labels->field, at.x, at.y, distance, width, label_height, must, &box)) return;
+    if (must) draw_leader(labels->sketch, at, &box);
+    const TextStyle style = {LABEL_POINTS, TEXT_CENTER, labels->chart->lines[mark->line].style.ink, 0, false};
+    sketch_text(labels->sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2}, &style, "%s", text);
 }
 
 static bool ends_line(const ChartPanel *panel, int i) {
@@ -103,30 +96,32 @@ static bool ends_line(const ChartPanel *panel, int i) {
 }
 
 /* Settings as shipped must be labelled; then marks on the front come first. */
-static void write_labels(Labels *labels) {
+static void draw_labels(Labels *labels) {
     const ChartPanel *panel = labels->panel;
     for (int i = 0; i < panel->count; i++)
         if (panel->marks[i].shipped) {
             char text[CHART_TEXT_SIZE + 16];
             snprintf(text, sizeof text, "%s as shipped", labels->chart->lines[panel->marks[i].line].name);
-            write_label(labels, i, text, true);
+            draw_label(labels, i, text, true);
         }
     for (int front = 1; front >= 0; front--)
         for (int i = 0; i < panel->count; i++) {
             const ChartMark *mark = &panel->marks[i];
             if (mark->on_front != (front == 1) || mark->shipped || !ends_line(panel, i)) continue;
             const char *text = mark->label[0] != '\0' ? mark->label : labels->chart->lines[mark->line].name;
-            write_label(labels, i, text, false);
+            draw_label(labels, i, text, false);
         }
 }
 
-bool chart_write_labels(const ChartPanel *panel, const Chart *chart, const LogAxis *x, const LogAxis *y, FILE *script) {
+bool chart_draw_labels(const ChartLayout *layout, int panel, Sketch *sketch) {
+    const PlotPanel *plot = &layout->panels[panel];
+    const PageBox frame = {plot->x.from + 0.5, plot->y.from + 0.5, plot->x.to - 0.5, plot->y.to - 0.5};
     Labels *labels = calloc(1, sizeof *labels);
     if (labels == NULL) return false;
-    *labels = (Labels){chart, panel, x, y, {.frame = {x->from + 0.5, y->from + 0.5, x->to - 0.5, y->to - 0.5}}, script};
+    *labels = (Labels){layout->chart, &layout->chart->panels[panel], plot, {.frame = frame}, sketch};
     add_obstacles(labels);
     bool whole = add_front(labels);
-    if (whole) write_labels(labels);
+    if (whole) draw_labels(labels);
     free(labels);
     return whole;
 }

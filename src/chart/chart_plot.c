@@ -1,30 +1,141 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "chart/chart_plot.h"
 
-#include "chart/chart_script.h"
-#include "chart/gnuplot.h"
+#include "chart/chart_layout.h"
 #include "common/file.h"
-#include "common/memory_stream.h"
+#include "sketch/sketch_files.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* mm */
+static const double gap = 8, top_margin = 5.5, axis_room = 9;
+
+const char *const chart_panel_titles[CHART_PANELS] = {"Impact frames", "The 60 frames after"};
+
+ChartLayout chart_lay_out(const Chart *chart) {
+    ChartLayout layout = {.chart = chart};
+    chart_lay_out_legend(&layout);
+    layout.legend_top = FOOT_ROW * layout.foot_rows + LEGEND_ROW * (layout.rows - 0.5) + 0.5;
+    const PlotGrid grid = {.width = CHART_WIDTH,
+                           .height = CHART_HEIGHT,
+                           .left = LEFT_MARGIN,
+                           .right = RIGHT_MARGIN,
+                           .bottom = layout.legend_top + LEGEND_ROW / 2 + axis_room,
+                           .top = top_margin,
+                           .columns = CHART_PANELS,
+                           .rows = 1,
+                           .gap = gap};
+    for (int p = 0; p < CHART_PANELS; p++) {
+        layout.panels[p] = (PlotPanel){
+            .box = plot_grid_box(&grid, p),
+            .title = chart_panel_titles[p],
+            .x = plot_log_axis(chart->us_least, chart->us_most, "Solver time per step (µs)"),
+            .y = plot_log_axis(chart->error_least, chart->error_most, p == 0 ? "Mean velocity error (m/s)" : NULL)};
+        plot_panel_place(&layout.panels[p]);
+    }
+    return layout;
+}
+
+void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top) {
+    const ChartLayout layout = chart_lay_out(chart);
+    const Point at = plot_place(&layout.panels[panel], mark->us, mark->error);
+    *left = at.x / CHART_WIDTH;
+    *top = 1 - at.y / CHART_HEIGHT;
+}
+
+/* The front as a staircase, from the top of the panel to its right edge. */
+static bool draw_front(const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
+    const PlotLook look = {.style = {.colour = PARETO_COLOUR}, .line = 6};
+    int *order = malloc((size_t)panel->count * sizeof *order + 1), count = 0;
+    Point *steps = malloc((2 * (size_t)panel->count + 1) * sizeof *steps);
+    if (order != NULL && steps != NULL) {
+        const int corners = chart_pareto_corners(panel, order);
+        for (int i = 0; i < corners; i++) {
+            const ChartMark *mark = &panel->marks[order[i]];
+            const Point at = plot_place(plot, mark->us, mark->error);
+            steps[count] = (Point){at.x, i == 0 ? plot->y.to : steps[count - 1].y};
+            steps[count + 1] = at;
+            count += 2;
+        }
+        if (count > 0) steps[count] = (Point){plot->x.to, steps[count - 1].y};
+        plot_line(sketch, steps, count > 0 ? count + 1 : 0, &look);
+    }
+    const bool whole = order != NULL && steps != NULL;
+    free(order);
+    free(steps);
+    return whole;
+}
+
+/* The bar of a mark's quartiles; a bar shorter than its mark would only blur it. */
+static void draw_quartiles(const ChartMark *mark, const PlotPanel *plot, Sketch *sketch, const PlotLook *look) {
+    const Point ends[] = {plot_place(plot, mark->us_q1, mark->error), plot_place(plot, mark->us_q3, mark->error)};
+    const Point at = plot_place(plot, mark->us, mark->error);
+    if (ends[1].x - at.x > MARK_RADIUS || at.x - ends[0].x > MARK_RADIUS) plot_line(sketch, ends, 2, look);
+}
+
+/* Marks of a line follow each other; all lines are below all marks. */
+static bool draw_lines(const Chart *chart, const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
+    Point *points = malloc((size_t)panel->count * sizeof *points + 1);
+    if (points == NULL) return false;
+    for (int i = 0; i < panel->count; i++) points[i] = plot_place(plot, panel->marks[i].us, panel->marks[i].error);
+    for (int marks = 0; marks <= 1; marks++)
+        for (int i = 0, end; i < panel->count; i = end) {
+            const PlotStyle style = chart->lines[panel->marks[i].line].style;
+            const PlotLook line = {.style = style, .line = 1.6};
+            PlotLook bar = line;
+            bar.style.dashes = NULL;
+            for (end = i; end < panel->count && panel->marks[end].line == panel->marks[i].line;) end++;
+            if (marks)
+                plot_marks(sketch, points + i, end - i, &style);
+            else
+                plot_line(sketch, points + i, end - i, &line);
+            for (int k = i; !marks && k < end; k++) draw_quartiles(&panel->marks[k], plot, sketch, &bar);
+        }
+    free(points);
+    return true;
+}
+
+/* A ring around settings as shipped. */
+static void draw_rings(const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
+    const PlotStyle ring = {.symbol = METHOD_CIRCLE, .open = true, .colour = 0x000000};
+    for (int i = 0; i < panel->count; i++) {
+        const ChartMark *mark = &panel->marks[i];
+        if (mark->shipped) plot_mark(sketch, plot_place(plot, mark->us, mark->error), &ring, RING_RADIUS, 2.4);
+    }
+}
+
+/* From bottom to top: front, lines, bars, marks, ring. */
+static bool draw_chart(const ChartLayout *layout, const char *title, Sketch *sketch) {
+    bool whole = true;
+    for (int p = 0; p < CHART_PANELS; p++) {
+        const ChartPanel *panel = &layout->chart->panels[p];
+        const PlotPanel *plot = &layout->panels[p];
+        whole = draw_front(panel, plot, sketch) && draw_lines(layout->chart, panel, plot, sketch) && whole;
+        draw_rings(panel, plot, sketch);
+        plot_panel_draw(sketch, plot);
+        whole = chart_draw_labels(layout, p, sketch) && whole;
+    }
+    const TextStyle style = {7.5, TEXT_RIGHT, 0x505050, 0, false};
+    sketch_text(sketch, (Point){layout->panels[CHART_PANELS - 1].x.to, CHART_HEIGHT - top_margin + 2.5}, &style, "%s",
+                title);
+    chart_draw_legend(layout, sketch);
+    return whole;
+}
+
 static bool draw(const Chart *chart, const char *scene, const char *stem, Error *error) {
-    char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE], file_title[3 * CHART_TEXT_SIZE];
+    char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
+    const ChartLayout layout = chart_lay_out(chart);
+    Sketch sketch;
     chart_plain(name, scene);
     snprintf(title, sizeof title, "%s, %d launches", name, chart->launches);
-    snprintf(file_title, sizeof file_title, "Speed and accuracy: %s", title);
-    char *text = NULL;
-    size_t size = 0;
-    FILE *script = memory_stream(&text, &size);
-    if (script == NULL) return error_memory(error, stem);
-    bool whole = chart_script(chart, title, script) && !ferror(script);
-    whole = fclose(script) == 0 && whole;
-    const GnuplotDrawing drawing = {
-        .width = CHART_WIDTH, .height = CHART_HEIGHT, .script = text, .script_size = size, .title = file_title};
-    bool drawn = whole ? gnuplot_draw(&drawing, stem, error) : error_memory(error, stem);
-    free(text);
+    sketch_begin(&sketch, CHART_WIDTH, CHART_HEIGHT);
+    snprintf(sketch.title, sizeof sketch.title, "Speed and accuracy: %s", title);
+    const bool drawn = (draw_chart(&layout, title, &sketch) || error_memory(error, stem)) &&
+                       sketch_draw(&sketch, stem, SKETCH_PDF, error);
+    sketch_free(&sketch);
     return drawn;
 }
 

@@ -14,10 +14,10 @@ typedef struct EqualTimeCell {
 typedef struct EqualTimeGrid {
     int columns, rows;
     char time[CHART_TEXT_SIZE];                        /* setting of momentum whose time all methods have: "k=50" */
-    char methods[EQUAL_TIME_COLUMNS][CHART_TEXT_SIZE]; /* safe for gnuplot */
+    char methods[EQUAL_TIME_COLUMNS][CHART_TEXT_SIZE]; /* plain */
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
-    char times[CHART_TIMES_SIZE]; /* chart_times_note(), safe for gnuplot; set by the caller */
+    char times[CHART_TIMES_SIZE]; /* chart_times_note(), plain; set by the caller */
     EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
 } EqualTimeGrid;
 

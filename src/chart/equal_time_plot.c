@@ -2,10 +2,12 @@
 #include "chart/equal_time_plot.h"
 
 #include "chart/equal_time_grid.h"
-#include "chart/gnuplot.h"
-#include "chart/gnuplot_page.h"
 #include "common/file.h"
-#include "common/memory_stream.h"
+#include "picture/style.h"
+#include "sketch/page_width.h"
+#include "sketch/plot.h"
+#include "sketch/sketch_files.h"
+#include "type/type.h"
 
 #include <limits.h>
 #include <math.h>
@@ -13,22 +15,23 @@
 #include <string.h>
 
 /* mm */
-static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, letter = 1.55, name_slope = 1.15,
-                    foot = 16, note_height = 3.5, bar_height = 2.6, bar_width = 62, note_width = 76;
-static const double degrees = 40;
+static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, foot = 16, note_height = 3.5,
+                    bar_height = 2.6, bar_width = 62, note_width = 76;
+static const double degrees = 40, name_points = 8;
 static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
 
 typedef struct Layout {
     const EqualTimeGrid *grid;
-    GnuplotPage *page;
+    Sketch *sketch;
+    double width, height;   /* mm: of the page */
     double left, top, cell; /* mm: left of the first cell, top of the first row, width of a cell */
     double foot;            /* mm: height of all below the rows */
 } Layout;
 
 static double longest(const char (*names)[CHART_TEXT_SIZE], int count) {
-    size_t most = 0;
-    for (int i = 0; i < count; i++) most = strlen(names[i]) > most ? strlen(names[i]) : most;
-    return letter * (double)most;
+    double most = 0;
+    for (int i = 0; i < count; i++) most = fmax(most, type_width(names[i], name_points));
+    return most;
 }
 
 static int gaps_before(const EqualTimeGrid *grid, int column) {
@@ -41,46 +44,44 @@ static double column_x(const Layout *layout, int column) {
     return layout->left + column * layout->cell + gap * gaps_before(layout->grid, column);
 }
 
-static Layout lay_out(const EqualTimeGrid *grid, GnuplotPage *page) {
-    Layout layout = {.grid = grid, .page = page, .left = longest(grid->scenes, grid->rows) + 4};
+static Layout lay_out(const EqualTimeGrid *grid) {
+    Layout layout = {.grid = grid, .left = longest(grid->scenes, grid->rows) + 4};
     const double gaps = gap * gaps_before(grid, grid->columns - 1);
-    const double turned = degrees * acos(-1) / 180, last = letter * (double)strlen(grid->methods[grid->columns - 1]);
+    const double turned = degrees * acos(-1) / 180, last = type_width(grid->methods[grid->columns - 1], name_points);
     const double right = fmax(last * cos(turned) - cell_least / 2 + 2, 3);
     const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
     layout.cell = fmin(fmax(room, cell_least), cell_most);
-    page->width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
+    layout.width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
     layout.foot = foot + (grid->times[0] != '\0' ? note_height : 0);
     layout.top = layout.foot + grid->rows * cell_height;
-    page->height = layout.top + longest(grid->methods, grid->columns) * sin(turned) * name_slope + 4;
+    layout.height = layout.top + longest(grid->methods, grid->columns) * sin(turned) + 5;
     return layout;
 }
 
 /* -1: the full colour of less error, 1: that of more. */
 static double strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
 
-static void name_colour(char colour[8], double ratio) {
+static uint32_t colour_of(double ratio) {
     static const double less[] = {0x21, 0x66, 0xAC}, even[] = {0xF4, 0xF4, 0xF4}, more[] = {0xB3, 0x58, 0x06};
     const double t = strength(ratio);
-    int parts[3];
-    for (int i = 0; i < 3; i++) parts[i] = (int)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
-    snprintf(colour, 8, "#%02X%02X%02X", (unsigned)parts[0], (unsigned)parts[1], (unsigned)parts[2]);
+    uint32_t colour = 0;
+    for (int i = 0; i < 3; i++)
+        colour = colour << 8 | (uint32_t)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
+    return colour;
 }
 
-static double linear(unsigned channel) { return pow(channel / 255.0, 2.2); }
+static double linear(uint32_t channel) { return pow(channel / 255.0, 2.2); }
 
 /* White where it has a contrast of at least 3.5 (WCAG 2), else black. */
-static const char *ink_on(const char colour[8]) {
+static uint32_t ink_on(uint32_t rgb) {
     const double lightest = 1.05 / 3.5 - 0.05;
-    const unsigned rgb = (unsigned)strtoul(colour + 1, NULL, 16);
     const double luminance = 0.2126 * linear(rgb >> 16) + 0.7152 * linear(rgb >> 8 & 255) + 0.0722 * linear(rgb & 255);
-    return luminance < lightest ? "white" : "black";
+    return luminance < lightest ? 0xFFFFFF : 0x000000;
 }
 
-static void draw_box(GnuplotPage *page, GnuplotBox box, const char *colour) {
-    const GnuplotLook look = {"", {.colour = colour}, 0, false, 1, false};
-    gnuplot_series_begin(page);
-    gnuplot_bar(page, box.left, box.bottom, box.left + box.width, box.bottom + box.height);
-    gnuplot_series_end(page, &look);
+static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour) {
+    sketch_rectangle(sketch, (Point){box.left, box.bottom}, (Point){box.left + box.width, box.bottom + box.height},
+                     &(Pen){colour, 1, NO_COLOUR, 0, NULL});
 }
 
 /* Two digits: "1/52", "1/3.1", "1", "×2.4"; what is beyond a factor of 9999 does not fit into a cell. */
@@ -100,87 +101,68 @@ static void name_ratio(char text[24], double ratio) {
 static void draw_cell(const Layout *layout, int row, int column) {
     const EqualTimeCell *cell = &layout->grid->cells[row][column];
     const double x = column_x(layout, column), y = layout->top - (row + 1) * cell_height, edge = 0.25;
-    char colour[8], text[24];
+    char text[24];
     if (!cell->ran) return;
     const bool none = isnan(cell->ratio);
-    if (none)
-        strcpy(colour, "#D8D8D8");
-    else
-        name_colour(colour, cell->ratio);
-    draw_box(layout->page, (GnuplotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour);
+    const uint32_t colour = none ? 0xD8D8D8 : colour_of(cell->ratio);
+    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour);
     if (none)
         strcpy(text, "–");
     else
         name_ratio(text, cell->ratio);
-    gnuplot_text_in(layout->page, x + layout->cell / 2, y + cell_height / 2, "center", 7.5, text,
-                    (GnuplotInk){ink_on(colour), 0});
+    sketch_text(layout->sketch, (Point){x + layout->cell / 2, y + cell_height / 2},
+                &(TextStyle){7.5, TEXT_CENTER, ink_on(colour), 0, false}, "%s", text);
 }
 
 static void draw_names(const Layout *layout) {
     const EqualTimeGrid *grid = layout->grid;
     for (int i = 0; i < grid->columns; i++) {
         const double middle = column_x(layout, i) + layout->cell / 2;
-        gnuplot_text_in(layout->page, middle - 1, layout->top + 1.5, "left", 8, grid->methods[i],
-                        (GnuplotInk){"black", degrees});
+        sketch_text(layout->sketch, (Point){middle - 1, layout->top + 1.5},
+                    &(TextStyle){name_points, TEXT_LEFT, INK, degrees, false}, "%s", grid->methods[i]);
     }
     for (int i = 0; i < grid->rows; i++)
-        gnuplot_text(layout->page, layout->left - 2, layout->top - (i + 0.5) * cell_height, "right", 8,
-                     grid->scenes[i]);
+        plot_text(layout->sketch, (Point){layout->left - 2, layout->top - (i + 0.5) * cell_height}, TEXT_RIGHT,
+                  name_points, grid->scenes[i]);
 }
 
 /* The scale of colours, as a bar of steps. */
 static void draw_scale(const Layout *layout) {
     static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
     enum { STEPS = 61 };
-    GnuplotPage *page = layout->page;
-    const double bottom = layout->foot - 7.2;
-    char text[24], colour[8], note[CHART_TEXT_SIZE + 64];
-    for (int i = 0; i < STEPS; i++) {
-        name_colour(colour, pow(strongest, 2 * (i + 0.5) / STEPS - 1));
-        draw_box(page, (GnuplotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
-                 colour);
-    }
+    Sketch *sketch = layout->sketch;
+    const double bottom = layout->foot - 7.2, right = layout->left + bar_width + 6;
+    char text[24], note[CHART_TEXT_SIZE + 64];
+    for (int i = 0; i < STEPS; i++)
+        draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
+                 colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)));
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         name_ratio(text, marks[i]);
-        gnuplot_text(page, layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2, "center", 7, text);
+        plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
+                  text);
     }
     snprintf(note, sizeof note, "in the time of momentum:%s; rivals learn nothing", layout->grid->time);
-    gnuplot_text(page, layout->left + bar_width + 6, bottom + bar_height / 2, "left", 8,
-                 "error at the impact / error of the best rival,");
-    if (layout->grid->times[0] != '\0')
-        gnuplot_text(page, layout->left, note_height / 2, "left", 8, layout->grid->times);
-    gnuplot_text(page, layout->left + bar_width + 6, bottom - 2, "left", 8, note);
-    gnuplot_text(page, layout->left + bar_width + 6, bottom - 5.5, "left", 8, "– slower than that, or lost the scene");
+    plot_text(sketch, (Point){right, bottom + bar_height / 2}, TEXT_LEFT, 8,
+              "error at the impact / error of the best rival,");
+    plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, 8, layout->grid->times);
+    plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
+    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower than that, or lost the scene");
 }
 
-static void draw_grid(const EqualTimeGrid *grid, GnuplotPage *page) {
-    Layout layout = lay_out(grid, page);
-    gnuplot_page_begin(page, page->width, page->height);
-    gnuplot_page_panel_begin(page);
+static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
+    char stem[PATH_MAX];
+    Sketch sketch;
+    Layout layout = lay_out(grid);
+    layout.sketch = &sketch;
+    if (!file_path(stem, sizeof stem, error, "%s/%s", folder, equal_time_layout.name)) return false;
+    sketch_begin(&sketch, layout.width, layout.height);
+    strcpy(sketch.title, "Error at the impact in equal time / that of the best rival");
     for (int row = 0; row < grid->rows; row++)
         for (int column = 0; column < grid->columns; column++) draw_cell(&layout, row, column);
     draw_names(&layout);
     draw_scale(&layout);
-    gnuplot_panel_end(page);
-    fprintf(page->script, "unset multiplot\n");
-}
-
-static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
-    char stem[PATH_MAX], *text = NULL;
-    size_t size = 0;
-    if (!file_path(stem, sizeof stem, error, "%s/%s", folder, equal_time_layout.name)) return false;
-    GnuplotPage page = {.script = memory_stream(&text, &size)};
-    if (page.script == NULL) return error_memory(error, stem);
-    draw_grid(grid, &page);
-    bool whole = !ferror(page.script);
-    whole = fclose(page.script) == 0 && whole && !page.no_memory;
-    const GnuplotDrawing drawing = {.width = page.width,
-                                    .height = page.height,
-                                    .script = text,
-                                    .script_size = size,
-                                    .title = "Error at the impact in equal time / that of the best rival"};
-    const bool drawn = whole ? gnuplot_draw(&drawing, stem, error) : error_memory(error, stem);
-    free(text);
+    const bool drawn = sketch_draw(&sketch, stem, SKETCH_PDF, error);
+    sketch_free(&sketch);
     return drawn;
 }
 

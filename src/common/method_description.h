@@ -14,7 +14,7 @@ typedef enum MethodRole {
 } MethodRole;
 
 /* By its colour a reader finds a method again in all pictures (common/method_look.h). They differ with all common kinds of
-   colour blindness. The palettes are in picture/theme.c and chart/chart_style.c. */
+   colour blindness. The palettes are in picture/theme.c and sketch/plot_style.c. */
 typedef enum MethodColour {
     METHOD_NO_COLOUR, /* any that is left */
     METHOD_BLUE,

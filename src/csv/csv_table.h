@@ -102,5 +102,5 @@ bool csv_row_print(FILE *file, const CsvLayout *layout, const void *row, Error *
 int csv_word(const char *const *words, const char *word);
 
 /* Bytes of the text's first character if it is a letter, a digit, the space, one of -_.,:=+/()*[] or not in ASCII: what
-   gnuplot draws as it is. Otherwise, or if it is not UTF-8, 0. */
+   names consist of. Otherwise, or if it is not UTF-8, 0. */
 size_t csv_plain_length(const char *text);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest distance of any body from its position in the first run, over time. The band shows the distance of the
    first run from copies with one body shifted by a micrometre: two runs inside it diverge no faster than by chaos. */
-#include "chart/chart_style.h"
 #include "figure/caption.h"
 #include "figure/figure_kinds.h"
 #include "figure/run_view.h"
@@ -98,20 +97,12 @@ static bool make_band(Divergence *d, Error *error) {
     return true;
 }
 
-typedef struct Range {
-    double least, most;
-} Range;
-
-static void include(Range *range, const double *values, int count) {
-    for (int i = 0; values != NULL && i < count; i++)
-        if (values[i] > 0 && isfinite(values[i]))
-            range->least = fmin(range->least, values[i]), range->most = fmax(range->most, values[i]);
+static void include(PlotRange *range, const double *values, int count) {
+    for (int i = 0; values != NULL && i < count; i++) plot_range_include(range, values[i]);
 }
 
-static uint32_t colour_of(const char *text) { return (uint32_t)strtoul(text + 1, NULL, 16); }
-
 /* The points of a line up to its next gap. */
-static int gather(const Divergence *d, const Plot *plot, const double *values, int from, Point *points) {
+static int gather(const Divergence *d, const PlotPanel *plot, const double *values, int from, Point *points) {
     int count = 0;
     for (int i = from; i < d->frames && values[i] > 0; i++)
         points[count++] = plot_place(plot, i * (double)d->spec->runs[0]->dt, values[i]);
@@ -120,11 +111,10 @@ static int gather(const Divergence *d, const Plot *plot, const double *values, i
 
 /* The colour of the method; the dashes tell lines apart in grey. */
 static Pen line_pen(const Divergence *d, int run) {
-    const char *const dashes = chart_style(run - 1).dashes;
-    return pen_line(colour_of(chart_method_colour(d->colours[run])), 2.2, strcmp(dashes, "solid") == 0 ? NULL : dashes);
+    return pen_line(plot_method_colour(d->colours[run]), 2.2, plot_style(run - 1).dashes);
 }
 
-static void draw_line(const Divergence *d, Sketch *sketch, const Plot *plot, int run, Point *points) {
+static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int run, Point *points) {
     const Pen pen = line_pen(d, run);
     for (int i = 0; i < d->frames; i++) {
         int count = gather(d, plot, d->distance[run], i, points);
@@ -133,7 +123,7 @@ static void draw_line(const Divergence *d, Sketch *sketch, const Plot *plot, int
     }
 }
 
-static void draw_band(const Divergence *d, Sketch *sketch, const Plot *plot, Point *points) {
+static void draw_band(const Divergence *d, Sketch *sketch, const PlotPanel *plot, Point *points) {
     int first = 0;
     while (first < d->frames && !(d->high[first] > 0)) first++;
     int count = gather(d, plot, d->high, first, points);
@@ -178,31 +168,35 @@ static void draw_legend(const Divergence *d, Sketch *sketch, double left, double
     draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
 }
 
-static void draw_impact(const Divergence *d, Sketch *sketch, const Plot *plot) {
+static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot) {
     const Trajectory *run = d->spec->runs[0];
     const int touch = trajectory_impact(run);
     if (touch < 0) return;
-    const double x = plot_place(plot, touch * (double)run->dt, plot->axis.low).x;
+    const double x = plot_axis_place(&plot->x, touch * (double)run->dt);
     const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
-    const bool right = x > (plot->low.x + plot->high.x) / 2;
-    sketch_line(sketch, (Point){x, plot->low.y}, (Point){x, plot->high.y}, &pen);
-    sketch_text(sketch, (Point){x + (right ? -0.8 : 0.8), plot->low.y + 0.6 * line_height(d->spec->points)},
+    const bool right = x > (plot->x.from + plot->x.to) / 2;
+    sketch_line(sketch, (Point){x, plot->y.from}, (Point){x, plot->y.to}, &pen);
+    sketch_text(sketch, (Point){x + (right ? -0.8 : 0.8), plot->y.from + 0.7 * line_height(d->spec->points)},
                 &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "impact");
 }
 
-static bool draw_plot(const Divergence *d, Sketch *sketch, Range range, Error *error) {
+static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Error *error) {
     const FigureSpec *spec = d->spec;
     const double shape = 0.55, tallest = 75, line = line_height(spec->points), room = 3;
     const double left = plot_left_margin(spec->points), bottom = plot_bottom_margin(spec->points);
     const double height = fmin(shape * spec->width, tallest), rows = spec->run_count - 1 + (d->low != NULL);
-    const Point low = {left, bottom}, high = {spec->width - room, bottom + height};
-    Plot plot;
-    sketch_begin(sketch, spec->width, high.y + rows * line + 2);
-    plot_begin(&plot, low, high, 0, (d->frames - 1) * (double)spec->runs[0]->dt, range.least, range.most, spec->points);
+    PlotPanel plot = {.box = {left, bottom, spec->width - room - left, height},
+                      .x = plot_linear_axis(0, (d->frames - 1) * (double)spec->runs[0]->dt, "time (s)"),
+                      .y = plot_log_axis(range.least, range.most, "largest distance (m)"),
+                      .points = spec->points,
+                      .guides = true};
+    plot.y.powers = true;
+    plot_panel_place(&plot);
+    sketch_begin(sketch, spec->width, bottom + height + rows * line + 2);
     Point *points = malloc(2 * (size_t)d->frames * sizeof *points);
     if (points == NULL) return error_memory(error, "figure");
     if (d->low != NULL) draw_band(d, sketch, &plot, points);
-    plot_draw_axes(&plot, sketch, "time (s)", "largest distance (m)");
+    plot_panel_draw(sketch, &plot);
     draw_impact(d, sketch, &plot);
     for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, points);
     draw_legend(d, sketch, left, sketch->height, spec->width - left);
@@ -213,7 +207,7 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, Range range, Error *e
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Divergence d = {.spec = spec};
     run_colours(spec, d.colours);
-    Range range = {HUGE_VAL, 0};
+    PlotRange range = plot_range();
     bool done = run_check_worlds(spec, error) && measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
     for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
     if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);

@@ -145,18 +145,6 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
 
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
 
-void text_fit(char *words, size_t size, double points, double width) {
-    static const char ellipsis[] = "\xE2\x80\xA6";
-    if (type_width(words, points) <= width) return;
-    const double room = width - type_width(ellipsis, points);
-    const char *end = words, *next = words;
-    for (double used = 0; *next != '\0' && (size_t)(next - words) + sizeof ellipsis <= size; end = next) {
-        used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
-        if (used > room) break;
-    }
-    memcpy(words + (end - words), ellipsis, sizeof ellipsis);
-}
-
 RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;
     for (int i = 0; i < spec->run_count; i++) {

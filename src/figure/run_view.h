@@ -62,9 +62,6 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
 /* Line height of text, mm. */
 double line_height(double points);
 
-/* Shortens a text to a width in mm, with an ellipsis. */
-void text_fit(char *words, size_t size, double points, double width);
-
 /* The caption of one of the figure's runs, or the name of its method (common/method_look.h). */
 typedef struct RunName {
     char text[CAPTION_SIZE];

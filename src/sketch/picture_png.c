@@ -14,7 +14,7 @@ static void write_rows(png_structp png, const Image *image, bool alpha) {
 }
 
 /* libpng returns here by longjmp if it fails. */
-static bool write_png(FILE *file, const Image *image, double dpi) {
+static bool write_png(FILE *file, const Image *image, double dpi, bool drawn) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png != NULL ? png_create_info_struct(png) : NULL;
     const bool alpha = has_alpha(image);
@@ -24,6 +24,7 @@ static bool write_png(FILE *file, const Image *image, double dpi) {
     }
     png_init_io(png, file);
     png_set_compression_level(png, 9);
+    if (drawn) png_set_filter(png, 0, PNG_FILTER_NONE);
     png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
                  alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -36,10 +37,10 @@ static bool write_png(FILE *file, const Image *image, double dpi) {
     return true;
 }
 
-char *picture_as_png(const Image *image, double dpi, size_t *size, Error *error) {
+char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, Error *error) {
     char *data = NULL;
     FILE *file = memory_stream(&data, size);
-    bool whole = file != NULL && write_png(file, image, dpi) && !ferror(file);
+    bool whole = file != NULL && write_png(file, image, dpi, drawn) && !ferror(file);
     if (file != NULL) whole = fclose(file) == 0 && whole;
     if (whole) return data;
     free(data);

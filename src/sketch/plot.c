@@ -5,73 +5,167 @@
 #include "type/type.h"
 
 #include <math.h>
+#include <string.h>
 
-static const double tic = 1; /* mm */
+static const double tick = 1, minor_tick = 0.55, number_gap = 1; /* mm */
+static const double frame_width = 0.8, label_points = 8;
 
-static double em(double points) { return points * MM_PER_POINT; }
+/* em: the middles of numbers and label below a panel, from where the ticks end. */
+static const double number_drop = 0.75, label_drop = 2.05;
+
+PlotBox plot_grid_box(const PlotGrid *grid, int place) {
+    const double width = (grid->width - grid->left - grid->right - (grid->columns - 1) * grid->gap) / grid->columns;
+    const double height = (grid->height - grid->bottom - grid->top - (grid->rows - 1) * grid->row_gap) / grid->rows;
+    const int column = place % grid->columns, row = place / grid->columns;
+    return (PlotBox){grid->left + column * (width + grid->gap),
+                     grid->bottom + (grid->rows - 1 - row) * (height + grid->row_gap), width, height};
+}
+
+void plot_panel_place(PlotPanel *panel) {
+    panel->x.from = panel->box.left, panel->x.to = panel->box.left + panel->box.width;
+    panel->y.from = panel->box.bottom, panel->y.to = panel->box.bottom + panel->box.height;
+}
+
+Point plot_place(const PlotPanel *panel, double x, double y) {
+    return (Point){plot_axis_place(&panel->x, x), plot_axis_place(&panel->y, y)};
+}
+
+static double label_size(const PlotPanel *panel) { return panel->points > 0 ? panel->points : label_points; }
+
+static double number_size(const PlotPanel *panel) { return label_size(panel) * 7.5 / 8; }
 
 double plot_left_margin(double points) {
-    return 1.35 * em(points) + type_width("10\xE2\x88\x92", points) + em(points) + tic;
+    return tick + number_gap + sketch_power_width(points * 7.5 / 8, 1, -1) + 1.9 * points * MM_PER_POINT;
 }
 
-double plot_bottom_margin(double points) { return 2.9 * em(points) + tic; }
+double plot_bottom_margin(double points) { return tick + (label_drop + 0.7) * points * MM_PER_POINT; }
 
-void plot_begin(Plot *plot, Point low, Point high, double begin, double end, double least, double most, double points) {
-    *plot = (Plot){low, high, begin, end, log_axis(least, most), points};
-    plot->axis.from = low.y, plot->axis.to = high.y;
-}
-
-Point plot_place(const Plot *plot, double x, double y) {
-    double share = (x - plot->begin) / (plot->end - plot->begin);
-    double up = log_axis_place(&plot->axis, fmin(fmax(y, plot->axis.low), plot->axis.high));
-    return (Point){plot->low.x + fmin(fmax(share, 0), 1) * (plot->high.x - plot->low.x), up};
-}
-
-/* A round step that gives at most eight labels. */
-static double linear_step(double length) {
-    const double most_steps = 8, least = length / most_steps, power = pow(10, floor(log10(least)));
-    const double share = least / power;
-    return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
-}
-
-static void draw_linear_axis(const Plot *plot, Sketch *sketch, const char *name) {
-    const double step = linear_step(plot->end - plot->begin), slack = 1e-9 * step, size = em(plot->points);
-    const int decimals = step >= 0.99 ? 0 : (int)ceil(-log10(step) - 1e-9);
-    const Pen pen = pen_line(INK, 1.2, NULL);
-    const TextStyle numbers = {plot->points, TEXT_CENTER, INK, 0, false};
-    for (double i = ceil(plot->begin / step - 1e-9); i * step <= plot->end + slack; i++) {
-        const double x = i * step;
-        const Point at = {plot_place(plot, x, plot->axis.low).x, plot->low.y};
-        sketch_line(sketch, at, (Point){at.x, at.y - tic}, &pen);
-        sketch_text(sketch, (Point){at.x, at.y - tic - 0.75 * size}, &numbers, "%s", show_decimals(x, decimals).text);
+static void draw_number(Sketch *sketch, const PlotTick *number, Point at, const TextStyle *style) {
+    if (number->digit > 0)
+        sketch_power_of_ten(sketch, at, style, number->digit, number->power);
+    else if (number->text[0] != '\0') {
+        const int first = (int)strcspn(number->text, "\n");
+        sketch_text(sketch, at, style, "%.*s", first, number->text);
+        at.y -= 1.15 * style->points * MM_PER_POINT;
+        if (number->text[first] != '\0') sketch_text(sketch, at, style, "%s", number->text + first + 1);
     }
-    sketch_text(sketch, (Point){(plot->low.x + plot->high.x) / 2, plot->low.y - tic - 2.2 * size}, &numbers, "%s",
-                name);
 }
 
-static void draw_log_axis(const Plot *plot, Sketch *sketch, const char *name) {
-    const LogAxis *axis = &plot->axis;
-    const int first = (int)ceil(log10(axis->low) - 1e-9), last = (int)floor(log10(axis->high) + 1e-9);
-    const double decade = (axis->to - axis->from) / log10(axis->high / axis->low);
-    const int step = (int)fmax(ceil(1.6 * em(plot->points) / decade), 1);
-    const Pen pen = pen_line(INK, 1.2, NULL), guide = pen_line(GRID_STRONG, 0.9, NULL);
-    const TextStyle numbers = {plot->points, TEXT_RIGHT, INK, 0, false};
-    for (int power = first; power <= last; power++) {
-        const double y = log_axis_place(axis, pow(10, power));
-        if (power % step != 0) continue;
-        sketch_line(sketch, (Point){plot->low.x, y}, (Point){plot->high.x, y}, &guide);
-        sketch_line(sketch, (Point){plot->low.x - tic, y}, (Point){plot->low.x, y}, &pen);
-        sketch_power_of_ten(sketch, (Point){plot->low.x - tic - 0.4, y}, &numbers, power);
+static double outside_of(const PlotAxis *axis) { return axis->outside ? tick : 0; }
+
+static void draw_x_axis(Sketch *sketch, const PlotPanel *panel, const PlotTicks *ticks) {
+    const double em = label_size(panel) * MM_PER_POINT, bottom = panel->box.bottom, end = bottom - tick;
+    const Pen pen = pen_line(INK, frame_width, NULL);
+    const TextStyle numbers = {number_size(panel), TEXT_CENTER, INK, 0, false};
+    for (int i = 0; i < ticks->count; i++) {
+        const double x = plot_axis_place(&panel->x, ticks->items[i].value);
+        const double length = ticks->items[i].minor ? minor_tick : tick;
+        sketch_line(sketch, (Point){x, bottom}, (Point){x, bottom + (panel->x.outside ? -length : length)}, &pen);
+        if (panel->x.label != NULL) draw_number(sketch, &ticks->items[i], (Point){x, end - number_drop * em}, &numbers);
     }
-    const double x = plot->low.x - plot_left_margin(plot->points) + 0.6 * em(plot->points);
-    sketch_text(sketch, (Point){x, (plot->low.y + plot->high.y) / 2},
-                &(TextStyle){plot->points, TEXT_CENTER, INK, 90, false}, "%s", name);
+    if (panel->x.label != NULL)
+        plot_text(sketch, (Point){panel->box.left + panel->box.width / 2, end - label_drop * em}, TEXT_CENTER,
+                  label_size(panel), panel->x.label);
 }
 
-void plot_draw_axes(const Plot *plot, Sketch *sketch, const char *x_name, const char *y_name) {
-    draw_log_axis(plot, sketch, y_name);
-    draw_linear_axis(plot, sketch, x_name);
-    const Point line[] = {{plot->low.x, plot->high.y}, plot->low, {plot->high.x, plot->low.y}};
-    const Pen pen = pen_line(INK, 1.2, NULL);
-    sketch_path(sketch, line, 3, &pen);
+static void draw_y_axis(Sketch *sketch, const PlotPanel *panel, const PlotTicks *ticks) {
+    const double em = label_size(panel) * MM_PER_POINT, left = panel->box.left;
+    const double end = left - outside_of(&panel->y) - number_gap;
+    const Pen pen = pen_line(INK, frame_width, NULL), guide = pen_line(GRID_STRONG, 0.9, NULL);
+    const TextStyle numbers = {number_size(panel), TEXT_RIGHT, INK, 0, false};
+    double widest = 0;
+    for (int i = 0; i < ticks->count; i++) {
+        const PlotTick *number = &ticks->items[i];
+        const double y = plot_axis_place(&panel->y, number->value), length = number->minor ? minor_tick : tick;
+        if (panel->guides && !number->minor)
+            sketch_line(sketch, (Point){left, y}, (Point){left + panel->box.width, y}, &guide);
+        sketch_line(sketch, (Point){left, y}, (Point){left + (panel->y.outside ? -length : length), y}, &pen);
+        if (panel->y.label != NULL) draw_number(sketch, number, (Point){end, y}, &numbers);
+        widest = fmax(widest, plot_tick_width(number, numbers.points));
+    }
+    if (panel->y.label != NULL && panel->y.label[0] != '\0')
+        sketch_text(sketch, (Point){end - widest - 0.95 * em, panel->box.bottom + panel->box.height / 2},
+                    &(TextStyle){label_size(panel), TEXT_CENTER, INK, 90, false}, "%s", panel->y.label);
+}
+
+static const PlotTicks *ticks_of(const PlotPanel *panel, const PlotAxis *axis, PlotTicks *room) {
+    if (axis->ticks != NULL) return axis->ticks;
+    plot_ticks_choose(room, axis, number_size(panel), axis == &panel->x);
+    return room;
+}
+
+void plot_panel_draw(Sketch *sketch, const PlotPanel *panel) {
+    PlotTicks room;
+    const PlotBox *box = &panel->box;
+    const Pen pen = pen_line(INK, frame_width, NULL);
+    draw_y_axis(sketch, panel, ticks_of(panel, &panel->y, &room));
+    draw_x_axis(sketch, panel, ticks_of(panel, &panel->x, &room));
+    sketch_rectangle(sketch, (Point){box->left, box->bottom},
+                     (Point){box->left + box->width, box->bottom + box->height}, &pen);
+    if (panel->title != NULL)
+        plot_text(sketch, (Point){box->left, box->bottom + box->height + 2.5}, TEXT_LEFT, label_size(panel),
+                  panel->title);
+}
+
+PlotLook plot_look(int i, const char *name) {
+    return (PlotLook){.name = name, .style = plot_style(i), .line = 1.6, .marks = true};
+}
+
+PlotLook plot_look_marks(int i, const char *name) {
+    return (PlotLook){.name = name, .style = plot_style(i), .marks = true};
+}
+
+PlotLook plot_look_dashed(const char *name) {
+    return (PlotLook){.name = name, .style = {.colour = PLOT_GREY, .ink = PLOT_GREY, .dashes = "(3,1.8)"}, .line = 2};
+}
+
+PlotLook plot_look_guide(void) { return (PlotLook){.style = {.colour = 0xC8C8C8, .ink = 0xC8C8C8}, .line = 0.6}; }
+
+PlotLook plot_look_thin(PlotLook look) {
+    look.line = 0.6;
+    look.style.dashes = NULL;
+    look.marks = false;
+    return look;
+}
+
+void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look) {
+    const Pen pen = pen_line(look->style.colour, look->line, look->style.dashes);
+    for (int i = 0, end; i < count; i = end + 1) {
+        for (end = i; end < count && !isnan(points[end].x + points[end].y);) end++;
+        if (look->line > 0) sketch_path(sketch, points + i, end - i, &pen);
+    }
+    for (int i = 0, end; look->marks && i < count; i = end + 1) {
+        for (end = i; end < count && !isnan(points[end].x + points[end].y);) end++;
+        plot_marks(sketch, points + i, end - i, &look->style);
+    }
+}
+
+void plot_text(Sketch *sketch, Point at, TextAlign align, double points, const char *text) {
+    if (text[0] != '\0') sketch_text(sketch, at, &(TextStyle){points, align, INK, 0, false}, "%s", text);
+}
+
+static void draw_sample(Sketch *sketch, const PlotLook *look, double left, double y) {
+    const Point middle = {left + LEGEND_SAMPLE / 2, y};
+    const Point ends[] = {{left, y}, {left + LEGEND_SAMPLE, y}};
+    const double half = 1.2; /* mm, of a band */
+    PlotLook line = *look;
+    line.marks = false;
+    if (look->stems) line.style.dashes = NULL;
+    if (look->band)
+        sketch_rectangle(sketch, (Point){left, y - half}, (Point){left + LEGEND_SAMPLE, y + half},
+                         &(Pen){look->style.colour, 1, NO_COLOUR, 0, NULL});
+    else
+        plot_line(sketch, ends, 2, &line);
+    if (look->marks) plot_marks(sketch, &middle, 1, &look->style);
+}
+
+void plot_legend(Sketch *sketch, const PlotLook *looks, int count, int columns, double left, double top) {
+    const double width = (sketch->width - left) / columns;
+    for (int i = 0, shown = 0; i < count; i++) {
+        if (looks[i].name == NULL) continue;
+        const double x = left + width * (shown % columns), y = top - LEGEND_ROW * (shown / columns);
+        draw_sample(sketch, &looks[i], x, y);
+        plot_text(sketch, (Point){x + LEGEND_SAMPLE + LEGEND_GAP, y}, TEXT_LEFT, LEGEND_POINTS, looks[i].name);
+        shown++;
+    }
 }

@@ -172,32 +172,72 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
     if (!sketch->failed) add_mark(sketch, &mark);
 }
 
-/* "10⁻³" */
-static void format_power(char text[32], int power) {
+static const double exponent_size = 0.75, exponent_rise = 0.4, exponent_gap = 0.05; /* the last two / em */
+
+/* "2·10", or "10" */
+static void format_base(char text[32], int digit) { snprintf(text, 32, digit == 1 ? "10" : "%d·10", digit); }
+
+/* "2·10⁻³" */
+static void format_power(char text[64], int digit, int power) {
     static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    char digits[16];
+    char digits[16], base[32];
     snprintf(digits, sizeof digits, "%d", abs(power));
-    int used = snprintf(text, 32, "10%s", power < 0 ? "⁻" : "");
-    for (const char *c = digits; *c != '\0' && used < 28; c++)
-        used += snprintf(text + used, (size_t)(32 - used), "%s", raised[*c - '0']);
+    format_base(base, digit);
+    int used = snprintf(text, 64, "%s%s", base, power < 0 ? "⁻" : "");
+    for (const char *c = digits; *c != '\0' && used < 60; c++)
+        used += snprintf(text + used, (size_t)(64 - used), "%s", raised[*c - '0']);
 }
 
-void sketch_power_of_ten(Sketch *sketch, Point right, const TextStyle *style, int power) {
-    const double exponent_size = 0.75, exponent_rise = 0.4, em = style->points * MM_PER_POINT; /* / em */
+double sketch_power_width(double points, int digit, int power) {
+    char base[32];
+    format_base(base, digit);
+    return type_width(base, points) + exponent_gap * points * MM_PER_POINT +
+           type_width(show_decimals(power, 0).text, exponent_size * points);
+}
+
+void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power) {
+    static const double shares[] = {[TEXT_LEFT] = 1, [TEXT_CENTER] = 0.5, [TEXT_RIGHT] = 0};
+    const double em = style->points * MM_PER_POINT;
     TextStyle base = *style, exponent = *style;
     const ShownDecimals shown = show_decimals(power, 0);
-    char reads[32];
+    char reads[64], text[32];
     base.align = exponent.align = TEXT_RIGHT;
     exponent.points *= exponent_size;
-    format_power(reads, power);
+    at.x += shares[style->align] * sketch_power_width(style->points, digit, power);
+    format_power(reads, digit, power);
+    format_base(text, digit);
     const size_t before = sketch->mark_count;
-    sketch_text(sketch, (Point){right.x - type_width(shown.text, exponent.points) - 0.05 * em, right.y}, &base, "10");
-    sketch_text(sketch, (Point){right.x, right.y + exponent_rise * em}, &exponent, "%s", shown.text);
+    sketch_text(sketch, (Point){at.x - type_width(shown.text, exponent.points) - exponent_gap * em, at.y}, &base, "%s",
+                text);
+    sketch_text(sketch, (Point){at.x, at.y + exponent_rise * em}, &exponent, "%s", shown.text);
     if (sketch->failed || sketch->mark_count != before + 2) return;
     for (size_t i = before; i < sketch->mark_count; i++) {
         sketch->marks[i].has_reads = true;
         sketch->marks[i].reads = add_text(sketch, i == before ? reads : "");
     }
+}
+
+void sketch_link(Sketch *sketch, Point low, Point high, const char *target, const char *title) {
+    const size_t before = sketch->mark_count;
+    sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, NO_COLOUR, 0, NULL});
+    if (sketch->failed || sketch->mark_count == before) return;
+    SketchMark *mark = &sketch->marks[before];
+    mark->kind = MARK_LINK;
+    mark->layer = LAYER_TEXTS;
+    mark->text = add_text(sketch, target);
+    mark->reads = add_text(sketch, title);
+}
+
+void text_fit(char *words, size_t size, double points, double width) {
+    static const char ellipsis[] = "\xE2\x80\xA6";
+    if (type_width(words, points) <= width) return;
+    const double room = width - type_width(ellipsis, points);
+    const char *end = words, *next = words;
+    for (double used = 0; *next != '\0' && (size_t)(next - words) + sizeof ellipsis <= size; end = next) {
+        used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
+        if (used > room) break;
+    }
+    memcpy(words + (end - words), ellipsis, sizeof ellipsis);
 }
 
 ShownDecimals show_decimals(double value, int decimals) {

@@ -66,7 +66,7 @@ typedef struct TextStyle {
 /* From bottom to top. */
 typedef enum SketchLayer { LAYER_PICTURES, LAYER_SHAPES, LAYER_ARROWS, LAYER_TEXTS, SKETCH_LAYERS } SketchLayer;
 
-typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT } SketchMarkKind;
+typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT, MARK_LINK } SketchMarkKind;
 
 /* One element of the page. */
 typedef struct SketchMark {
@@ -77,11 +77,11 @@ typedef struct SketchMark {
     Image *image;
     Pen pen;
     bool closed;
-    size_t first, count; /* of a path: range in the sketch's points */
+    size_t first, count; /* of a path or a link's area: range in the sketch's points */
     TextStyle style;
-    size_t text;    /* offset in the sketch's texts */
+    size_t text;    /* offset in the sketch's texts; of a link: its target */
     bool has_reads; /* what readers of a PDF's text get instead is at `reads` in the sketch's texts */
-    size_t reads;
+    size_t reads;   /* of a link: its tooltip */
 } SketchMark;
 
 typedef struct Sketch {
@@ -118,8 +118,16 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
 /* One line of text, truncated to SKETCH_TEXT_SIZE - 1 bytes, vertically centred on `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
-/* 10 to a power, right-aligned. Extracted from a PDF it reads "10⁻³". */
-void sketch_power_of_ten(Sketch *sketch, Point right, const TextStyle *style, int power);
+/* A digit times 10 to a power ("2·10"; of 1, the power alone), aligned as the style says and its width in mm. Extracted from
+   a PDF it reads "2·10⁻³". */
+void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power);
+double sketch_power_width(double points, int digit, int power);
+
+/* Makes an area a link with a tooltip, in SVG files only. */
+void sketch_link(Sketch *sketch, Point low, Point high, const char *target, const char *title);
+
+/* Shortens a text to a width in mm, with an ellipsis. */
+void text_fit(char *words, size_t size, double points, double width);
 
 /* A number as text with this many decimals: with a minus sign (U+2212), and without it for -0. */
 typedef struct ShownDecimals {

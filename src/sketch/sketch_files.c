@@ -54,9 +54,9 @@ bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *ou
     return done;
 }
 
-bool sketch_draw(const Sketch *sketch, const char *stem, Error *error) {
+bool sketch_draw(const Sketch *sketch, const char *stem, SketchFormat last, Error *error) {
     const SketchOutput output = {.dpi = SKETCH_DPI};
-    for (int i = SKETCH_PNG; i <= SKETCH_SVG; i++) {
+    for (int i = SKETCH_PNG; i <= (int)last; i++) {
         char path[PATH_MAX];
         if (!file_path(path, sizeof path, error, "%s%s", stem, formats[i].ending)) return false;
         if (!sketch_write(sketch, path, &output, error)) return false;

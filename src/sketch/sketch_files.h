@@ -29,5 +29,5 @@ bool sketch_check_texts(const Sketch *sketch, const char *where, Error *error);
 /* Writes the format given by the path's ending. The file appears complete or not at all. */
 bool sketch_write(const Sketch *sketch, const char *path, const SketchOutput *output, Error *error);
 
-/* Writes stem.png (SKETCH_DPI) and stem.svg, on white. */
-bool sketch_draw(const Sketch *sketch, const char *stem, Error *error);
+/* Writes stem.png (SKETCH_DPI) and stem.svg, up to `last` SKETCH_PDF also stem.pdf, on white. */
+bool sketch_draw(const Sketch *sketch, const char *stem, SketchFormat last, Error *error);

@@ -184,7 +184,14 @@ static void draw_mark(Painter *painter, const SketchMark *mark) {
     case MARK_IMAGE: draw_image(painter, mark); break;
     case MARK_PATH: draw_path(painter, mark); break;
     case MARK_TEXT: draw_text(painter, mark); break;
+    case MARK_LINK: break;
     }
+}
+
+static bool has_images(const Sketch *sketch) {
+    for (size_t i = 0; i < sketch->mark_count; i++)
+        if (sketch->marks[i].kind == MARK_IMAGE) return true;
+    return false;
 }
 
 char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
@@ -201,7 +208,7 @@ char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *si
         if (painter.raster.failed)
             error_memory(error, "figure");
         else
-            data = picture_as_png(painter.page, output->dpi, size, error);
+            data = picture_as_png(painter.page, output->dpi, !has_images(sketch), size, error);
     } else if (painter.page != NULL)
         error_memory(error, "figure");
     raster_free(&painter.raster);

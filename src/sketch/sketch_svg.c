@@ -11,6 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The fonts of texts, best first. */
+#define SVG_FONTS "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif"
+
 static void write_glyph(FILE *file, const Glyph *glyph) {
     static const char letters[] = "MLC";
     fprintf(file, "<path id=\"g%u\" d=\"", glyph->index);
@@ -121,9 +124,19 @@ static void write_path(FILE *file, const Sketch *sketch, const SketchMark *mark)
     fprintf(file, "%s/>\n", count > 0 ? "\"" : "");
 }
 
+static void write_link(FILE *file, const Sketch *sketch, const SketchMark *mark) {
+    const Point *corners = sketch->points + mark->first;
+    fprintf(file, "<a xlink:href=\"");
+    write_escaped(file, sketch->texts + mark->text);
+    fprintf(file, "\"><title>");
+    write_escaped(file, sketch->texts + mark->reads);
+    fprintf(file, "</title><rect x=\"%.3f\" y=\"%.3f\" width=\"%.3f\" height=\"%.3f\" fill-opacity=\"0\"/></a>\n",
+            corners[0].x, sketch->height - corners[2].y, corners[2].x - corners[0].x, corners[2].y - corners[0].y);
+}
+
 static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
     size_t size;
-    char *png = picture_as_png(mark->image, 0, &size, error);
+    char *png = picture_as_png(mark->image, 0, false, &size, error);
     if (png == NULL) return false;
     const double height = mark->width * mark->image->height / mark->image->width;
     fprintf(file,
@@ -137,7 +150,7 @@ static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark
 }
 
 /* For texts; and the font, so that browsers show the same letters on every machine. */
-void svg_write_font(FILE *file, FontFile font) {
+static void write_font(FILE *file, FontFile font) {
     fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
     base64_put(file, (const char *)font.bytes, font.size);
     fprintf(file, ")}</style>\n");
@@ -156,7 +169,7 @@ static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *out
         fprintf(file, "</title>\n");
     }
     if (output->outlines) return write_glyphs(file, sketch);
-    svg_write_font(file, sketch_font(sketch));
+    write_font(file, sketch_font(sketch));
     return true;
 }
 
@@ -170,6 +183,7 @@ static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput 
         case MARK_IMAGE: whole = write_image(file, sketch, mark, error); break;
         case MARK_PATH: write_path(file, sketch, mark); break;
         case MARK_TEXT: (output->outlines ? write_outlines : write_text)(file, sketch, mark); break;
+        case MARK_LINK: write_link(file, sketch, mark); break;
         }
     }
     fprintf(file, "</svg>\n");

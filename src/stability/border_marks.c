@@ -7,8 +7,7 @@
 /* mm; half_tile, half_sign: from the centre of a tile, arrow head or cross to its edge */
 static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
 
-static const GnuplotLook bar_look = {"", {.colour = "#A3CBE5"}, 0, false, 1, false};
-static const GnuplotLook sign_look = {"", {.colour = "black", .dashes = "solid"}, 1.6, false, 0, false};
+static const Pen bar_pen = {0xA3CBE5, 1, NO_COLOUR, 0, NULL}, sign_pen = {NO_COLOUR, 1, 0x000000, 1.6, NULL};
 
 static bool holds_throughout(const BorderRow *row) {
     return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
@@ -16,100 +15,92 @@ static bool holds_throughout(const BorderRow *row) {
 
 static bool never_holds(const BorderRow *row) { return isnan(row->holds_at) && !isnan(row->fails_at); }
 
+static double place_of(const BorderRows *rows, double value) { return plot_axis_place(&rows->panel->x, value); }
+
 /* The other end of the bar that starts at a border: the next border of the same method in that direction, or the
    panel's edge. */
 static double far_end(const BorderRows *rows, const BorderRow *row, bool low) {
-    double end = low ? 0 : rows->axis->width, from = border_axis_place(rows->axis, row->holds_at);
+    double end = low ? rows->panel->x.from : rows->panel->x.to, from = place_of(rows, row->holds_at);
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *other = &rows->table->rows[i];
         if (other == row || !border_same_study(other, row) || !border_same_method(other, row)) continue;
-        double place = border_axis_place(rows->axis, other->holds_at);
+        double place = place_of(rows, other->holds_at);
         if (low ? place <= from && place > end : place >= from && place < end) end = place;
     }
     return end;
 }
 
-static void draw_bar(const BorderRows *rows, const BorderRow *row, int y) {
+static void put_bar(Sketch *sketch, double from, double to, double y) {
+    sketch_rectangle(sketch, (Point){fmin(from, to), y - bar_height / 2}, (Point){fmax(from, to), y + bar_height / 2},
+                     &bar_pen);
+}
+
+static void draw_bar(const BorderRows *rows, const BorderRow *row, double y) {
     if (isnan(row->holds_at)) return;
-    bool whole = holds_throughout(row);
-    double half = bar_height / 2 / rows->height;
-    bool low = isnan(row->fails_at) ? !rows->axis->falling : row->holds_at < row->fails_at;
-    double from = whole ? 0 : far_end(rows, row, low);
-    double to = whole ? rows->axis->width : border_axis_place(rows->axis, row->holds_at);
-    gnuplot_bar(rows->page, fmin(from, to), y - half, fmax(from, to), y + half);
+    if (holds_throughout(row)) {
+        put_bar(rows->sketch, rows->panel->x.from, rows->panel->x.to, y);
+        return;
+    }
+    const bool low = isnan(row->fails_at) ? !rows->falling : row->holds_at < row->fails_at;
+    put_bar(rows->sketch, far_end(rows, row, low), place_of(rows, row->holds_at), y);
 }
 
-/* An arrow head with its tip at x. `up`: axis units per mm. */
-static void draw_head(GnuplotPage *page, double x, double y, double up, bool to_the_left) {
-    double back = x + (to_the_left ? 2 : -2) * half_sign;
-    gnuplot_point(page, back, y + half_sign * up);
-    gnuplot_point(page, x, y);
-    gnuplot_point(page, back, y - half_sign * up);
-    gnuplot_gap(page);
+/* An arrow head. */
+static void put_head(Sketch *sketch, Point tip, bool to_the_left) {
+    const double back = tip.x + (to_the_left ? 2 : -2) * half_sign;
+    sketch_path(sketch, (const Point[]){{back, tip.y + half_sign}, tip, {back, tip.y - half_sign}}, 3, &sign_pen);
 }
 
-static void draw_cross(GnuplotPage *page, double x, double y, double up) {
-    gnuplot_segment(page, x - half_sign, y - half_sign * up, x + half_sign, y + half_sign * up);
-    gnuplot_segment(page, x - half_sign, y + half_sign * up, x + half_sign, y - half_sign * up);
+static void put_cross(Sketch *sketch, Point at) {
+    for (int up = -1; up <= 1; up += 2)
+        sketch_line(sketch, (Point){at.x - half_sign, at.y - up * half_sign},
+                    (Point){at.x + half_sign, at.y + up * half_sign}, &sign_pen);
 }
 
-/* In the margin next to the study's easiest value. */
-static double easy_end(const BorderAxis *axis) {
-    return axis->falling ? axis->width - BORDER_AXIS_ROOM / 2 : BORDER_AXIS_ROOM / 2;
+/* In the margin next to the study's easiest value, or to its hardest one. */
+static double margin_of(const BorderRows *rows, bool easy) {
+    const PlotAxis *axis = &rows->panel->x;
+    return easy == rows->falling ? axis->to - BORDER_AXIS_ROOM / 2 : axis->from + BORDER_AXIS_ROOM / 2;
 }
 
 /* Without fails_at: in the margin, as all values beyond holds_at are undecided. */
-static double tile_place(const BorderAxis *axis, const BorderRow *row) {
-    if (!isnan(row->fails_at)) return border_axis_place(axis, row->fails_at);
-    return isnan(row->holds_at) ? easy_end(axis) : axis->width - easy_end(axis);
+static double tile_place(const BorderRows *rows, const BorderRow *row) {
+    return isnan(row->fails_at) ? margin_of(rows, isnan(row->holds_at)) : place_of(rows, row->fails_at);
 }
 
-static void draw_sign(const BorderRows *rows, const BorderRow *row, int y) {
-    const BorderAxis *axis = rows->axis;
-    double tip = axis->falling ? half_sign : axis->width - half_sign;
-    if (holds_throughout(row)) draw_head(rows->page, tip, y, 1 / rows->height, axis->falling);
-    if (never_holds(row)) draw_cross(rows->page, easy_end(axis), y, 1 / rows->height);
+static void draw_sign(const BorderRows *rows, const BorderRow *row, double y) {
+    const double tip = rows->falling ? rows->panel->x.from + half_sign : rows->panel->x.to - half_sign;
+    if (holds_throughout(row)) put_head(rows->sketch, (Point){tip, y}, rows->falling);
+    if (never_holds(row)) put_cross(rows->sketch, (Point){margin_of(rows, true), y});
 }
 
-static int height_of(const BorderRows *rows, const BorderRow *row) {
+static double height_of(const BorderRows *rows, const BorderRow *row) {
     int i = 0;
     while (!border_same_method(&rows->table->rows[rows->methods[i]], row)) i++;
-    return rows->method_count - 1 - i;
+    return plot_axis_place(&rows->panel->y, i);
 }
 
-static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, int),
-                      const GnuplotLook *look) {
-    gnuplot_series_begin(rows->page);
+static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, double)) {
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *row = &rows->table->rows[i];
         if (border_same_study(row, rows->study)) put(rows, row, height_of(rows, row));
     }
-    gnuplot_series_end(rows->page, look);
 }
 
-static void draw_tiles(const BorderRows *rows) {
-    Tile tiles[STABILITY_MAX_BORDERS];
-    int count = 0;
-    for (int i = 0; i < rows->table->count; i++) {
-        const BorderRow *row = &rows->table->rows[i];
-        if (!border_same_study(row, rows->study) || holds_throughout(row)) continue;
-        tiles[count++] = (Tile){.x = tile_place(rows->axis, row), .y = height_of(rows, row), .look = row->verdict};
-    }
-    verdict_draw_tiles(rows->page, tiles, count, (TileScale){.unit_x = 1, .unit_y = rows->height, .half = half_tile});
+static void draw_tile(const BorderRows *rows, const BorderRow *row, double y) {
+    const Tile tile = {.at = {tile_place(rows, row), y}, .look = row->verdict};
+    if (holds_throughout(row)) return;
+    verdict_draw_tiles(rows->sketch, &tile, 1, (TileSize){.width = 2 * half_tile, .height = 2 * half_tile});
 }
 
 void border_marks_draw(const BorderRows *rows) {
-    draw_each(rows, draw_bar, &bar_look);
-    draw_tiles(rows);
-    draw_each(rows, draw_sign, &sign_look);
+    draw_each(rows, draw_bar);
+    draw_each(rows, draw_tile);
+    draw_each(rows, draw_sign);
 }
 
-void border_sample_draw(GnuplotPage *page, int sign, double x, double y, double width) {
-    gnuplot_series_begin(page);
-    if (sign < 2) gnuplot_bar(page, x, y - bar_height / 2, x + width, y + bar_height / 2);
-    gnuplot_series_end(page, &bar_look);
-    gnuplot_series_begin(page);
-    if (sign == 1) draw_head(page, x + width, y, 1, false);
-    if (sign == 2) draw_cross(page, x + width / 2, y, 1);
-    gnuplot_series_end(page, &sign_look);
+void border_sample_draw(Sketch *sketch, int sign, Point left, double width) {
+    if (sign < 2) put_bar(sketch, left.x, left.x + width, left.y);
+    if (sign == 1) put_head(sketch, (Point){left.x + width, left.y}, false);
+    if (sign == 2) put_cross(sketch, (Point){left.x + width / 2, left.y});
 }

@@ -3,21 +3,19 @@
 #pragma once
 #include "stability/border_axis.h"
 
-/* The rows of a study's panel, one per method. Row i is at y = method_count - 1 - i on the panel's axis. */
+/* The rows of a study's panel, one per method, from the top. */
 typedef struct BorderRows {
     const BorderTable *table;
-    GnuplotPage *page;
+    Sketch *sketch;
     const BorderRow *study; /* any row of the study */
-    const BorderAxis *axis;
-    const int *methods; /* [method_count]: a table row of each method */
+    const PlotPanel *panel; /* placed */
+    bool falling;           /* as of BorderAxis */
+    const int *methods;     /* [method_count]: a table row of each method */
     int method_count;
-    double height; /* mm per row */
 } BorderRows;
 
-/* Draws the marks on the open panel. */
 void border_marks_draw(const BorderRows *rows);
 
-/* Draws the legend's sample of a sign (0: holds, 1: holds throughout, 2: never holds), `width` mm wide, on a panel in
-   mm. */
+/* Draws the legend's sample of a sign (0: holds, 1: holds throughout, 2: never holds), `width` mm wide from `left`. */
 enum { BORDER_SIGNS = 3 };
-void border_sample_draw(GnuplotPage *page, int sign, double x, double y, double width);
+void border_sample_draw(Sketch *sketch, int sign, Point left, double width);

@@ -1,31 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/map_axis.h"
 
-#include "stability/stability_map.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* mm */
-static const double tic_height = 3, tic_digit = 1.65, least_between_tics = 1.2;
-
-enum { TICS_SIZE = MAP_MAX_VALUES * 40 };
+static const double number_height = 3, number_points = 7.5, least_between_ticks = 1.2;
 
 /* Three significant digits; integers up to 1e6 in full. */
-static int name_value(char *text, size_t size, double value) {
+static void name_value(char text[32], double value) {
     bool whole = fabs(value) > 999 && fabs(value) < 1e6;
-    return snprintf(text, size, whole ? "%.0f" : "%.3g", value);
+    snprintf(text, 32, whole ? "%.0f" : "%.3g", value);
 }
 
 double map_axis_width(const double *values, int count) {
     char text[32];
-    int longest = 0;
+    double widest = 0;
     for (int i = 0; i < count; i++) {
-        int length = name_value(text, sizeof text, values[i]);
-        longest = length > longest ? length : longest;
+        name_value(text, values[i]);
+        widest = fmax(widest, type_width(text, number_points));
     }
-    return longest * tic_digit;
+    return widest;
 }
 
 /* Digits that are not zero at the end: 1 of 40, 2 of 41 and of 0.25. */
@@ -60,20 +57,19 @@ static Labels choose_labels(const double *values, int count, int least) {
     return best;
 }
 
-void map_axis_write(GnuplotPage *page, char axis, const double *values, int count, double room, const char *label) {
-    char tics[TICS_SIZE], text[32];
-    const double needed = axis == 'x' ? map_axis_width(values, count) + tic_digit : tic_height;
+PlotAxis map_axis(PlotTicks *ticks, bool across, const double *values, int count, double room) {
+    const double needed = across ? map_axis_width(values, count) + 1.7 : number_height;
     const Labels labels = choose_labels(values, count, (int)ceil(needed / room));
-    const char *comma = "";
-    size_t used = (size_t)snprintf(tics, sizeof tics, "out%s (", axis == 'x' ? " offset 0,0.3" : "");
+    PlotAxis axis = plot_linear_axis(-0.5, count - 0.5, NULL);
+    ticks->count = 0;
     for (int i = 0; i < count; i++) {
+        char text[32] = "";
         const bool labelled = i >= labels.first && (i - labels.first) % labels.every == 0;
-        if (!labelled && room < least_between_tics) continue;
-        name_value(text, sizeof text, values[i]);
-        used += (size_t)snprintf(tics + used, sizeof tics - used, "%s'%s' %d", comma,
-                                 label != NULL && labelled ? text : "", i);
-        comma = ", ";
+        if (!labelled && room < least_between_ticks) continue;
+        if (labelled) name_value(text, values[i]);
+        plot_tick_add(ticks, i, false, text);
     }
-    snprintf(tics + used, sizeof tics - used, ")");
-    gnuplot_linear_axis(page, axis, -0.5, count - 0.5, tics, label);
+    axis.ticks = ticks;
+    axis.outside = true;
+    return axis;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The borders figure: how far each method holds in each study. */
 #pragma once
-#include "chart/gnuplot_page.h"
+#include "sketch/plot_page.h"
 #include "stability/stability_table.h"
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
@@ -11,4 +11,4 @@ enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
    values beyond the bar are undecided, it is at the far end. An arrow marks a method that holds over the whole range, a
    cross one that never holds. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
    BORDERS_MAX_STUDIES studies. */
-bool stability_borders_write(const BorderTable *table, GnuplotPage *page, Error *error);
+bool stability_borders_write(const BorderTable *table, PlotPage *page, Error *error);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stability/stability_figures.h"
 
-#include "chart/gnuplot_sheet.h"
 #include "stability/stability_borders.h"
 #include "stability/stability_map.h"
 
@@ -19,12 +18,10 @@ static bool process_maps(const MapTable *table, const char *folder, bool draw, c
     for (int row = 0; ok && row < table->count;) {
         ok = go_on(row, table->count, folder, progress, error) && map_panels_gather(map, table, &row, error);
         if (!ok || !draw) continue;
-        GnuplotSheet sheet = {0};
-        ok = gnuplot_sheet_open(&sheet, folder, error);
-        if (ok) map_panels_write(map, &sheet.page);
-        ok = ok && gnuplot_sheet_close(&sheet, folder, error) &&
-             gnuplot_sheet_draw(&sheet, folder, "map-", map->first->map, error);
-        gnuplot_sheet_free(&sheet);
+        PlotPage page = {0};
+        map_panels_write(map, &page);
+        ok = plot_page_write(&page, folder, "map-", map->first->map, error);
+        plot_page_free(&page);
     }
     free(map);
     return ok;
@@ -32,11 +29,10 @@ static bool process_maps(const MapTable *table, const char *folder, bool draw, c
 
 static bool draw_borders(const BorderTable *table, const char *folder, const Progress *progress, Error *error) {
     if (table->count == 0) return true;
-    GnuplotSheet sheet = {0};
-    bool ok = go_on(0, 1, folder, progress, error) && gnuplot_sheet_open(&sheet, folder, error) &&
-              stability_borders_write(table, &sheet.page, error) && gnuplot_sheet_close(&sheet, folder, error) &&
-              gnuplot_sheet_draw(&sheet, folder, "", "borders", error);
-    gnuplot_sheet_free(&sheet);
+    PlotPage page = {0};
+    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, &page, error) &&
+              plot_page_write(&page, folder, "", "borders", error);
+    plot_page_free(&page);
     return ok;
 }
 

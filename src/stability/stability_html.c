@@ -38,12 +38,12 @@ static const MapPage *find_page(const StabilityHtml *html, const MapCell *cell) 
 
 /* The colour of a cell, and the class of those with light letters or without a colour. */
 static void put_look(FILE *out, int look) {
-    if (verdict_looks[look].fill == NULL) {
+    if (verdict_looks[look].fill == NO_COLOUR) {
         fputs(" class=\"empty\"", out);
         return;
     }
     if (look >= VERDICT_TUNNELS) fputs(" class=\"light\"", out);
-    fprintf(out, " style=\"background:%s\"", verdict_looks[look].fill);
+    fprintf(out, " style=\"background:#%06X\"", verdict_looks[look].fill);
 }
 
 static void put_link(FILE *out, const MapPage *page, const MapCell *cell) {

@@ -3,6 +3,7 @@
 
 #include "chart/chart_data.h"
 #include "stability/map_axis.h"
+#include "type/type.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,16 +11,16 @@
 /* mm */
 static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, border_share = 0.35,
-                    letter = 1.55, least_symbol_room = 2, symbol_distance = 3;
+                    least_symbol_room = 2, symbol_distance = 3;
 
 enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2 };
 
 typedef struct Layout {
     const MapPanels *map;
-    GnuplotPage *page;
-    int columns, rows, legend_columns, legend_rows;
-    double left, width, height, bottom; /* mm: left of the first panel, panel size, bottom of the lowest panel */
-    TileScale cell;
+    Sketch *sketch;
+    int legend_columns, legend_rows;
+    PlotGrid grid;
+    double cell_x, cell_y; /* mm: size of a cell */
     bool used[VERDICT_LOOKS];
 } Layout;
 
@@ -37,27 +38,33 @@ static int count_used(const Layout *layout) {
 }
 
 /* A single panel is one column of a printed page wide; several fill the page. */
-static Layout lay_out(const MapPanels *map, GnuplotPage *page) {
+static Layout lay_out(const MapPanels *map, Sketch *sketch) {
     int panels = map->panel_count;
-    Layout layout = {.map = map, .page = page};
+    Layout layout = {.map = map, .sketch = sketch};
     find_used(&layout);
-    double page_width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH;
-    layout.columns = panels == 1 ? 1 : panels <= 4 ? 2 : panels <= 6 ? 3 : 4;
-    layout.rows = (panels + layout.columns - 1) / layout.columns;
+    PlotGrid grid = {.width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH,
+                     .left = label_room + map_axis_width(map->y, map->y_count),
+                     .right = right,
+                     .top = title_room,
+                     .columns = panels == 1   ? 1
+                                : panels <= 4 ? 2
+                                : panels <= 6 ? 3
+                                              : 4,
+                     .gap = gap,
+                     .row_gap = title_room + row_gap};
+    grid.rows = (panels + grid.columns - 1) / grid.columns;
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* The border is one more legend item. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
-    layout.left = label_room + map_axis_width(map->y, map->y_count);
-    layout.width = (page_width - layout.left - right - gap * (layout.columns - 1)) / layout.columns;
-    layout.cell.unit_x = layout.width / map->x_count;
+    grid.bottom = LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     char label[STABILITY_TEXT_SIZE];
     stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
-    double least = fmax(least_height, letter * (double)strlen(label));
-    layout.height = fmin(fmax(map->y_count * fmin(layout.cell.unit_x, largest_cell), least), most_height);
-    layout.cell.unit_y = layout.height / map->y_count;
-    layout.bottom = GNUPLOT_LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
-    page->width = page_width;
-    page->height = layout.bottom + layout.rows * (layout.height + title_room) + (layout.rows - 1) * row_gap;
+    const double least = fmax(least_height, type_width(label, 8) + 1);
+    layout.cell_x = plot_grid_box(&grid, 0).width / map->x_count;
+    const double height = fmin(fmax(map->y_count * fmin(layout.cell_x, largest_cell), least), most_height);
+    layout.cell_y = height / map->y_count;
+    grid.height = grid.bottom + grid.rows * height + (grid.rows - 1) * grid.row_gap + grid.top;
+    layout.grid = grid;
     return layout;
 }
 
@@ -69,18 +76,17 @@ static bool has_symbol(int i, int count, int every) {
     return i % every == every / 2 && (every == 1 || i + every / 3 < count);
 }
 
-static void draw_tiles(const Layout *layout, int panel) {
+static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
     const MapPanels *map = layout->map;
     Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
-    TileScale scale = layout->cell;
-    const int across = symbols_every(scale.unit_x), up = symbols_every(scale.unit_y);
+    const int across = symbols_every(layout->cell_x), up = symbols_every(layout->cell_y);
     int count = 0;
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++)
-            tiles[count++] = (Tile){x, y, map->looks[panel][x][y],
+            tiles[count++] = (Tile){plot_place(plot, x, y), map->looks[panel][x][y],
                                     !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up)};
-    scale.symbol_room = fmin(across * scale.unit_x, up * scale.unit_y);
-    verdict_draw_tiles(layout->page, tiles, count, scale);
+    verdict_draw_tiles(layout->sketch, tiles, count,
+                       (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
 }
 
 /* One holds and the other fails; cells without a verdict do neither. */
@@ -88,28 +94,29 @@ static bool differ(int look, int other) {
     return look < VERDICTS && other < VERDICTS && verdict_holds((Verdict)look) != verdict_holds((Verdict)other);
 }
 
-/* Drawn as bars: the ends of lines would leave notches at the corners. */
-static void draw_border(const Layout *layout, int panel) {
+/* A bar along an edge, half its width longer at both ends: lines would leave notches at the corners. */
+static void draw_edge(const Layout *layout, Point from, Point to) {
+    const double half = fmin(border_width, border_share * fmin(layout->cell_x, layout->cell_y)) / 2;
+    sketch_rectangle(layout->sketch, (Point){from.x - half, from.y - half}, (Point){to.x + half, to.y + half},
+                     &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
+}
+
+static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) {
     const MapPanels *map = layout->map;
-    const GnuplotLook look = {"", {.colour = "black"}, 0, false, 1, false};
-    const double width = fmin(border_width, border_share * fmin(layout->cell.unit_x, layout->cell.unit_y)),
-                 across = width / 2 / layout->cell.unit_x, up = width / 2 / layout->cell.unit_y;
-    gnuplot_series_begin(layout->page);
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++) {
-            int here = map->looks[panel][x][y];
+            const int here = map->looks[panel][x][y];
+            const Point corner = plot_place(plot, x + 0.5, y + 0.5); /* the upper right one */
             if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
-                gnuplot_bar(layout->page, x + 0.5 - across, y - 0.5 - up, x + 0.5 + across, y + 0.5 + up);
+                draw_edge(layout, (Point){corner.x, corner.y - layout->cell_y}, corner);
             if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
-                gnuplot_bar(layout->page, x - 0.5 - across, y + 0.5 - up, x + 0.5 + across, y + 0.5 + up);
+                draw_edge(layout, (Point){corner.x - layout->cell_x, corner.y}, corner);
         }
-    gnuplot_series_end(layout->page, &look);
 }
 
 /* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
-static void draw_links(const Layout *layout, int panel, GnuplotBox box) {
+static void draw_links(const Layout *layout, int panel, const PlotPanel *plot) {
     const MapPanels *map = layout->map;
-    const TileScale size = layout->cell;
     MapCell cell = *map->methods[panel];
     char method[MAP_METHOD_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
     map_cell_method(method, &cell);
@@ -123,68 +130,58 @@ static void draw_links(const Layout *layout, int panel, GnuplotBox box) {
             snprintf(target, sizeof target, "%s.mp4", clip);
             snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
             chart_make_plain(title);
-            gnuplot_link(
-                layout->page,
-                (GnuplotBox){box.left + x * size.unit_x, box.bottom + y * size.unit_y, size.unit_x, size.unit_y},
-                target, title);
+            sketch_link(layout->sketch, plot_place(plot, x - 0.5, y - 0.5), plot_place(plot, x + 0.5, y + 0.5), target,
+                        title);
         }
 }
 
 static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
-    int column = panel % layout->columns, row = panel / layout->columns;
-    double step = layout->height + title_room + row_gap;
-    GnuplotBox box = {layout->left + column * (layout->width + gap), layout->bottom + (layout->rows - 1 - row) * step,
-                      layout->width, layout->height};
-    char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     const MapCell *method = map->methods[panel];
-    stability_method_text(title, (size_t)(layout->width / letter), method->method, method->setting);
+    PlotTicks ticks[2];
+    char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
+    PlotPanel plot = {.box = plot_grid_box(&layout->grid, panel), .title = title};
+    stability_method_text(title, 8, plot.box.width, method->method, method->setting);
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    gnuplot_panel_begin(layout->page, box, title);
-    map_axis_write(layout->page, 'x', map->x, map->x_count, layout->cell.unit_x,
-                   panel + layout->columns >= map->panel_count ? x : NULL);
-    map_axis_write(layout->page, 'y', map->y, map->y_count, layout->cell.unit_y, column == 0 ? y : NULL);
-    draw_tiles(layout, panel);
-    draw_border(layout, panel);
-    draw_links(layout, panel, box);
-    gnuplot_panel_end(layout->page);
+    plot.x = map_axis(&ticks[0], true, map->x, map->x_count, layout->cell_x);
+    plot.y = map_axis(&ticks[1], false, map->y, map->y_count, layout->cell_y);
+    if (panel + layout->grid.columns >= map->panel_count) plot.x.label = x;
+    if (panel % layout->grid.columns == 0) plot.y.label = y;
+    plot_panel_place(&plot);
+    draw_tiles(layout, panel, &plot);
+    draw_border(layout, panel, &plot);
+    draw_links(layout, panel, &plot);
+    plot_panel_draw(layout->sketch, &plot);
 }
 
 static void draw_legend(const Layout *layout) {
-    GnuplotPage *page = layout->page;
-    const GnuplotLook border = {"", {.colour = "black"}, 0, false, 1, false};
-    LegendPlace place = {layout->left, GNUPLOT_LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
-                         (page->width - layout->left) / layout->legend_columns, layout->legend_columns};
-    gnuplot_page_panel_begin(page);
-    int next = verdict_draw_legend(page, layout->used, &place);
-    double x = place.left + place.width * (next % place.columns),
-           y = place.top - GNUPLOT_LEGEND_ROW * (next / place.columns);
-    gnuplot_series_begin(page);
-    gnuplot_bar(page, x, y - border_width / 2, x + 2.9, y + border_width / 2);
-    gnuplot_series_end(page, &border);
-    gnuplot_text(page, x + 4.2, y, "left", 7.5, "border of holding");
-    gnuplot_panel_end(page);
+    LegendPlace place = {layout->grid.left, LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
+                         (layout->grid.width - layout->grid.left) / layout->legend_columns, layout->legend_columns};
+    const int next = verdict_draw_legend(layout->sketch, layout->used, &place);
+    const Point at = {place.left + place.width * (next % place.columns),
+                      place.top - LEGEND_ROW * (next / place.columns)};
+    sketch_rectangle(layout->sketch, (Point){at.x, at.y - border_width / 2},
+                     (Point){at.x + 2.9, at.y + border_width / 2}, &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
+    plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
 }
 
-static void write_caption(const Layout *layout) {
-    const MapPanels *map = layout->map;
+static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE]) {
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    fprintf(
-        layout->page->caption,
+    snprintf(
+        caption, PLOT_CAPTION_SIZE,
         "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
         "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
-        "cells have the same size, whatever their values.",
+        "cells have the same size, whatever their values.\n",
         map->first->map, x, y);
 }
 
-void map_panels_write(const MapPanels *map, GnuplotPage *page) {
-    Layout layout = lay_out(map, page);
-    gnuplot_page_begin(page, page->width, page->height);
+void map_panels_write(const MapPanels *map, PlotPage *page) {
+    const Layout layout = lay_out(map, &page->sketch);
+    sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
-    write_caption(&layout);
-    gnuplot_page_end(page);
+    write_caption(map, page->caption);
 }

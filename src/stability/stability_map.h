@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figure of a stability map: one panel per method, one tile per cell. */
 #pragma once
-#include "chart/gnuplot_page.h"
+#include "sketch/plot_page.h"
 #include "stability/stability_table.h"
 
 enum { MAP_MAX_VALUES = 128, MAP_MAX_METHODS = 24 };
@@ -20,5 +20,5 @@ typedef struct MapPanels {
    cell, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
 bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error);
 
-/* Writes the figure and its caption. All cells have the same size; tics show their values. */
-void map_panels_write(const MapPanels *map, GnuplotPage *page);
+/* Writes the figure and its caption. All cells have the same size; ticks show their values. */
+void map_panels_write(const MapPanels *map, PlotPage *page);

@@ -120,15 +120,16 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting) {
+void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
+                           const char *setting) {
     char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
     snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
     method_name(text, STABILITY_TEXT_SIZE, whole);
     chart_make_plain(text);
-    gnuplot_truncate(text, most);
+    text_fit(text, STABILITY_TEXT_SIZE, points, most);
 }
 
-/* gnuplot would show an underscore as a subscript. */
+/* Words instead of the names of tables. */
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit) {
     snprintf(text, STABILITY_TEXT_SIZE, unit[0] != '\0' ? "%s (%s)" : "%s", parameter, unit);
     for (char *c = text; *c != '\0'; c++)

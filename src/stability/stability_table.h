@@ -83,8 +83,9 @@ void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* For figures: "engine:k=10,warm=off" (common/method_look.h), plain and cut to `most` characters; and
+/* For figures: "engine:k=10,warm=off" (common/method_look.h), plain and shortened to `most` mm; and
    "Height (boxes)" for an axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * STABILITY_SETTING_SIZE + 8 };
-void stability_method_text(char text[STABILITY_TEXT_SIZE], size_t most, const char *method, const char *setting);
+void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
+                           const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);

@@ -3,7 +3,6 @@
 import csv
 import fnmatch
 import os
-import re
 import subprocess
 import sys
 
@@ -13,8 +12,6 @@ SCHEDULERS = ("SLURM_", "PMI_", "OMPI_")
 # and what is drawn.
 TIMED_COLUMNS = ("us_", "instructions", "cpu")
 TIMED_FILES = ["equal_time*", "chart-*.png", "chart-*.svg", "chart-*.pdf", "chart.html"]
-# gnuplot's time in a PDF.
-DATE = re.compile(rb"/CreationDate \(D:[^)]*\)")
 
 
 class Failure(Exception):
@@ -66,7 +63,7 @@ def content(path):
         kept = [i for i, column in enumerate(rows[0]) if not column.startswith(TIMED_COLUMNS)]
         return [[row[i] for i in kept] for row in rows]
     with open(path, "rb") as file:
-        return DATE.sub(b"", file.read())
+        return file.read()
 
 
 def is_temporary(name):

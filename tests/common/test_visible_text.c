@@ -58,12 +58,12 @@ static void a_name_is_no_second_message(void **state) {
     assert_string_equal(name.message, "a\\nb.yaml: error: cannot open");
     error_input(&key, "a.yaml", "'%s' is not a key", "x\n::stop-commands::\33]0;title\a");
     assert_string_equal(key.message, "a.yaml: error: 'x\\n::stop-commands::\\x1b]0;title\\x07' is not a key");
-    error_system(&output, "gnuplot", "failed\n%s", "line 1\nline 2\33[2J\n\n");
-    assert_string_equal(output.message, "gnuplot: error: failed\nline 1\nline 2\\x1b[2J");
-    error_system(&where, "gnuplot", "failed\n%s", "");
-    assert_string_equal(where.message, "gnuplot: error: failed");
+    error_system(&output, "ffmpeg", "failed\n%s", "line 1\nline 2\33[2J\n\n");
+    assert_string_equal(output.message, "ffmpeg: error: failed\nline 1\nline 2\\x1b[2J");
+    error_system(&where, "ffmpeg", "failed\n%s", "");
+    assert_string_equal(where.message, "ffmpeg: error: failed");
     error_add(&where, ", in scene %s", "\33");
-    assert_string_equal(where.message, "gnuplot: error: failed, in scene \\x1b");
+    assert_string_equal(where.message, "ffmpeg: error: failed, in scene \\x1b");
 }
 
 static void additions_end_where_the_message_does(void **state) {

@@ -23,7 +23,7 @@
    TWINBOX_FAULT_COUNTS=FILE   maps FILE, where all processes of a run count: see Counts.
    TWINBOX_FAULT_SITES=FILE    appends "CALL N FUNCTION" for the first call from each place, which is its stack.
 
-   Other programs that inherit the library (ffmpeg, gnuplot) are left alone. The C library's calls inside stdio cannot be
+   Other programs that inherit the library (ffmpeg) are left alone. The C library's calls inside stdio cannot be
    seen; the functions that twinbox calls are. */
 #define _GNU_SOURCE
 #include "shim.h"

@@ -54,15 +54,13 @@ static void growth_by_a_factor_is_a_straight_line(void **state) {
 
 static void a_plot_places_decades_evenly(void **state) {
     (void)state;
-    Plot plot;
-    plot_begin(&plot, (Point){10, 20}, (Point){70, 60}, 0, 2, 1e-6, 1e2, 8);
+    PlotPanel plot = {.box = {10, 20, 60, 40}, .x = plot_linear_axis(0, 2, ""), .y = plot_log_axis(1e-6, 1e2, "")};
+    plot_panel_place(&plot);
     const double decade = plot_place(&plot, 0, 1e-3).y - plot_place(&plot, 0, 1e-4).y;
     for (int power = -6; power < 2; power++)
         assert_near(plot_place(&plot, 0, pow(10, power + 1)).y - plot_place(&plot, 0, pow(10, power)).y, decade, 1e-9);
     assert_near(plot_place(&plot, 0, 1).x, 10, 1e-12);
     assert_near(plot_place(&plot, 1, 1).x, 40, 1e-12);
-    assert_near(plot_place(&plot, 5, 1).x, 70, 1e-12);   /* clamped to the frame */
-    assert_near(plot_place(&plot, 0, 1e99).y, 60, 1e-9); /* clamped as well */
     assert_true(plot_place(&plot, 0, 1e-6).y > 20 && plot_place(&plot, 0, 1e2).y < 60);
 }
 

@@ -274,7 +274,7 @@ static void the_same_run_gives_the_same_files(void **state) {
     char caption[CAPTION_SIZE];
     sketch_begin(&sketch, illustration_loop.width, illustration_loop.height);
     assert_ok(illustration_loop.draw(&sketch, scenes, caption, &error), error);
-    assert_ok(sketch_draw(&sketch, temporary_path("again"), &error), error);
+    assert_ok(sketch_draw(&sketch, temporary_path("again"), SKETCH_SVG, &error), error);
     sketch_free(&sketch);
     scene_destroy(scenes[SCENE_STACK]);
     for (int i = 0; i < 2; i++) {

@@ -46,7 +46,7 @@ static bool claim(const Claims *claims, Error *error) {
     return stated;
 }
 
-static bool plot(const char *folder, GnuplotPage *page, Error *error) {
+static bool plot(const char *folder, PlotPage *page, Error *error) {
     (void)folder, (void)page, (void)error;
     return true;
 }

@@ -33,17 +33,20 @@ static inline void draw(void) {
     assert_ok(stability_figures_write(temporary_folder, NULL, &error), error);
 }
 
-/* Defines count(svg, "#RRGGBB"): filled areas of a colour; and texts(svg). */
-#define SVG_FUNCTIONS                                                                         \
-    "import sys, re, xml.etree.ElementTree as tree\n"                                         \
-    "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                 \
-    "def count(svg, colour):\n"                                                               \
-    "    rgb = 'rgb(%3d, %3d, %3d)' % tuple(int(colour[i:i + 2], 16) for i in (1, 3, 5))\n"   \
-    "    return sum(rgb in part and part.startswith('polygon') for part in svg.split('<'))\n" \
-    "def texts(svg):\n"                                                                       \
-    "    found = tree.fromstring(svg).iter('{http://www.w3.org/2000/svg}text')\n"             \
-    "    return [' '.join(''.join(e.itertext()).split()) for e in found]\n"                   \
-    "def expect(found, wanted, what):\n"                                                      \
+/* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg, "#RRGGBB");
+   and texts(svg). */
+#define SVG_FUNCTIONS                                                                                       \
+    "import sys, re, xml.etree.ElementTree as tree\n"                                                       \
+    "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                               \
+    "def areas(svg, colour):\n"                                                                             \
+    "    paths = re.findall('<path d=\"M([^\"]*)Z\" fill=\"%s\"' % colour, svg)\n"                          \
+    "    corners = [[tuple(map(float, p.split())) for p in path.split('L')] for path in paths]\n"           \
+    "    return [[min(x), min(y), max(x), max(y)] for x, y in (zip(*c) for c in corners if len(c) == 4)]\n" \
+    "def count(svg, colour): return len(areas(svg, colour))\n"                                              \
+    "def texts(svg):\n"                                                                                     \
+    "    found = tree.fromstring(svg).iter('{http://www.w3.org/2000/svg}text')\n"                           \
+    "    return [' '.join(''.join(e.itertext()).split()) for e in found]\n"                                 \
+    "def expect(found, wanted, what):\n"                                                                    \
     "    assert found == wanted, (what, found, wanted)\n"
 
 /* Nothing is drawn of an invalid table. */

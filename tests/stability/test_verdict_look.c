@@ -7,8 +7,7 @@
 #include <math.h>
 
 /* CIE 1931 luminance from sRGB, as in a grey print. */
-static double luminance(const char *colour) {
-    unsigned rgb = (unsigned)strtoul(colour + 1, NULL, 16);
+static double luminance(uint32_t rgb) {
     double sum = 0;
     static const double weights[] = {0.2126, 0.7152, 0.0722};
     for (int i = 0; i < 3; i++) {
@@ -19,7 +18,7 @@ static double luminance(const char *colour) {
 }
 
 /* CIE 1976 L*, 0 to 100. */
-static double lightness(const char *colour) { return 116 * cbrt(luminance(colour)) - 16; }
+static double lightness(uint32_t colour) { return 116 * cbrt(luminance(colour)) - 16; }
 
 static void the_worse_the_darker(void **state) {
     (void)state;
@@ -39,6 +38,7 @@ static void symbols_stand_out_and_differ(void **state) {
         if (fmax(fill, ink) / fmin(fill, ink) < 3) fail_msg("%s: too little contrast", verdict_looks[look].name);
         for (int other = 0; other < look; other++)
             assert_true(verdict_looks[other].symbol != verdict_looks[look].symbol ||
+                        verdict_looks[other].open != verdict_looks[look].open ||
                         verdict_looks[look].size > 2 * verdict_looks[other].size);
     }
 }

@@ -29,7 +29,7 @@ static bool draw_figure(const Illustration *figure, const char *name, Scene *con
     char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
     if (!file_path(stem, sizeof stem, error, "%s/%s", folder, name)) return false;
     sketch_begin(&sketch, figure->width, figure->height);
-    bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, error);
+    bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, SKETCH_SVG, error);
     sketch_free(&sketch);
     return drawn && write_caption(folder, name, caption, error);
 }

@@ -2,7 +2,6 @@
 /* All tables are read before the first plot is drawn. */
 #include "paper/figures/plots.h"
 
-#include "chart/gnuplot_sheet.h"
 #include "common/file.h"
 #include "paper/figures/plot_parts.h"
 #include "paper/systems/system.h"
@@ -13,8 +12,8 @@
 
 typedef struct Plot {
     const char *name;
-    bool (*write)(const char *folder, GnuplotPage *page, Error *error);
-    GnuplotSheet sheet;
+    bool (*write)(const char *folder, PlotPage *page, Error *error);
+    PlotPage page;
 } Plot;
 
 static const Plot results[] = {
@@ -49,28 +48,22 @@ static bool plots_begin(Plots *plots, Error *error) {
 }
 
 static void plots_end(Plots *plots) {
-    for (int i = 0; i < plots->count; i++) gnuplot_sheet_free(&plots->items[i].sheet);
+    for (int i = 0; i < plots->count; i++) plot_page_free(&plots->items[i].page);
     free(plots->items);
     free(plots->names);
-}
-
-static bool write_page(Plot *plot, const char *folder, Error *error) {
-    GnuplotSheet *sheet = &plot->sheet;
-    bool done = gnuplot_sheet_open(sheet, folder, error) && plot->write(folder, &sheet->page, error);
-    return done && gnuplot_sheet_close(sheet, folder, error);
 }
 
 bool plots_draw(const char *folder, const Progress *progress, Error *error) {
     Plots plots = {0};
     char path[PATH_MAX];
     bool done = file_path(path, sizeof path, error, "%s/figures", folder) && plots_begin(&plots, error);
-    for (int i = 0; done && i < plots.count; i++) done = write_page(&plots.items[i], folder, error);
+    for (int i = 0; done && i < plots.count; i++) done = plots.items[i].write(folder, &plots.items[i].page, error);
     done = done && file_make_directory(path, error);
     for (int i = 0; done && i < plots.count; i++) {
-        const Plot *plot = &plots.items[i];
+        Plot *plot = &plots.items[i];
         done = progress_report(progress, i, plots.count) ||
                error_interrupted(error, path, "stopped; the tables are finished");
-        done = done && gnuplot_sheet_draw(&plot->sheet, path, "", plot->name, error);
+        done = done && plot_page_write(&plot->page, path, "", plot->name, error);
     }
     plots_end(&plots);
     return done;

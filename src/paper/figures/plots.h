@@ -4,7 +4,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 
-/* Draws folder/figures/NAME.png and .svg (chart/gnuplot.h) and writes NAME.txt, a caption of one line, for NAME =
+/* Draws folder/figures/NAME.png and .svg and writes NAME.txt, a caption of one line, for NAME =
      loss         table1.csv       mean squared error over training, each target
      factors      networks.csv     error over the constant predictor's, each network
      rates        rates.csv        share of right predictions by three definitions, at impacts and at rest
@@ -16,6 +16,6 @@
    so can readers of a grey print.
 
    ERROR_INPUT, with path:line:column, if one of the tables is missing or damaged; then nothing is drawn. A plot
-   whose table has no rows to show is left out; its files from an earlier run stay. ERROR_SYSTEM if gnuplot is missing
-   or fails, ERROR_INTERRUPTED if progress, which may be NULL, requests a stop; plots already drawn stay. */
+   whose table has no rows to show is left out; its files from an earlier run stay. ERROR_INTERRUPTED if progress, which
+   may be NULL, requests a stop; plots already drawn stay. */
 bool plots_draw(const char *folder, const Progress *progress, Error *error);

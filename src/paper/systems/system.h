@@ -32,8 +32,8 @@
 #pragma once
 #include "paper/systems/system_claims.h"
 
-#include "chart/gnuplot_page.h"
 #include "common/progress.h"
+#include "sketch/plot_page.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -63,7 +63,7 @@ typedef struct PaperSystem {
     const SystemPart *parts;
     /* Reads the system's table from claims->folder and states each claim by claim_state(). False with error set. */
     bool (*claim)(const Claims *claims, Error *error);
-    bool (*plot)(const char *folder, GnuplotPage *page, Error *error);
+    bool (*plot)(const char *folder, PlotPage *page, Error *error);
 } PaperSystem;
 
 #define SYSTEM_METHODS(...) ((const char *const[]){__VA_ARGS__, NULL})

@@ -98,7 +98,7 @@ static bool draw_strip(const Strips *strips, int system, const char *folder, Err
     const FigureKind *strip = figure_kind("strip", error);
     if (strip == NULL || !file_path(stem, sizeof stem, error, "%s/strip-%s-%s", folder, name, strips->name))
         return false;
-    const bool drawn = figure_draw(strip, &sketch, &spec, error) && sketch_draw(&sketch, stem, error);
+    const bool drawn = figure_draw(strip, &sketch, &spec, error) && sketch_draw(&sketch, stem, SKETCH_SVG, error);
     sketch_free(&sketch);
     return drawn && write_caption(strips, stem, name, error);
 }
