@@ -220,8 +220,7 @@ static void wrong_options_are_refused(void **state) {
         Error error = {0};
         RenderOptions options = wrong[i].options;
         options.directory = directory;
-        assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
-        assert_error(error, ERROR_INPUT, wrong[i].text);
+        assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error), wrong[i].text);
         assert_int_not_equal(access(directory, F_OK), 0);
     }
 }
