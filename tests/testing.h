@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* cmocka with the headers it wants, and what every test needs. Link a folder's library and include this first. */
+/* cmocka with the headers it wants, and what every test needs. Include this first. */
 #pragma once
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,6 +27,17 @@
     do {                                                                                                       \
         if (strstr((error).message, (text)) == NULL) fail_msg("\"%s\" lacks \"%s\"", (error).message, (text)); \
         assert_int_equal((error).kind, (expected_kind));                                                       \
+    } while (0)
+
+/* Fails unless the call, which sets the caller's `error`, is refused (false or NULL) as bad input, with a message that
+   contains all these texts. */
+#define assert_refused(call, ...)                                               \
+    do {                                                                        \
+        const char *const texts_[] = {__VA_ARGS__};                             \
+        error = (Error){0};                                                     \
+        if (call) fail_msg("%s is not refused: %s", #call, texts_[0]);          \
+        for (size_t text_ = 0; text_ < sizeof texts_ / sizeof *texts_; text_++) \
+            assert_error(error, ERROR_INPUT, texts_[text_]);                    \
     } while (0)
 
 /* cmocka's assert_float_equal compares floats; this one says what it found. */

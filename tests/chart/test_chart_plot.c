@@ -95,8 +95,7 @@ static const char *write_rows(const char *lines) {
 
 static void expect_refused(const char *lines, const char *scene, const char *message) {
     Error error = {0};
-    assert_false(chart_plot(write_rows(lines), scene, folder(), &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(chart_plot(write_rows(lines), scene, folder(), &error), message);
     assert_int_equal(access(drawn_file("single", "png"), F_OK), -1);
 }
 

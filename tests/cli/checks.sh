@@ -21,10 +21,12 @@ fail() {
 # Whether the binary is a sanitizer's, which is up to ten times slower: it runs fewer cases of a kind (sanitized.h).
 sanitized() { grep -q "^TWINBOX_SANITIZE:STRING=." "$(dirname "$twinbox")/CMakeCache.txt" 2>/dev/null; }
 
-# run STATUS ARGUMENT...: output goes to out, errors to err; the exit status must be STATUS.
+# run STATUS ARGUMENT...: output goes to out, errors to err; the exit status must be STATUS. Tests run side by side, and a
+# second process that draws takes longer to start than small frames take to draw: one process, unless the test says how many.
 run() {
     local wanted=$1 status
     shift
+    [ "$1" != render ] || [[ " $* " == *" --jobs"* ]] || set -- render --jobs 1 "${@:2}"
     "$twinbox" "$@" >out 2>err </dev/null
     status=$?
     checks=$((checks + 1))

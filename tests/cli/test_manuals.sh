@@ -26,10 +26,14 @@ shown() { mandoc -T utf8 -O width=80 "$1" | col -bx; }
 # section PAGE NAME: its lines, as one.
 section() { shown "$1" | awk -v name="$2" '/^[A-Z]/ { found = $0 == name; next } found { print }' | xargs -0 | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'; }
 
+# lacking FILE <LINES: those that are nowhere in the file.
+lacking() { awk 'NR == FNR { text = text $0 "\n"; next } !index(text, $0)' "$1" -; }
+
 if ! command -v mandoc >/dev/null; then
     fail "mandoc is not installed (tests/setup --tests)"
     finish
 fi
+version=$("$twinbox" --version)
 for page in "$pages"/man?/*; do
     checks=$((checks + 1))
     # Pages have a version and no date; examples are as long as they are.
@@ -42,7 +46,7 @@ for page in "$pages"/man?/*; do
         [ -s warnings ] && fail "groff warns: $(<warnings)"
     fi
     grep -q -e "$build" -e "$sources" -e "$HOME/" "$page" && fail "$page has a path of this machine"
-    equal "header of $page" "$(sed -n 's/^\.TH [A-Z-]* [15] "" "\(.*\)" Twinbox$/\1/p' "$page")" "$("$twinbox" --version)"
+    equal "header of $page" "$(sed -n 's/^\.TH [A-Z-]* [15] "" "\(.*\)" Twinbox$/\1/p' "$page")" "$version"
     # Every page that it refers to is there.
     sed -n 's/^\.BR \(.*\) (\([15]\)).*/\1.\2/p' "$page" | tr -d '\\' | sort -u >named
     [ -s named ] || fail "$page has nothing to see also"
@@ -52,22 +56,19 @@ done
 for name in $commands; do
     page=$pages/man1/twinbox-$name.1
     summary=$("$twinbox" --help | sed -n "s/^  $name  *//p")
+    shown "$page" >text
     equal "name in $page" "$(section "$page" NAME)" "twinbox-$name - $summary"
     ARGP_HELP_FMT=rmargin=4000 "$twinbox" "$name" --help >help
     equal "synopsis in $page" "$(section "$page" SYNOPSIS)" \
         "$(sed -n 's/^\(Usage\|  or\): *//p' help | xargs -0 | tr -s ' \n' ' ' | sed 's/ $//')"
     sed -n '/^Example/q; s/^ \{1,6\}\(-[^ ], \|    \)\(--[a-z-]*\).*/\2/p' help | sort >listed
-    shown "$page" | sed -n '/^OPTIONS/,/^[B-NP-Z]/s/^       \(-., \)\?\(--[a-z-]*\).*/\2/p' | sort >paged
+    sed -n '/^OPTIONS/,/^[B-NP-Z]/s/^       \(-., \)\?\(--[a-z-]*\).*/\2/p' text | sort >paged
     equal "options in $page" "$(<paged)" "$(<listed)"
     checks=$((checks + $(wc -l <listed)))
-    sed -n '/^Example:/,$s/^\(Example:\|        \) //p' help >examples
-    while IFS= read -r example; do
-        shown "$page" | grep -qF -- "       $example" || fail "$page lacks the example $example"
-        checks=$((checks + 1))
-    done <examples
-    for value in $(sed -n 's/.*(default: \([^);,]*\)).*/\1/p' help); do
-        shown "$page" | grep -qF -- "$value" || fail "$page lacks the default $value"
-    done
+    sed -n '/^Example:/,$s/^\(Example:\|        \) /       /p' help >examples
+    equal "examples that $page lacks" "$(lacking text <examples)" ""
+    checks=$((checks + $(wc -l <examples)))
+    equal "defaults that $page lacks" "$(sed -n 's/.*(default: \([^);,]*\)).*/\1/p' help | tr ' ' '\n' | lacking text)" ""
 done
 
 # Indented lines of a description are code.
@@ -80,14 +81,11 @@ for name in $formats; do
     awk -v intro="$intro" -v sections="$wanted" -f "$manuals/page.awk" "$sources/$file" >markdown ||
         fail "src/cli/manuals/pages.txt: not all sections of $name are in $file"
     shown "$pages/man5/$name.5" >page
-    while IFS= read -r code; do
-        checks=$((checks + 1))
-        grep -qF -- "$code" page || fail "$name.5 lacks '$code'"
-    done < <(awk '/^ *```/ { fenced = !fenced; next } fenced && NF' markdown)
-    while IFS= read -r key; do
-        checks=$((checks + 1))
-        grep -qF -- "       $key " page || fail "$name.5 lacks '$key' in a table"
-    done < <(sed -n 's/^| *`\([a-z_]*\)` .*/\1/p' markdown)
+    equal "code that $name.5 lacks" \
+        "$(awk '/^ *```/ { fenced = !fenced; next } fenced && NF { print; n++ } END { print n > "count" }' markdown | lacking page)" ""
+    sed -n 's/^| *`\([a-z_]*\)` .*/       \1 /p' markdown >keys
+    equal "keys of tables that $name.5 lacks" "$(lacking page <keys)" ""
+    checks=$((checks + $(<count) + $(wc -l <keys)))
     [ "$(grep -c '^|' markdown)" -eq 0 ] || grep -q '^\.TS' "$pages/man5/$name.5" || fail "$name.5 has no table"
     equal "marks of Markdown in $name.5" "$(grep -cF -e '](' -e '```' -e '**' page)" 0
 done

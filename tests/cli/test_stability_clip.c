@@ -63,12 +63,11 @@ static void what_cannot_be_shown_is_refused(void **state) {
                  {"m:scene-net:20,2", "'m:scene-net:20,2' is not applicable"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
-        assert_false(make_clip(cases[i].cell, 20, &error));
-        assert_error(error, ERROR_INPUT, cases[i].message);
+        assert_refused(make_clip(cases[i].cell, 20, &error), cases[i].message);
     }
     Error error = {0};
-    assert_false(stability_clip(&(ClipOptions){temporary_folder, "m:engine:20,2", NULL, 0, 160, 90}, &error));
-    assert_error(error, ERROR_INPUT, "map m has no scene");
+    assert_refused(stability_clip(&(ClipOptions){temporary_folder, "m:engine:20,2", NULL, 0, 160, 90}, &error),
+                   "map m has no scene");
 }
 
 int main(void) {

@@ -47,8 +47,8 @@ static void nothing_is_done_after_a_failure(void **state) {
     Error error = {0};
     Background *background = background_start(note, &log, &error);
     assert_ok(background != NULL, error);
-    assert_false(give(background, 400, ITEMS, &error) && background_wait(background, &error));
-    assert_error(error, ERROR_INPUT, "item: error: number 500");
+    assert_refused(give(background, 400, ITEMS, &error) && background_wait(background, &error),
+                   "item: error: number 500");
     background_stop(background);
     assert_int_equal(log.items[log.count - 1], 500);
 }

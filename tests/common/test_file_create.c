@@ -40,8 +40,7 @@ static void a_file_that_exists_is_kept(void **state) {
     const char *const taken[] = {path, link, temporary_path(".")};
     for (int i = 0; i < 3; i++) {
         Error error = {0};
-        assert_false(file_create(taken[i], "text", 4, &error));
-        assert_error(error, ERROR_INPUT, "exists already, and is not overwritten");
+        assert_refused(file_create(taken[i], "text", 4, &error), "exists already, and is not overwritten");
     }
     assert_content(path, "mine");
     assert_int_equal(entries(), 2);

@@ -36,8 +36,7 @@ static void more_than_the_limit_is_refused(void **state) {
     Error error = {0};
     size_t size;
     give(101);
-    assert_null(file_read_input(100, &size, &error));
-    assert_error(error, ERROR_INPUT, "standard input: error: larger than 100 bytes");
+    assert_refused(file_read_input(100, &size, &error), "standard input: error: larger than 100 bytes");
 }
 
 static void what_cannot_be_read_is_an_error(void **state) {

@@ -57,7 +57,7 @@ static void assert_lists(bool recursive, const char *wanted, size_t skipped) {
     folder_list_free(&list);
 }
 
-static void assert_refused(const char *folder, bool recursive, ErrorKind kind, const char *text) {
+static void refuse(const char *folder, bool recursive, ErrorKind kind, const char *text) {
     Error error = {0};
     FolderList list;
     assert_false(folder_list(&list, below(folder), is_x, recursive, &error));
@@ -86,35 +86,35 @@ static void links_within_the_folder_add_no_folder_twice(void **state) {
 static void links_out_of_the_folder_are_refused(void **state) {
     (void)state;
     make_link("../outside", "tree/far");
-    assert_refused("tree", true, ERROR_INPUT, "tree/far: error: is a link to ");
+    refuse("tree", true, ERROR_INPUT, "tree/far: error: is a link to ");
     assert_lists(false, "a.x", 2); /* subfolders are left out anyway */
     assert_int_equal(unlink(below("tree/far")), 0);
     make_link("../outside/far.x", "tree/far.x");
-    assert_refused("tree", true, ERROR_INPUT, "such links are not followed");
-    assert_refused("tree", false, ERROR_INPUT, "such links are not followed");
+    refuse("tree", true, ERROR_INPUT, "such links are not followed");
+    refuse("tree", false, ERROR_INPUT, "such links are not followed");
     assert_int_equal(unlink(below("tree/far.x")), 0);
     /* A longer name is another folder. */
     make_file("tree-2/a.x");
     make_link("../tree-2", "tree/far");
-    assert_refused("tree", true, ERROR_INPUT, "such links are not followed");
+    refuse("tree", true, ERROR_INPUT, "such links are not followed");
 }
 
 static void links_to_hidden_places_are_refused(void **state) {
     (void)state;
     make_link(".b", "tree/seen");
-    assert_refused("tree", true, ERROR_INPUT, "which is hidden");
+    refuse("tree", true, ERROR_INPUT, "which is hidden");
 }
 
 static void links_to_nothing_are_refused(void **state) {
     (void)state;
     make_link("nothing", "tree/nothing.x");
-    assert_refused("tree", true, ERROR_INPUT, "tree/nothing.x: error: cannot be read");
+    refuse("tree", true, ERROR_INPUT, "tree/nothing.x: error: cannot be read");
 }
 
 static void a_folder_that_does_not_exist_is_the_users_mistake(void **state) {
     (void)state;
-    assert_refused("nowhere", true, ERROR_INPUT, "nowhere/: error: cannot be read");
-    assert_refused("tree/a.x", true, ERROR_INPUT, "tree/a.x/: error: cannot be read");
+    refuse("nowhere", true, ERROR_INPUT, "nowhere/: error: cannot be read");
+    refuse("tree/a.x", true, ERROR_INPUT, "tree/a.x/: error: cannot be read");
 }
 
 /* Each call fails in turn. When none fails any more, the list is whole. */

@@ -31,8 +31,8 @@ static void an_error_stops_the_rest(void **state) {
     (void)state;
     int done[PIECES] = {0};
     Error error = {0};
-    assert_false(parallel_for(&(ParallelWork){fail_at_500, done}, PIECES, "test", NULL, &error));
-    assert_error(error, ERROR_INPUT, "piece: error: number 500");
+    assert_refused(parallel_for(&(ParallelWork){fail_at_500, done}, PIECES, "test", NULL, &error),
+                   "piece: error: number 500");
     for (int i = 0; i < PIECES; i++) assert_true(done[i] <= 1);
 }
 

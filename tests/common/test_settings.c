@@ -50,8 +50,8 @@ static void a_number_is_read_in_its_range(void **state) {
     assert_true(value == 1.25f);
     assert_ok(settings_float(&settings, "warm", 1, 2, &value, &error), error);
     assert_true(value == 1.25f);
-    assert_false(settings_float(&settings, "iterations", 0, 1, &value, &error));
-    assert_error(error, ERROR_INPUT, "iterations: error: must be a number from 0 to 1 (got '1.25')");
+    assert_refused(settings_float(&settings, "iterations", 0, 1, &value, &error),
+                   "iterations: error: must be a number from 0 to 1 (got '1.25')");
 }
 
 static void defaults_do_not_replace(void **state) {
@@ -115,8 +115,8 @@ static void bad_values_are_refused(void **state) {
     int iterations = 5;
     bool warm = true;
     Error error = {0}, other = {0};
-    assert_false(settings_int(&settings, "iterations", 1, 10, &iterations, &error));
-    assert_error(error, ERROR_INPUT, "iterations: error: must be a whole number from 1 to 10 (got '0')");
+    assert_refused(settings_int(&settings, "iterations", 1, 10, &iterations, &error),
+                   "iterations: error: must be a whole number from 1 to 10 (got '0')");
     assert_int_equal(iterations, 5);
     assert_false(settings_bool(&settings, "warm", &warm, &other));
     assert_error(other, ERROR_INPUT, "warm: error: must be on or off (got 'yes')");

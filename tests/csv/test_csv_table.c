@@ -61,8 +61,7 @@ static CsvTable read_good(const CsvLayout *layout, const char *text) {
 static void expect_refused(const CsvLayout *layout, const char *text, const char *message) {
     Error error = {0};
     CsvTable table;
-    assert_false(csv_table_read(&table, write_file(text), layout, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(csv_table_read(&table, write_file(text), layout, &error), message);
     assert_null(table.rows);
 }
 
@@ -174,11 +173,8 @@ static void errors_point_at_a_field(void **state) {
     (void)state;
     CsvTable table = read_good(&subset, "number,name\n2,\"a,b\"\n3,c\n");
     Error error = {0};
-    assert_false(csv_table_error(&table, 1, NAME, &error, "not %d", 7));
-    assert_error(error, ERROR_INPUT, "rows.csv:3:3: error: not 7");
-    error = (Error){0};
-    assert_false(csv_table_error(&table, 0, WORD, &error, "no word"));
-    assert_error(error, ERROR_INPUT, "rows.csv:2:1: error: no word");
+    assert_refused(csv_table_error(&table, 1, NAME, &error, "not %d", 7), "rows.csv:3:3: error: not 7");
+    assert_refused(csv_table_error(&table, 0, WORD, &error, "no word"), "rows.csv:2:1: error: no word");
     csv_table_free(&table);
 }
 
@@ -223,16 +219,12 @@ static void unreadable_values_are_not_written(void **state) {
     for (int i = 0; i < 4; i++) {
         Error error = {0};
         const char *path = temporary_path("unwritten.csv");
-        assert_false(csv_table_write(path, &exact, &rows[i], 1, &error));
-        assert_error(error, ERROR_INPUT, "unwritten.csv: error: ");
-        assert_error(error, ERROR_INPUT, messages[i]);
+        assert_refused(csv_table_write(path, &exact, &rows[i], 1, &error), "unwritten.csv: error: ", messages[i]);
         assert_int_equal(access(path, F_OK), -1);
         char *text = NULL;
         size_t size;
         FILE *stream = open_memstream(&text, &size);
-        error = (Error){0};
-        assert_false(csv_row_print(stream, &exact, &rows[i], &error));
-        assert_error(error, ERROR_INPUT, messages[i]);
+        assert_refused(csv_row_print(stream, &exact, &rows[i], &error), messages[i]);
         fclose(stream);
         assert_int_equal(size, 0);
         free(text);
@@ -249,8 +241,8 @@ static void an_optional_column_may_be_missing(void **state) {
     table = read_good(&grown, "integer,text\n3,a\n");
     assert_string_equal(((Row *)table.rows)->text, "a");
     csv_table_free(&table);
-    assert_false(csv_table_read(&table, write_file("text\na\n"), &grown, &error));
-    assert_error(error, ERROR_INPUT, "rows.csv:1:1: error: column 1 must be 'integer' (got 'text')");
+    assert_refused(csv_table_read(&table, write_file("text\na\n"), &grown, &error),
+                   "rows.csv:1:1: error: column 1 must be 'integer' (got 'text')");
 }
 
 int main(void) {

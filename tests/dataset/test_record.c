@@ -227,8 +227,7 @@ static void refuse(DatasetOptions options, const char *text) {
     Error error = {0};
     options.scenes = single;
     options.scene_count = 1;
-    assert_null(dataset_record(&options, NULL, &error));
-    assert_error(error, ERROR_INPUT, text);
+    assert_refused(dataset_record(&options, NULL, &error), text);
 }
 
 static void what_cannot_be_recorded_is_refused(void **state) {

@@ -23,8 +23,7 @@ static inline void expect_kind_refused(const char *name, const FigureSpec *spec,
     Sketch sketch = {0};
     const FigureKind *kind = figure_kind(name, &error);
     assert_ok(kind != NULL, error);
-    assert_false(kind->draw(&sketch, spec, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(kind->draw(&sketch, spec, &error), message);
     sketch_free(&sketch);
 }
 

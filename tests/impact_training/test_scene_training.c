@@ -130,8 +130,7 @@ static void a_scene_without_a_bomb_is_refused(void **state) {
     Scene *scene = read_stack();
     Scores scores;
     scene->bomb.present = false;
-    assert_null(train(scene, &scores, NULL, &error));
-    assert_error(error, ERROR_INPUT, "stack: error: has no bomb to launch");
+    assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");
     scene_destroy(scene);
 }
 

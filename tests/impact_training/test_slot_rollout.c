@@ -134,8 +134,7 @@ static void a_solver_that_cannot_be_made_is_an_error(void **state) {
     SlotSamples samples = {0};
     const SlotRollout rollout = {
         .scene = scene, .launches = &launch, .launch_count = 1, .steps = 1, .make_solver = no_solver};
-    assert_false(slot_rollout(&rollout, &samples, NULL, &error));
-    assert_error(error, ERROR_INPUT, "not available");
+    assert_refused(slot_rollout(&rollout, &samples, NULL, &error), "not available");
     assert_int_equal(samples.count, 0);
     scene_destroy(scene);
 }

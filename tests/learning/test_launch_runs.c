@@ -52,13 +52,10 @@ static void too_many_are_refused(void **state) {
     assert_ok(scene != NULL && method_parse(&method, "engine", &error), error);
     const Launch own = launch_of(scene);
     scene->frames = 1000000;
-    assert_false(launch_runs_record(&runs, scene, &method, &own, 1000, NULL, &error));
-    assert_error(error, ERROR_INPUT, "at most 1024 MiB are allowed");
+    assert_refused(launch_runs_record(&runs, scene, &method, &own, 1000, NULL, &error), "at most 1024 MiB are allowed");
     launch_runs_free(&runs);
     scene->bomb.present = false;
-    error = (Error){0};
-    assert_false(launch_runs_record(&runs, scene, &method, &own, 1, NULL, &error));
-    assert_error(error, ERROR_INPUT, "the scene has no bomb");
+    assert_refused(launch_runs_record(&runs, scene, &method, &own, 1, NULL, &error), "the scene has no bomb");
     launch_runs_free(&runs);
     scene_destroy(scene);
 }

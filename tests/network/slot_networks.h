@@ -49,7 +49,5 @@ static const SlotShape five_shape = {5, 3, FIVE_SLOTS, 16, 32, 48, 64};
 
 static inline void assert_slot_network_refused(const char *path, const char *text) {
     Error error = {0};
-    assert_null(slot_network_read(path, &error));
-    assert_error(error, ERROR_INPUT, text);
-    assert_error(error, ERROR_INPUT, path);
+    assert_refused(slot_network_read(path, &error), text, path);
 }

@@ -33,8 +33,7 @@ static void a_missing_network_is_named(void **state) {
     GnsRollout rollout;
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
-    assert_false(gns_rollout_run(&rollout, scene, "none.npz", "", &error));
-    assert_error(error, ERROR_INPUT, "none.npz: error: ");
+    assert_refused(gns_rollout_run(&rollout, scene, "none.npz", "", &error), "none.npz: error: ");
     scene_destroy(scene);
 }
 

@@ -312,8 +312,7 @@ static void expect_refused(const char *scenes, const char *message) {
     Error error = {0};
     const char *folder = temporary_path("refused");
     assert_ok(file_make_directory(folder, &error), error);
-    assert_false(illustrations_draw(scenes, folder, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(illustrations_draw(scenes, folder, &error), message);
     char path[512];
     snprintf(path, sizeof path, "%s/loop.png", folder);
     assert_int_equal(access(path, F_OK), -1);

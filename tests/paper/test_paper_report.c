@@ -321,8 +321,7 @@ static void the_same_folder_gives_the_same_bytes(void **state) {
 static void expect_refused(const char *message) {
     Error error = {0};
     remove(temporary_path("report.md"));
-    assert_false(paper_report_write(folder(), &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(paper_report_write(folder(), &error), message);
     assert_int_equal(access(temporary_path("report.md"), F_OK), -1);
 }
 

@@ -143,8 +143,7 @@ static void expect_refused(const char *table, const char *text, const char *mess
     Error error = {0};
     start_afresh();
     write_table(table, text, strlen(text));
-    assert_false(plots_draw(temporary_folder, NULL, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(plots_draw(temporary_folder, NULL, &error), message);
     assert_int_equal(access(temporary_path("figures"), F_OK), -1);
 }
 
@@ -226,8 +225,7 @@ static void too_many_lines_are_refused(void **state) {
         Error error = {0};
         start_afresh();
         write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most + 1);
-        assert_false(plots_draw(temporary_folder, NULL, &error));
-        assert_error(error, ERROR_INPUT, cases[i].message);
+        assert_refused(plots_draw(temporary_folder, NULL, &error), cases[i].message);
     }
     for (int i = 0; i < 3; i++) write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most);
     draw();

@@ -191,8 +191,7 @@ static void write_text(const char *name, const char *text) {
 
 static void refuse(const char *message) {
     Error error = {0};
-    assert_false(system_claims_write(systems, folder(), &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(system_claims_write(systems, folder(), &error), message);
 }
 
 static void damaged_tables_are_refused(void **state) {
@@ -221,8 +220,7 @@ static void a_text_that_cannot_be_read_back_is_refused(void **state) {
                 empty = {"", "source", "measured", CLAIM_NO};
     Error error = {0};
     assert_ok(claim_state(&claims, &fits, &error, "%d", 1), error);
-    assert_false(claim_state(&claims, &beyond, &error, "%d", 1));
-    assert_error(error, ERROR_INPUT, "double: error: ");
+    assert_refused(claim_state(&claims, &beyond, &error, "%d", 1), "double: error: ");
     error = (Error){0};
     assert_false(claim_state(&claims, &empty, &error, "%d", 1));
     error = (Error){0};
@@ -241,9 +239,7 @@ static void strips_are_refused_or_stopped(void **state) {
     const Progress progress = {stop, NULL};
     assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped");
-    error = (Error){0};
-    assert_false(system_strips_draw(systems, "/nowhere", true, folder(), NULL, &error));
-    assert_error(error, ERROR_INPUT, "/nowhere/stack.yaml");
+    assert_refused(system_strips_draw(systems, "/nowhere", true, folder(), NULL, &error), "/nowhere/stack.yaml");
 }
 
 /* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the

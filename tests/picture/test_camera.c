@@ -237,8 +237,7 @@ static void a_look_sets_the_view(void **state) {
     assert_memory_equal(&borrowed, &others, sizeof others);
     const RenderLook wrong = {.view = {1, 2, 30, -4}};
     Error error = {0};
-    assert_false(look_check(&wrong, (const Trajectory *[]){run}, 1, &error));
-    assert_error(error, ERROR_INPUT, "cannot be drawn");
+    assert_refused(look_check(&wrong, (const Trajectory *[]){run}, 1, &error), "cannot be drawn");
     assert_true(set.scale < 45 && set.scale > 30); /* about 1230 pixels for 30 m */
     trajectory_destroy(other);
 }

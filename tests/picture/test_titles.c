@@ -82,11 +82,10 @@ static void too_long_a_title_is_an_error(void **state) {
     snprintf(text, sizeof text, "%.126s %.126s", LONG_TITLE, LONG_TITLE);
     const RenderOptions title = {.width = 640, .height = 360, .title = text},
                         end = {.width = 640, .height = 360, .look.end = text};
-    assert_false(picture_check((const Trajectory *const *)runs, 2, &title, &error));
-    assert_error(error, ERROR_INPUT, "--title: error: the text needs 6 lines");
-    error = (Error){0};
-    assert_false(picture_check((const Trajectory *const *)runs, 2, &end, &error));
-    assert_error(error, ERROR_INPUT, "--end: error: the text needs 6 lines");
+    assert_refused(picture_check((const Trajectory *const *)runs, 2, &title, &error),
+                   "--title: error: the text needs 6 lines");
+    assert_refused(picture_check((const Trajectory *const *)runs, 2, &end, &error),
+                   "--end: error: the text needs 6 lines");
 }
 
 static bool draws(const Drawing *drawing, const Font *font, const char *text) {
@@ -131,8 +130,8 @@ static void captions_are_checked(void **state) {
     text[CAPTION_SIZE - 1] = '\0';
     assert_ok(caption_check(text, "--caption", &error), error);
     text[CAPTION_SIZE - 1] = 'a', text[CAPTION_SIZE] = '\0';
-    assert_false(caption_check(text, "--caption", &error));
-    assert_error(error, ERROR_INPUT, "--caption: error: the text has 256 bytes, but at most 255 are allowed");
+    assert_refused(caption_check(text, "--caption", &error),
+                   "--caption: error: the text has 256 bytes, but at most 255 are allowed");
 }
 
 int main(void) {

@@ -196,9 +196,8 @@ static void what_differs_is_refused(void **state) {
                 {1, 1, 1, "belongs to shards of a study"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         Study other = new_study();
-        error = (Error){0};
-        assert_false(run_study(&other, folder, rows[i].shard, rows[i].count, rows[i].seed, NULL, &error));
-        assert_error(error, ERROR_INPUT, rows[i].message);
+        assert_refused(run_study(&other, folder, rows[i].shard, rows[i].count, rows[i].seed, NULL, &error),
+                       rows[i].message);
         for (int k = 0; k < COUNT; k++) assert_int_equal(other.numbers.done[k], 0);
     }
 }
@@ -229,8 +228,7 @@ static void times_of_two_processors_are_not_mixed(void **state) {
     }
     Study merge = new_study();
     merge.numbers.timed = true;
-    assert_false(run_study(&merge, folder, -1, 1, 1, NULL, &error));
-    assert_error(error, ERROR_INPUT, "times were measured on different processors");
+    assert_refused(run_study(&merge, folder, -1, 1, 1, NULL, &error), "times were measured on different processors");
     assert_true(merge.pieces.cpus_differ);
 }
 

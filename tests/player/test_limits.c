@@ -112,8 +112,8 @@ static void what_is_too_large_is_refused_with_a_way_out(void **state) {
     const int64_t most = 500000;
     PlayerResult result;
     Error error;
-    assert_false(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = most}, path, &result, &error));
-    assert_error(error, ERROR_INPUT, "use --every ");
+    assert_refused(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = most}, path, &result, &error),
+                   "use --every ");
     assert_int_not_equal(access(path, F_OK), 0);
     const int every = atoi(strstr(error.message, "--every ") + 8);
     assert_true(every > 1);
@@ -127,10 +127,10 @@ static void frames_beyond_the_end_are_refused(void **state) {
     const char *path = temporary_path("frames.html");
     PlayerResult result;
     Error error;
-    assert_false(write_page(*state, &(PlayerOptions){.last = FRAMES}, path, &result, &error));
-    assert_error(error, ERROR_INPUT, "300 is beyond the last frame, 299");
-    assert_false(write_page(*state, &(PlayerOptions){.first = FRAMES, .last = -1}, path, &result, &error));
-    assert_error(error, ERROR_INPUT, "beyond the last frame");
+    assert_refused(write_page(*state, &(PlayerOptions){.last = FRAMES}, path, &result, &error),
+                   "300 is beyond the last frame, 299");
+    assert_refused(write_page(*state, &(PlayerOptions){.first = FRAMES, .last = -1}, path, &result, &error),
+                   "beyond the last frame");
 }
 
 static void a_link_names_moment_and_body(void **state) {

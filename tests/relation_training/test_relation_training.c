@@ -75,8 +75,7 @@ static void a_state_of_another_training_is_refused(void **state) {
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     RelationNetworks networks;
     assert_ok(file_write_soon(path, "x", 1, &error), error);
-    assert_false(train(&scene, path, &networks, NULL, &error));
-    assert_error(error, ERROR_INPUT, path);
+    assert_refused(train(&scene, path, &networks, NULL, &error), path);
     relation_networks_destroy(&networks);
     scene_destroy(scene);
 }

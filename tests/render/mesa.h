@@ -3,7 +3,7 @@
 #pragma once
 
 /* Called by the leak sanitizer; unused otherwise. */
-const char *__lsan_default_suppressions(void);
+__attribute__((weak)) const char *__lsan_default_suppressions(void); /* files of one program share it */
 const char *__lsan_default_suppressions(void) {
     return "leak:libOSMesa\nleak:libEGL\nleak:libLLVM\nleak:libgallium\nleak:_dri.so\n";
 }

@@ -37,13 +37,11 @@ static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         Error error = {0};
         RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = wrong[i].look};
-        assert_null(renderer_create(panels, wrong[i].count, &options, &error));
-        assert_error(error, ERROR_INPUT, wrong[i].text);
+        assert_refused(renderer_create(panels, wrong[i].count, &options, &error), wrong[i].text);
     }
     Error error = {0};
     runs[0]->bomb = -1;
-    assert_false(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error));
-    assert_error(error, ERROR_INPUT, "cannot follow the bomb");
+    assert_refused(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error), "cannot follow the bomb");
     error = (Error){0};
     assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
 }

@@ -191,13 +191,12 @@ static void what_is_out_of_range_is_refused(void **state) {
     MomentPlan plan;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         Error error = {0};
-        assert_false(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &wrong[i].options, &error));
-        assert_error(error, ERROR_INPUT, wrong[i].text);
+        assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &wrong[i].options, &error), wrong[i].text);
     }
     Error error = {0};
     run->dt = 1e-9F;
-    assert_false(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error));
-    assert_error(error, ERROR_INPUT, "too many pictures for one sequence");
+    assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error),
+                   "too many pictures for one sequence");
     run->dt = 10;
     assert_true(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.slow = 2, .title_card = true}, &error));
     assert_true(plan.title == 1 && plan.slow_first == IMPACT - 1 && plan.slow_last == IMPACT + 1);

@@ -250,25 +250,21 @@ static void what_cannot_be_shown_is_refused(void **state) {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         Error error = {0};
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
-        assert_null(renderer_create(panels, 1, &options, &error));
-        assert_error(error, ERROR_INPUT, "must be 64 to 8192 pixels (got");
+        assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
     }
     RenderOptions options = {.width = 64, .height = 64};
     for (int count = 0; count <= 7; count += 7) {
         Error error = {0};
-        assert_null(renderer_create(panels, count, &options, &error));
-        assert_error(error, ERROR_INPUT, "the number of panels must be 1 to 6 (got");
+        assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
     }
     Error error = {0};
     runs[1]->dt = 1.0F / 50;
-    assert_null(renderer_create(panels, 2, &options, &error));
-    assert_error(error, ERROR_INPUT, "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
+    assert_refused(renderer_create(panels, 2, &options, &error),
+                   "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
     Renderer *renderer = renderer_create(panels, 1, &options, &error);
     Image *image = image_create(64, 64, &error);
     for (int frame = -1; frame <= 12; frame += 13) {
-        error = (Error){0};
-        assert_false(renderer_draw(renderer, frame, image, &error));
-        assert_error(error, ERROR_INPUT, "the frames are 0 to 11");
+        assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
     }
     image_destroy(image);
     renderer_destroy(renderer);

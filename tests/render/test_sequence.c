@@ -38,13 +38,18 @@ static RenderOptions options_for(const char *directory, int jobs) {
 
 static void any_number_of_jobs_writes_the_same_files(void **state) {
     (void)state;
+    static const int jobs[] = {2, 3, 20}; /* fewer and more than frames */
     Error error = {0};
+    for (int i = 0; i < 2; i++) {
+        trajectory_destroy(runs[i]);
+        panels[i] = runs[i] = run_make(i == 0 ? "engine" : "momentum", 4 - i);
+    }
     RenderOptions one = options_for(temporary_path("one/deep"), 1);
     assert_ok(render_sequence(panels, 2, &one, NULL, NULL, &error), error);
-    assert_int_equal(count_files(one.directory, ".png"), FRAMES);
-    for (int jobs = 2; jobs <= 20; jobs += 9) {
-        RenderOptions many = options_for(temporary_path("many"), jobs);
-        many.context = built_context(jobs == 11 ? CONTEXT_EGL : CONTEXT_OSMESA);
+    assert_int_equal(count_files(one.directory, ".png"), 4);
+    for (int i = 0; i < 3; i++) {
+        RenderOptions many = options_for(temporary_path("many"), jobs[i]);
+        many.context = built_context(jobs[i] == 3 ? CONTEXT_EGL : CONTEXT_OSMESA);
         assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
         assert_same_folder(one.directory, many.directory);
     }
@@ -215,8 +220,7 @@ static void wrong_options_are_refused(void **state) {
         Error error = {0};
         RenderOptions options = wrong[i].options;
         options.directory = directory;
-        assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
-        assert_error(error, ERROR_INPUT, wrong[i].text);
+        assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error), wrong[i].text);
         assert_int_not_equal(access(directory, F_OK), 0);
     }
 }

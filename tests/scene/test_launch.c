@@ -101,8 +101,7 @@ static void broken_launches_are_refused_with_their_place(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {0};
         LaunchTable table;
-        assert_false(launches_read(&table, write_launches(cases[i].text, cases[i].size), &error));
-        assert_error(error, ERROR_INPUT, cases[i].message);
+        assert_refused(launches_read(&table, write_launches(cases[i].text, cases[i].size), &error), cases[i].message);
     }
 }
 
@@ -115,8 +114,8 @@ static void ten_thousand_launches_are_the_most(void **state) {
     assert_ok(launches_read(&table, write_launches(text, sizeof text - 2), &error), error);
     assert_int_equal(table.count, 10000);
     launches_free(&table);
-    assert_false(launches_read(&table, write_launches(text, sizeof text), &error));
-    assert_error(error, ERROR_INPUT, "launches.csv:10002:1: error: the table has more than 10000 rows");
+    assert_refused(launches_read(&table, write_launches(text, sizeof text), &error),
+                   "launches.csv:10002:1: error: the table has more than 10000 rows");
 }
 
 static void expect_misfit(const char *scene_text, const char *launches, const char *message) {
@@ -124,8 +123,7 @@ static void expect_misfit(const char *scene_text, const char *launches, const ch
     LaunchTable table = read_good(launches);
     Launch out[2];
     Error error = {0};
-    assert_false(launches_for(&table, scene, out, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(launches_for(&table, scene, out, &error), message);
     launches_free(&table);
     scene_destroy(scene);
 }
@@ -224,8 +222,7 @@ static void a_bomb_without_a_family_cannot_be_spread(void **state) {
     Scene *scene = aiming_scene();
     Launch out;
     Error error = {0};
-    assert_false(launches_for_scoring(scene, 1, &out, &error));
-    assert_error(error, ERROR_INPUT, "scene: error: the bomb has one launch and no family");
+    assert_refused(launches_for_scoring(scene, 1, &out, &error), "scene: error: the bomb has one launch and no family");
     scene_destroy(scene);
 }
 

@@ -55,8 +55,8 @@ static void settings_are_checked_too(void **state) {
     Scene *scene = scene_read(path, &error);
     assert_ok(scene != NULL, error);
     scene_destroy(scene);
-    assert_null(scene_read_with(path, &(SceneSetting){"spacing", 0.5}, 1, &error));
-    assert_error(error, ERROR_INPUT, ":7:5: error: body 2 starts 0.5 m inside body 1");
+    assert_refused(scene_read_with(path, &(SceneSetting){"spacing", 0.5}, 1, &error),
+                   ":7:5: error: body 2 starts 0.5 m inside body 1");
 }
 
 /* 10,000 boxes in one place: the first pair suffices, so that memory does not grow with the pairs. */

@@ -137,10 +137,9 @@ static void bad_settings_are_refused(void **state) {
     assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
     assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
     /* A value in its bounds may still be none for the number that is made of it. */
-    assert_null(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error));
-    assert_error(error, ERROR_INPUT,
-                 "mass must be greater than 0 (got -2.5, from $height*$ratio with height = 10, "
-                 "ratio = -0.25)");
+    assert_refused(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error),
+                   "mass must be greater than 0 (got -2.5, from $height*$ratio with height = 10, "
+                   "ratio = -0.25)");
 }
 
 #define CHAIN "must be a number or a chain of numbers and parameters such as 2*$name/3"

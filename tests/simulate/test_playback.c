@@ -52,8 +52,8 @@ static void a_scene_without_a_bomb_has_nothing_to_play(void **state) {
     scene->bomb.present = false;
     Method method;
     assert_ok(method_parse(&method, "playback", &error), error);
-    assert_null(simulate(scene, &method, NULL, &error));
-    assert_error(error, ERROR_INPUT, "playback: error: scene single has no bomb: nothing to play");
+    assert_refused(simulate(scene, &method, NULL, &error),
+                   "playback: error: scene single has no bomb: nothing to play");
     scene_destroy(scene);
 }
 

@@ -269,8 +269,7 @@ static void wrong_settings_are_refused(void **state) {
         Error error = {0};
         Method method;
         assert_ok(method_parse(&method, cases[c].text, &error), error);
-        assert_null(stepper_create(&method, &scene, &error));
-        assert_error(error, ERROR_INPUT, cases[c].message);
+        assert_refused(stepper_create(&method, &scene, &error), cases[c].message);
     }
 }
 

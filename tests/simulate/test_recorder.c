@@ -94,8 +94,7 @@ static void a_run_that_fails_leaves_no_file(void **state) {
     assert_ok(recorder != NULL, error);
     const StepObserver observer = {fail_late, NULL};
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1};
-    assert_false(simulate_watched(scene, &method, &watch, &error));
-    assert_error(error, ERROR_INPUT, "observer: error: enough");
+    assert_refused(simulate_watched(scene, &method, &watch, &error), "observer: error: enough");
     recorder_destroy(recorder);
     assert_int_not_equal(access(path, F_OK), 0);
     scene_destroy(scene);
@@ -107,8 +106,7 @@ static void too_long_runs_are_refused_before_the_first_step(void **state) {
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
     Scene *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
-    assert_null(recorder_create_to(scene, &method, NULL, 0, false, &error));
-    assert_error(error, ERROR_INPUT, "are too many to record");
+    assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");
     scene_destroy(scene);
 }
 

@@ -137,8 +137,7 @@ static void an_observer_sees_every_step_and_may_end_the_run(void **state) {
     int steps = 0;
     StepObserver observer = {count_step, &steps};
     assert_ok(method_parse(&method, "engine", &error), error);
-    assert_false(simulate_observed(scene, &method, &observer, &error));
-    assert_error(error, ERROR_INPUT, "observer: error: enough");
+    assert_refused(simulate_observed(scene, &method, &observer, &error), "observer: error: enough");
     assert_int_equal(steps, 7);
     scene_destroy(scene);
 }
@@ -161,15 +160,13 @@ static void a_run_that_cannot_go_on_says_why(void **state) {
     scene->bomb.velocity_from_position = false;
     scene->bomb.body.velocity = vec2(3e38f, 3e38f);
     scene->dt = 100;
-    assert_null(simulate(scene, &method, NULL, &error));
-    assert_error(error, ERROR_INPUT, "the state of body 2 is NaN or infinite");
-    assert_error(error, ERROR_INPUT, "in step 1 of scene single");
+    assert_refused(simulate(scene, &method, NULL, &error), "the state of body 2 is NaN or infinite",
+                   "in step 1 of scene single");
 
     error = (Error){0};
     scene->network_count = 0;
     assert_ok(method_parse(&method, "pair-net", &error), error);
-    assert_null(simulate(scene, &method, NULL, &error));
-    assert_error(error, ERROR_INPUT, "the scene names no network");
+    assert_refused(simulate(scene, &method, NULL, &error), "the scene names no network");
     scene_destroy(scene);
 }
 
@@ -183,14 +180,13 @@ static void methods_are_found_by_name(void **state) {
         assert_ptr_equal(method.kind, &method_kinds[count]);
     }
     assert_true(count > 2);
-    assert_false(method_parse(&method, "engin", &error));
-    assert_error(error, ERROR_INPUT, "method: error: 'engin' is not a method; did you mean 'engine'?");
+    assert_refused(method_parse(&method, "engin", &error),
+                   "method: error: 'engin' is not a method; did you mean 'engine'?");
     error = (Error){0};
     char text[METHOD_TEXT_SIZE + 1];
     memset(text, 'x', METHOD_TEXT_SIZE);
     text[METHOD_TEXT_SIZE] = '\0';
-    assert_false(method_parse(&method, text, &error));
-    assert_error(error, ERROR_INPUT, "at most");
+    assert_refused(method_parse(&method, text, &error), "at most");
 }
 
 int main(void) {

@@ -445,8 +445,7 @@ static void settings_out_of_range_are_refused(void **state) {
         Error error = {0};
         Settings settings;
         assert_ok(settings_parse(&settings, texts[i], solver_interior.description.settings, "interior", &error), error);
-        assert_null(solver_interior.create(&settings, &error));
-        assert_error(error, ERROR_INPUT, "near");
+        assert_refused(solver_interior.create(&settings, &error), "near");
     }
 }
 

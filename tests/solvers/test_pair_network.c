@@ -46,14 +46,10 @@ static void other_methods_networks_are_refused(void **state) {
         &solver_contact_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six),
         "the network has the target net, which is for pair-net; contact-net needs the target points");
     Error error = {0};
-    assert_null(solver_pair_net.create(&(Settings){0}, &error));
-    assert_error(error, ERROR_INPUT, "pair-net: error: the scene names no network for it: use pair-net:network=FILE");
-    error = (Error){0};
-    assert_null(solver_constant.create(&(Settings){0}, &error));
-    assert_error(error, ERROR_INPUT, "constant: error: the scene names no network");
-    error = (Error){0};
-    assert_null(solver_contact_net.create(&(Settings){0}, &error));
-    assert_error(error, ERROR_INPUT, "contact-net: error: the scene names no network");
+    assert_refused(solver_pair_net.create(&(Settings){0}, &error),
+                   "pair-net: error: the scene names no network for it: use pair-net:network=FILE");
+    assert_refused(solver_constant.create(&(Settings){0}, &error), "constant: error: the scene names no network");
+    assert_refused(solver_contact_net.create(&(Settings){0}, &error), "contact-net: error: the scene names no network");
 }
 
 int main(void) {

@@ -23,8 +23,7 @@ static inline void assert_settings_refused(const ContactSolverKind *kind, const 
     Error error = {0};
     Settings settings;
     assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
-    assert_null(kind->create(&settings, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(kind->create(&settings, &error), message);
 }
 
 static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }

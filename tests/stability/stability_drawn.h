@@ -53,8 +53,7 @@ static inline void draw(void) {
 static inline void expect_refused(const char *maps, const char *borders, const char *message) {
     Error error = {0};
     start_afresh(maps, borders);
-    assert_false(stability_figures_write(temporary_folder, NULL, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(stability_figures_write(temporary_folder, NULL, &error), message);
     assert_int_equal(access(temporary_path("borders.png"), F_OK), -1);
     assert_int_equal(access(temporary_path("map-stack.png"), F_OK), -1);
 }

@@ -195,8 +195,7 @@ static void a_failing_evaluation_ends_the_search(void **state) {
     Error error = {0};
     BorderList list;
     Made made = {.how = VERDICTS};
-    assert_false(border_search(&list, &heights, &(BorderProbe){evaluate, &made, 1}, &error));
-    assert_error(error, ERROR_INPUT, "refused");
+    assert_refused(border_search(&list, &heights, &(BorderProbe){evaluate, &made, 1}, &error), "refused");
     assert_int_equal(made.calls, 1);
 }
 

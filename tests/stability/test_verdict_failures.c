@@ -283,8 +283,8 @@ static void a_converged_run_that_is_shorter_is_refused(void **state) {
     Trial trial;
     trial_begin(&trial);
     trial.converged.frames--;
-    assert_false(verdict_watch_begin(&trial.watch, &trial.run, trial.bodies, trial.count, &error));
-    assert_error(error, ERROR_INPUT, "the converged run has only 3599 of 3600 frames");
+    assert_refused(verdict_watch_begin(&trial.watch, &trial.run, trial.bodies, trial.count, &error),
+                   "the converged run has only 3599 of 3600 frames");
     verdict_watch_free(&trial.watch);
 }
 

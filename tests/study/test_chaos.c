@@ -113,8 +113,7 @@ static void distances_are_those_of_the_trajectories(void **state) {
 static void expect_refused(const Trajectory *run, const char *path, int frames, const char *reason) {
     Error error = {0};
     Chaos chaos;
-    assert_false(chaos_run(&chaos, path, run, 1, frames, NULL, &error));
-    assert_error(error, ERROR_INPUT, reason);
+    assert_refused(chaos_run(&chaos, path, run, 1, frames, NULL, &error), reason);
 }
 
 static void other_scenes_and_runs_are_detected(void **state) {

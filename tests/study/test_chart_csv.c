@@ -91,8 +91,7 @@ static void written_tables_are_read_back(void **state) {
 static void expect_refused(const char *path, const char *message) {
     Error error = {0};
     ChartTable table;
-    assert_false(chart_csv_read(&table, path, &error));
-    assert_error(error, ERROR_INPUT, message);
+    assert_refused(chart_csv_read(&table, path, &error), message);
 }
 
 /* As twinbox wrote them before it named the processor; the column can be the last one only. */

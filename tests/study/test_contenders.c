@@ -60,8 +60,7 @@ static void the_engine_as_shipped_is_always_there(void **state) {
 static void refuse(const char *text, const char *reason) {
     Error error = {0};
     ContenderList list;
-    assert_false(contenders_parse(&list, text, STUDY_CHART, &error));
-    assert_error(error, ERROR_INPUT, reason);
+    assert_refused(contenders_parse(&list, text, STUDY_CHART, &error), reason);
 }
 
 static void bad_lists_are_refused(void **state) {

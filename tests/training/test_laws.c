@@ -123,12 +123,9 @@ static void violations_are_measured_on_the_test_rows(void **state) {
         if (law == LAW_MOMENTUM || law == LAW_CONE) assert_near(labels.of[law], 0, 1e-5); /* by construction */
     }
     strcpy(network->inputs, "x");
-    assert_false(laws_measure(dataset, network, &nothing, &error));
-    assert_error(error, ERROR_INPUT, "laws: error: the network has other inputs (x)");
+    assert_refused(laws_measure(dataset, network, &nothing, &error), "laws: error: the network has other inputs (x)");
     dataset->launch_test[4] = 0;
-    error = (Error){0};
-    assert_false(laws_measure(dataset, NULL, &nothing, &error));
-    assert_error(error, ERROR_INPUT, "the dataset has no test rows");
+    assert_refused(laws_measure(dataset, NULL, &nothing, &error), "the dataset has no test rows");
     network_destroy(network);
     dataset_destroy(dataset);
 }
@@ -181,8 +178,7 @@ static void scores_exclude_the_laws(void **state) {
     assert_true(again.test == with.test && again.train == without.train);
     assert_ok(training_score(dataset, network, "smooth-l1", &again, &error), error);
     assert_true(again.test < with.test && again.constant_test < with.constant_test);
-    assert_false(training_score(dataset, network, "l3", &again, &error));
-    assert_error(error, ERROR_INPUT, "'l3' is not a valid value");
+    assert_refused(training_score(dataset, network, "l3", &again, &error), "'l3' is not a valid value");
     network_destroy(network);
     dataset_destroy(dataset);
 }
