@@ -11,7 +11,7 @@ enum { LAUNCHES = 6 };
 static void assert_same_problem(const ContactProblem *a, const ContactProblem *b) {
     assert_int_equal(a->body_count, b->body_count);
     assert_int_equal(a->contact_count, b->contact_count);
-    assert_int_equal(a->bomb, b->bomb);
+    assert_int_equal(a->marked, b->marked);
     assert_memory_equal(a->bodies, b->bodies, (size_t)a->body_count * sizeof *a->bodies);
     assert_memory_equal(a->contacts, b->contacts, (size_t)a->contact_count * sizeof *a->contacts);
 }
