@@ -1,4 +1,3 @@
-<<<<<<< /tmp/a.c
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures of maps, from synthetic tables. */
 #include "stability_drawn.h"
@@ -194,5 +193,3 @@ int main(void) {
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
-=======
->>>>>>> /tmp/b.c
