@@ -159,7 +159,7 @@ static bool expect_contents(const NpzFile *file, const SlotShape *shape, Error *
 }
 
 static SlotNetwork *read_network(NpzFile *file, Error *error) {
-    SlotShape shape;
+    SlotShape shape = {0};
     if (!npz_check_kind(file, KIND, SLOT_NETWORK_VERSION, error) || !read_shape(file, &shape, error)) return NULL;
     Slot *slots = read_slots(file, shape.slot_count, error);
     SlotNetwork *network = NULL;

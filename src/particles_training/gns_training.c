@@ -146,7 +146,7 @@ static bool step(Trainer *trainer, Error *error) {
 static bool score(Trainer *trainer, double loss, Error *error) {
     GnsScore result = {.steps = (int)trainer->state.adam.steps, .loss = loss};
     for (int i = 0; i < HELD_OUT_BATCHES; i++) {
-        double held_out;
+        double held_out = 0;
         if (!gns_fit_loss(&trainer->fit, &trainer->held_out, (uint64_t)i * (uint64_t)trainer->training->batch,
                           &held_out, error))
             return false;

@@ -70,7 +70,7 @@ static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, 
             !simulate_step(sampler->engine, sampler->world, &step, error))
             return false;
         Phase phase = phase_next(&tracker, world_problem(sampler->world), frame);
-        if (sampled(sampling, phase, &tracker, frame) &&
+        if (sampling_takes(sampling, phase, &tracker, frame) &&
             !store(list, launched, sampler->before, sampler->world, frame, phase, &sampler->converged, error))
             return false;
     }

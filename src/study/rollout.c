@@ -29,7 +29,7 @@ bool step_scores_add(StepScores *scores, int frame, const ContactProblem *proble
     return true;
 }
 
-bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
+bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
     if (phase == PHASE_IMPACT) return true;
     if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
     return frame % sampling->rest == 0;
@@ -76,7 +76,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         }
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
-        if (scores != NULL && sampled(sampling, phase, &tracker, frame) &&
+        if (scores != NULL && sampling_takes(sampling, phase, &tracker, frame) &&
             !score(rollout, frame, push_out, &scores[phase], error))
             return false;
     }

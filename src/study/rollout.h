@@ -29,7 +29,7 @@ typedef struct Sampling {
     int after, rest;
 } Sampling;
 
-bool sampled(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
+bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
 
 /* One thread's run in progress; zero-initialise, free with rollout_free. */
 typedef struct Rollout {

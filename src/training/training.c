@@ -47,7 +47,7 @@ static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
 }
 
 static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    NetworkConfig config;
+    NetworkConfig config = {0};
     if (!network_config_parse(&config, options, error)) return NULL;
     Network *network = network_create(options->layers, options->widths, error);
     if (network == NULL) return NULL;

@@ -111,4 +111,3 @@ PaperNetwork paper_network(int i) {
     return network;
 }
 
-bool paper_network_searched(const PaperNetwork *network) { return strcmp(network->factor, "layers") == 0; }

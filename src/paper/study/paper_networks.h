@@ -41,6 +41,3 @@ extern const int paper_network_count;
 
 /* With all defaults set. */
 PaperNetwork paper_network(int i);
-
-/* Those of the search over hidden layers (paper, 3) are named "layers-...". */
-bool paper_network_searched(const PaperNetwork *network);
