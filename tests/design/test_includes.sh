@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every #include in src/ keeps to the direction of dependencies in src/layers.txt.
+# Every #include in src/ keeps to the direction of dependencies in src/layers.txt, and no room includes another one's internal
+# headers.
 set -u
 source_dir=$2
 
@@ -10,7 +11,7 @@ while IFS=: read -r room names; do neighbours[$room]=$names; done < <(grep '^[a-
 # All rooms that $1 may include from.
 reach() {
     local room
-    echo "$1" common
+    echo "$1" base
     for room in ${neighbours[$1]}; do reach "$room"; done
 }
 
@@ -30,6 +31,10 @@ for path in "$source_dir"/src/*; do
         [[ $target == */* ]] || continue
         if [[ $allowed != *" ${target%%/*} "* ]]; then
             echo "${file#"$source_dir"/}:$line: may not include $target"
+            status=1
+        fi
+        if [[ $target == */internal.h || $target == *_internal.h ]] && [ "${target%%/*}" != "$room" ]; then
+            echo "${file#"$source_dir"/}:$line: $target is for its own room"
             status=1
         fi
     done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$path" --include='*.[ch]' /dev/null)
