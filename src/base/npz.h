@@ -134,7 +134,7 @@ void npy_swap(const NpyHead *head, void *data);
 bool npy_convert(const NpyHead *head, const void *data, NpzType type, void *converted, char reason[NPY_REASON_SIZE]);
 
 /* Checks a zip's directory before libzip reads it. libzip reads every directory that the last 64 KiB point to, with all
-   entries; a malicious file costs it minutes and gigabytes (tests/common/test_npz_hostile.c). */
+   entries; a malicious file costs it minutes and gigabytes (tests/base/test_npz_hostile.c). */
 
 /* False with error set unless the open file ends with the directory of one small zip. */
 bool zip_directory_check(int descriptor, uint64_t size, const char *path, Error *error);

@@ -95,7 +95,7 @@ typedef struct StabilityPages {
 } StabilityPages;
 
 /* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
-   stability.html. A page begins six seconds before the verdict was decided. key: of the study (study/study_key.h). Prints how
+   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints how
    many pages there are, and what was left out. */
 bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
 

@@ -14,7 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-extern const char stability_css[]; /* src/stability/page */
+extern const char stability_css[]; /* page/stability.css */
 
 /* Writes folder/stability.html from maps.csv and map_pages.csv (studies/stability.h) there. */
 bool stability_html_write(const char *folder, Error *error);
@@ -532,7 +532,7 @@ extern const CsvLayout launch_page_layout;
 
 /* chart.html: the charts of a study; their points, and a table of them, link to pages of runs. */
 
-extern const char chart_css[]; /* src/chart/page */
+extern const char chart_css[]; /* page/chart.css */
 
 /* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
    script: a picture with links above its points, which a table repeats for the keyboard. */

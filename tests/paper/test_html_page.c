@@ -58,7 +58,7 @@ static void pictures_are_embedded(void **state) {
     write_picture("a.png");
     expect_within("![\"x\" & y](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figure><img width=\"5\" height=\"3\" style=\"max-width:3px\" alt=\"&quot;x&quot; &amp; y\" "
-                  "src=\"data:pixels/png;base64,iVBORw0KGgo");
+                  "src=\"data:image/png;base64,iVBORw0KGgo");
     expect_within("![x](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figcaption><p><strong>Figure 1.</strong> z</p>\n</figcaption></figure>\n<p>behind</p>");
     expect_within("![x](a.png)\n", "<figcaption></figcaption></figure>");

@@ -75,7 +75,7 @@ static void drawings_say_what_they_show(void **state) {
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
     expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",
-                                                 "data:pixels/png;base64,", NULL});
+                                                 "data:image/png;base64,", NULL});
 }
 
 /* The engine's run of a scene, up to a step. */

@@ -287,7 +287,7 @@ static void the_page_is_whole_and_needs_nothing(void **state) {
                "assert p.seen.count('img') == p.seen.count('figcaption') == 22\n"
                "for image in p.images:\n"
                "    head, data = image['src'].split(',')\n"
-               "    assert head == 'data:pixels/png;base64' and image['alt'], image\n"
+               "    assert head == 'data:image/png;base64' and image['alt'], image\n"
                "    assert base64.b64decode(data, validate=True)[:8] == b'\\x89PNG\\r\\n\\x1a\\n'\n"
                "    assert (image['width'], image['height']) == ('5', '3')\n"
                "assert base64.b64decode(p.images[0]['src'].split(',')[1]) == open(sys.argv[1].replace('report.html',\n"

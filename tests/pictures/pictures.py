@@ -47,7 +47,7 @@ def array(answer):
 def decode(page, path):
     """A PNG file: height, width, RGB."""
     with open(path, "rb") as file:
-        return array(page.run(DECODE, "data:pixels/png;base64," + base64.b64encode(file.read()).decode()))
+        return array(page.run(DECODE, "data:image/png;base64," + base64.b64encode(file.read()).decode()))
 
 
 def draw(page, width, height, frame):

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes from the ends of what a file may hold (scene/fields.c): thin and huge boxes, feathers under a million tonnes,
+/* Scenes from the ends of what a file may hold (scenes/scene_read.c): thin and huge boxes, feathers under a million tonnes,
    shots and spins beyond all reason, half of it inside each other. What a method makes of them may be nonsense; it may
    not be a number that is none, nor be kept where a step is refused. */
 #include "testing.h"

@@ -6,7 +6,7 @@
 
 static ChartTable read_table(const char *name) {
     char path[512];
-    snprintf(path, sizeof path, "%s/tests/study/%s", SOURCE_DIR, name);
+    snprintf(path, sizeof path, "%s/tests/studies/%s", SOURCE_DIR, name);
     Error error = {0};
     ChartTable table;
     assert_ok(chart_csv_read(&table, path, &error), error);

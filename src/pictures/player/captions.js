@@ -1,4 +1,4 @@
-/* The texts: src/picture/caption*.c. */
+/* The texts: src/pictures/caption*.c. */
 
 function write(font, text, x, baseline, colour = look.ink_soft) {
   pen.font = font.css;

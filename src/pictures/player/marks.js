@@ -1,4 +1,4 @@
-/* Trails below the bodies, contacts and arrows above: src/pictures/parts.c, scales.c and src/pixels/drawing.c. */
+/* Trails below the bodies, contacts and arrows above: src/pictures/parts.c, panel.c and src/pixels/drawing.c. */
 
 const TRAIL = 2.0, MIN_TRAIL = 0.5; /* s; m: a body that moved less has none */
 const TRAIL_EVERY = 2, TRAIL_POINTS = 4, MOST_TRAIL = 600; /* frames between points; points of a segment; frames */

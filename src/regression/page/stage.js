@@ -25,7 +25,7 @@ function picture(kind) {
   image.draggable = false;
   image.decoding = "sync"; /* prevents an empty flash before a new picture */
   image.loaded = new Promise(done => { image.onload = image.onerror = done; });
-  image.src = "data:pixels/png;base64," + stored(listed[at], kind).textContent;
+  image.src = "data:image/png;base64," + stored(listed[at], kind).textContent;
   return image;
 }
 
