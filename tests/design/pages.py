@@ -7,7 +7,7 @@
 - Every page can be reached from README.md. Every relative link, picture and anchor exists in a fresh clone.
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
-  FOLDER, COMMAND and WHAT stand for any text. So does every test that a page names.
+  ROOM, COMMAND and WHAT stand for any text. So does every test that a page names.
 - Every option after `twinbox COMMAND` in a shell block, a sentence or an example of --help is one of that command.
 - Marked blocks run, page by page from top to bottom, in a fresh copy of the sources with twinbox on PATH, as a user
   would type them. The marks are words after the language of a block and are invisible when rendered:
@@ -31,7 +31,7 @@ from markdown_page import Page
 
 README_LINES, README_WORDS = 150, 1300
 NOT_IN_A_CLONE = {".git", "build", "out"}
-PLACEHOLDER = re.compile("NAME|FOLDER|COMMAND|WHAT")
+PLACEHOLDER = re.compile("NAME|ROOM|COMMAND|WHAT")
 TIME = re.compile(r"\d[\d.]*(e[+-]?\d+)?( ?(ns|µs|us|ms|s|min)\b)")
 
 twinbox, root = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
