@@ -26,7 +26,7 @@ sanitized() { grep -q "^TWINBOX_SANITIZE:STRING=." "$(dirname "$twinbox")/CMakeC
 run() {
     local wanted=$1 status
     shift
-    [ "$1" != render ] || [[ " $* " == *" --jobs"* ]] || set -- render --jobs 1 "${@:2}"
+    [ "${1-}" != render ] || [[ " $* " == *" --jobs"* ]] || set -- render --jobs 1 "${@:2}"
     "$twinbox" "$@" >out 2>err </dev/null
     status=$?
     checks=$((checks + 1))
