@@ -38,7 +38,7 @@ static const ContactPoint touch = {.a = 0,
                                    .warm_tangent = -0.5f};
 
 static void make_example(Example *example) {
-    *example = (Example){.problem = {.body_count = BODIES, .contact_count = CONTACTS, .bomb = 2, .dt = 1.0f / 60.0f},
+    *example = (Example){.problem = {.body_count = BODIES, .contact_count = CONTACTS, .marked = 2, .dt = 1.0f / 60.0f},
                          .bodies = {{.size = {100, 20}}, box, box},
                          .contacts = {touch, touch, touch}};
     example->problem.bodies = example->bodies;

@@ -201,7 +201,7 @@ static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
     assert_near(world_solution(world)->impulses[3].normal, 10, 0);
     step(world, &fake);
     assert_int_equal(world_problem(world)->body_count, 2);
-    assert_int_equal(world_problem(world)->bomb, -1);
+    assert_int_equal(world_problem(world)->marked, -1);
     assert_int_equal(world_problem(world)->contact_count, 2);
     for (int i = 0; i < 2; i++) expect_warm(world, i, 7 + (float)i);
     world_destroy(world);

@@ -11,7 +11,7 @@ enum { LAUNCHES = 6 };
 static void assert_same_problem(const ContactProblem *a, const ContactProblem *b) {
     assert_int_equal(a->body_count, b->body_count);
     assert_int_equal(a->contact_count, b->contact_count);
-    assert_int_equal(a->bomb, b->bomb);
+    assert_int_equal(a->marked, b->marked);
     assert_memory_equal(a->bodies, b->bodies, (size_t)a->body_count * sizeof *a->bodies);
     assert_memory_equal(a->contacts, b->contacts, (size_t)a->contact_count * sizeof *a->contacts);
 }
@@ -73,7 +73,8 @@ static bool bomb_touches(const ContactProblem *problem) {
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const int other = contact->a == problem->marked ? contact->b : contact->a;
-        touches |= (contact->a == problem->marked || contact->b == problem->marked) && problem->bodies[other].inv_mass > 0;
+        touches |=
+            (contact->a == problem->marked || contact->b == problem->marked) && problem->bodies[other].inv_mass > 0;
     }
     return touches;
 }

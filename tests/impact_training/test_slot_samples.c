@@ -11,7 +11,7 @@ static void a_sample_is_a_copy(void **state) {
     ProblemBody bodies[2] = {{.inv_mass = 1}, {.inv_mass = 2}};
     ContactPoint contact = {.a = 0, .b = 1, .feature = 5};
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 1, .bomb = 1, .bodies = bodies, .contacts = &contact};
+        .body_count = 2, .contact_count = 1, .marked = 1, .bodies = bodies, .contacts = &contact};
     SlotSamples samples = {0}, more = {0};
     for (int i = 0; i < 20; i++) assert_true(slot_samples_add(&samples, &problem, i, 2 * i));
     bodies[1].inv_mass = 9;

@@ -8,7 +8,7 @@ enum { BODIES_MAX = 400, CONTACTS_MAX = 2000 };
 
 static ProblemBody bodies[BODIES_MAX];
 static ContactPoint contacts[CONTACTS_MAX];
-static ContactProblem problem = {.bomb = -1, .dt = 1, .bodies = bodies, .contacts = contacts};
+static ContactProblem problem = {.marked = -1, .dt = 1, .bodies = bodies, .contacts = contacts};
 
 /* Body 0 is the ground. */
 static void begin(int body_count) {

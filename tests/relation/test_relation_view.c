@@ -18,7 +18,7 @@ static Vec2 any(uint32_t *seed, float size) {
 
 /* Body 0 is the ground; each other body touches the one before, and some the ground. */
 static void fill(Problem *p, uint32_t seed) {
-    *p = (Problem){.problem = {.body_count = BODIES, .bomb = -1, .bodies = p->bodies, .contacts = p->contacts}};
+    *p = (Problem){.problem = {.body_count = BODIES, .marked = -1, .bodies = p->bodies, .contacts = p->contacts}};
     for (int i = 0; i < BODIES; i++) {
         const float inverse = i == 0 ? 0 : uniform(&seed, 0.1f, 1);
         p->bodies[i] = (ProblemBody){.position = any(&seed, 1),

@@ -59,7 +59,7 @@ static void make_landing(Landing *landing, Vec2 velocity, float spin, float left
                                               .mass_tangent = 1 / masses[1]};
     }
     landing->problem =
-        (ContactProblem){.body_count = 2, .contact_count = 2, .bomb = -1, .dt = world_dt, .bodies = landing->bodies};
+        (ContactProblem){.body_count = 2, .contact_count = 2, .marked = -1, .dt = world_dt, .bodies = landing->bodies};
     landing->problem.contacts = landing->contacts;
 }
 

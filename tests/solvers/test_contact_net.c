@@ -161,7 +161,7 @@ static const float asked[PAIR_POINT_CHANGES] = {3, -9, 6, 0};
 static void predictions_go_beyond_the_warm_start_into_the_cone(void **state) {
     (void)state;
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 2, .bomb = -1, .bodies = bodies, .contacts = contacts};
+        .body_count = 2, .contact_count = 2, .marked = -1, .bodies = bodies, .contacts = contacts};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
     const ContactSolution solution = solution_by(
@@ -183,7 +183,7 @@ static void predictions_go_beyond_the_warm_start_into_the_cone(void **state) {
 static void a_missing_second_point_gets_nothing(void **state) {
     (void)state;
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 1, .bomb = -1, .bodies = bodies, .contacts = contacts};
+        .body_count = 2, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = contacts};
     BodyVelocity v[2];
     ContactImpulse impulses[2] = {{0, 0}, {77, 77}};
     solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, asked), 1, &problem, v, impulses);
@@ -202,7 +202,7 @@ static void what_is_not_finite_leaves_a_point_its_warm_start(void **state) {
     two[0].warm_tangent = 5;
     ProblemBody fast[2] = {bodies[0], bodies[1]};
     fast[1].velocity = vec2(10, 10);
-    const ContactProblem problem = {.body_count = 2, .contact_count = 2, .bomb = -1, .bodies = fast, .contacts = two};
+    const ContactProblem problem = {.body_count = 2, .contact_count = 2, .marked = -1, .bodies = fast, .contacts = two};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
     const ContactSolution solution =

@@ -130,7 +130,7 @@ static int see_features(uint32_t seen[2], const Box *box, Vec2 position, Vec2 si
     ProblemBody bodies[2] = {0};
     bodies[1].size = size;
     bodies[1].angle = angle;
-    const ContactProblem problem = {.body_count = 2, .bodies = bodies, .bomb = 1};
+    const ContactProblem problem = {.body_count = 2, .bodies = bodies, .marked = 1};
     for (int i = 0; i < manifold.count; i++)
         seen[i] = scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 1, .feature = manifold.points[i].feature});
     if (manifold.count == 2 && seen[0] > seen[1]) {
@@ -172,7 +172,7 @@ static void other_features_stay(void **state) {
     ProblemBody bodies[3] = {0};
     bodies[2].size = vec2(1, 1);
     bodies[2].angle = 1.6f;
-    ContactProblem problem = {.body_count = 3, .bodies = bodies, .bomb = 2};
+    ContactProblem problem = {.body_count = 3, .bodies = bodies, .marked = 2};
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 1, .feature = 0x01020304}), 0x01020304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x00ff0304}), 0x00ff0304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x01020304);
