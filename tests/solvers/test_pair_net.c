@@ -191,8 +191,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
     memcpy(three, bodies, sizeof three);
     three[2].inv_mass = 1, three[2].velocity = vec2(-3, 0.5f), three[2].angle = 0.7f;
     const ContactPoint all[3] = {{.a = 0, .b = 1}, {.a = 0, .b = 2}, {.a = 1, .b = 2}};
-    const ContactProblem problem = {
-        .body_count = 3, .contact_count = 3, .marked = -1, .bodies = three, .contacts = all};
+    const ContactProblem problem = {.body_count = 3, .contact_count = 3, .marked = -1, .bodies = three, .contacts = all};
     BodyVelocity expected[3], found[3];
     for (int i = 0; i < 3; i++) expected[i] = (BodyVelocity){three[i].velocity, three[i].angular_velocity};
     for (int p = 0; p < 3; p++) {
