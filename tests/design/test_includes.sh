@@ -2,36 +2,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every #include in src/ keeps to the direction of dependencies in src/layers.txt.
 set -u
-source_dir=$2
-
-declare -A neighbours
-while IFS=: read -r room names; do neighbours[$room]=$names; done < <(grep '^[a-z]' "$source_dir/src/layers.txt")
-
-# All rooms that $1 may include from.
-reach() {
-    local room
-    echo "$1" common
-    for room in ${neighbours[$1]}; do reach "$room"; done
-}
-
-status=0
-for path in "$source_dir"/src/*; do
-    room=$(basename "$path")
-    [ -d "$path" ] || [ "$room" = main.c ] || continue
-    if [ -z "${neighbours[$room]+known}" ]; then
-        echo "src/$room is missing in src/layers.txt"
-        status=1
-        continue
-    fi
-    allowed=" $(reach "$room" | tr '\n' ' ') "
-    while IFS=: read -r file line include; do
-        target=$(sed -E 's/.*"([^"]*)".*/\1/' <<<"$include")
-        # A header without a folder lies beside the file or is made by the build.
-        [[ $target == */* ]] || continue
-        if [[ $allowed != *" ${target%%/*} "* ]]; then
-            echo "${file#"$source_dir"/}:$line: may not include $target"
-            status=1
-        fi
-    done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$path" --include='*.[ch]' /dev/null)
-done
-exit $status
+cd "$2/src" || exit 1
+# A header without a folder lies beside the file or is made by the build.
+grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]*/' . --include='*.[ch]' | awk -F'[:"]' '
+    # All rooms that this one may include from.
+    function reach(room, from,    names, i, n) {
+        may[room, from] = may[room, "common"] = 1
+        n = split(neighbours[from], names, " ")
+        for (i = 1; i <= n; i++) reach(room, names[i])
+    }
+    FILENAME != "-" { if (/^[a-z]/) neighbours[$1] = substr($0, length($1) + 2); next }
+    {
+        split($1, path, "/")
+        split($4, target, "/")
+        if (!(path[2] in neighbours)) {
+            if (!missed[path[2]]++) print "src/" path[2] " is missing in src/layers.txt"
+            failed = 1
+        } else if (!reached[path[2]]++) reach(path[2], path[2])
+        if (!((path[2], target[1]) in may)) {
+            print substr($1, 3) ":" $2 ": may not include " $4
+            failed = 1
+        }
+    }
+    END { exit failed }' layers.txt -
